@@ -16,7 +16,8 @@ from siggen.dynamics.time.decimation import Decimator, second_difference_taps, v
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
-from siggen.sensors.sensor import needs_forces
+from siggen.sensing.inputs import FORCE
+from siggen.sensors.sensor import needs
 from siggen.specimen.instrument import specimen_instrument
 from siggen.specimen.integration import rule_grid
 
@@ -96,7 +97,7 @@ def _outputs(name: str) -> Outputs:
     seen = {motion for channel in specimen_instrument(config, specimen).channels for motion in channel.motions}
     point = draw_operating_point(config, 0, planned.operating_point_id)
     steps, _ = rule_grid(config, specimen.dynamics, state.mesh, point)
-    forces = [np.concatenate(pair) for pair in built.bearing_forces.values()] if needs_forces(config.sensors) else []
+    forces = [np.concatenate(pair) for pair in built.bearing_forces.values()] if needs(config.sensors, FORCE) else []
     return Outputs(
         np.array([row for motion, row in built.motions.items() if motion in seen]),
         np.array(forces).reshape(len(forces), 2 * len(built.coordinates)),

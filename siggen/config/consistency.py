@@ -32,6 +32,8 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _fault_names,
         _tooth_indices,
         _sensor_places,
+        _sensors_beside,
+        _sensor_turns,
         _mesh_law,
         _manufacture,
         _forces_at_bearings,
@@ -82,6 +84,26 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
         model = PLATES
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.model_problems(model):
+            yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
+
+
+def _sensors_beside(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    sensors = sections.get("sensors", {})
+    for index, sensor in sensors.items():
+        for problem in sensor.beside_problems({one.name: one for one in sensors.values()}):
+            yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
+
+
+def _sensor_turns(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield sensors that read nothing of a record in which shafts turn as little as they may."""
+    if not {"duration_s", "gears", "operating_points"} <= sections.keys():
+        return
+    pinion = sections["duration_s"] * min(bounds(point.speed_hz)[0] for point in sections["operating_points"])
+    gears = sections["gears"]
+    gear = pinion * min(gears.teeth_of("pinion")) / max(gears.teeth_of("gear"))
+    turns = {"motor": pinion, "pinion": pinion, "gear": gear, "load": gear}
+    for index, sensor in sections.get("sensors", {}).items():
+        for problem in sensor.duration_problems(turns):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 

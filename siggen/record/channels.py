@@ -5,7 +5,8 @@ Memory is bounded but for the stored channels (docs/understand/blocks.md).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,9 +20,11 @@ from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
 from siggen.record.disturbance import ChannelDisturbance
+from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
-from siggen.specimen.drive import record_rotation, start_angle_rad
+from siggen.sensors.transducer import Running
+from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.instrument import Instrument, specimen_instrument
 
@@ -37,15 +40,19 @@ def measured_channels(
     Raises
     ------
     SolverFailure, ValueError
-        As the response, where it is stepped as it is taken.
+        As the response, where it is stepped as it is taken; a SolverFailure too where a sensor cannot read it.
     """
     instrument = instrument or specimen_instrument(config, specimen)
     inputs = BlockInputs(config, specimen, record, response, instrument)
     recorders = {channel.name: Recorder(config.samples, channel.gain) for channel in instrument.channels}
+    rotation = _rotation(config, specimen, record)
+    whole: dict[str, list[FloatArray]] = {c.name: [] for c in instrument.channels if c.transducer is not None}
     for seen in inputs.seen():
         for name, values in seen.items():
-            recorders[name].take(values)
-    rotation = _rotation(config, specimen, record)
+            (whole[name].append if name in whole else recorders[name].take)(values)
+    if whole:
+        for name, reading in _readings(instrument, whole, _running(config, specimen, record, rotation)):
+            recorders[name].take(reading)
     disturbances = _disturbances(config, specimen, record, instrument, recorders, rotation)
     for first in range(0, config.samples, BLOCK_SAMPLES):
         count = min(BLOCK_SAMPLES, config.samples - first)
@@ -60,6 +67,31 @@ def measured_channels(
         signals[channel.name] = measured.values
         labels |= {**channel_labels(channel, measured), **disturbances[channel.name].labels}
     return signals, {**labels, **inputs.labels}
+
+
+def _readings(
+    instrument: Instrument, whole: Mapping[str, Sequence[FloatArray]], running: Running
+) -> Iterator[tuple[str, FloatArray]]:
+    """Yield channels that are read as a whole, with their readings (n,); last those that read other channels alone."""
+    found: dict[str, FloatArray] = {}
+    for channel in sorted(instrument.channels, key=lambda one: not one.seen):
+        if channel.transducer is not None:
+            shown = np.concatenate(whole[channel.name]) if channel.seen else np.empty(0)
+            found[channel.name] = channel.transducer.reading(shown, replace(running, readings=found))
+            yield channel.name, found[channel.name]
+
+
+def _running(config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> Running:
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    pair = gear_pair(specimen.gears)
+    return Running(
+        config.fs_hz,
+        _angle_rad(rotation, config.fs_hz, 0, config.samples),
+        specimen.gears.pinion.teeth / specimen.gears.gear.teeth,
+        point.torque_nm,
+        (pair.pinion.base_radius_m, pair.gear.base_radius_m),
+        2.0 * np.pi * named_uniforms(config.seed, Stage.NOISE, *record_owner(record))("line.phase"),
+    )
 
 
 def _disturbances(

@@ -1,4 +1,4 @@
-"""MotionBlocks: motions and bearing forces of a response as inputs of filters, in parts of any length."""
+"""MotionBlocks: motions, forces and readings of a response as inputs of filters, in parts of any length."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.time.response_stream import Pieces
-from siggen.sensing.inputs import FORCE, MOTION, Input
+from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input
 
 
 def delivered(response: Pieces) -> tuple[Input, ...]:
     """Return what a response holds, as inputs."""
-    kinds = ((MOTION, response.motions), (FORCE, response.places))
+    kinds = ((MOTION, response.motions), (FORCE, response.places), (SHAFT, response.readings))
     return tuple(Input(kind, name) for kind, names in kinds for name in names)
 
 

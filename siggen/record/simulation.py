@@ -31,7 +31,8 @@ from siggen.record.quantities import is_asked_for
 from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
-from siggen.sensors.sensor import needs_forces
+from siggen.sensing.inputs import FORCE, SHAFT
+from siggen.sensors.sensor import needs
 from siggen.specimen.back_flanks import with_back_flanks
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
@@ -193,7 +194,12 @@ def _stream(
             motion,
             driven.rotation,
             SampleGrid(config.fs_hz, config.samples, grid.per_sample),
-            wanted=Wanted(internals, internals or config.has_plates or needs_forces(config.sensors), motions),
+            wanted=Wanted(
+                internals,
+                internals or config.has_plates or needs(config.sensors, FORCE),
+                motions,
+                needs(config.sensors, SHAFT),
+            ),
             excitation=driven.excitation,
             settle_s=_settle_s(config, specimen, motion),
             history_s=history_s(config, specimen),
@@ -263,6 +269,7 @@ class _RefusedPieces:
     def __init__(self, stream: ResponseStream) -> None:
         self._stream = stream
         self.motions, self.places, self.before = stream.motions, stream.places, stream.before
+        self.readings = stream.readings
 
     @property
     def contact_loss_share(self) -> float:

@@ -23,6 +23,7 @@ class StreamedInternals:
 
     def __init__(self, config: Config, specimen: Specimen, stream: ResponseStream, pieces: Pieces) -> None:
         self.motions, self.places, self.before = pieces.motions, pieces.places, pieces.before
+        self.readings = pieces.readings
         self._specimen, self._stream, self._pieces = specimen, stream, pieces
         self._accelerations = tuple(acceleration_name(motion) for motion in self.motions)
         self._forces = tuple(bearing_force_name(place) for place in self.places)

@@ -1,14 +1,14 @@
-"""What may reach a channel: motions of the model, bearing forces, forces of the background."""
+"""What may reach a channel: motions of the model, bearing forces, readings of shafts, forces of the background."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-MOTION, FORCE, BACKGROUND = "motion", "force", "background"
+MOTION, FORCE, SHAFT, BACKGROUND = "motion", "force", "shaft", "background"
 
 
 class Input(NamedTuple):
-    """What reaches channels: a motion of the model, a bearing force, a force of the background."""
+    """A kind of what reaches channels, and which one."""
 
     kind: str
     name: str

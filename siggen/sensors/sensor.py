@@ -11,18 +11,22 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Self, get_args
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from siggen.arrays import ComplexArray, FloatArray
+from siggen.dynamics.structure.structure import COUPLINGS, SHAFTS
 from siggen.errors import Problem
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import BRANCHES, received_text, refusal
 from siggen.keys.section import Section, Whole
 from siggen.keys.wording import AllowedText
 from siggen.noise.source import Source
+from siggen.seeding import Stage, generator
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.quantity import Quantity
+from siggen.sensors.transducer import Transducer
 
 PLATES = "casing, housing.kind: plates"
 """The model whose housing gives way."""
@@ -36,6 +40,10 @@ PLACES = {
     PLATES: (*PLATE_OF, "pinion_bearing", "gear_bearing"),
 }
 """Places whose motion a model has."""
+SHAFTS_OF = {model: tuple(SHAFTS) for model in PLACES} | {"6dof": ("pinion", "gear")}
+"""What turns in a model."""
+COUPLINGS_OF = {model: tuple(COUPLINGS) for model in PLACES} | {"6dof": ()}
+"""Couplings that a model has."""
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
 
 
@@ -49,10 +57,19 @@ class AxisDraws:
 
     uniform: Callable[[str], float]
     path: str
+    named: Callable[[str], np.random.Generator]
 
     def __call__(self, number: Number, name: str) -> float:
         """Return the value of a number of the section."""
         return at(number, self.uniform(f"{self.path}.{name}"))
+
+    def of_sensor(self, number: Number, name: str) -> float:
+        """Return the value of a number that all axes of the sensor share."""
+        return at(number, self.uniform(f"{self.path.rpartition('.')[0]}.{name}"))
+
+    def generator(self, name: str) -> np.random.Generator:
+        """Return the generator of what takes many numbers."""
+        return self.named(f"{self.path}.{name}")
 
 
 class Sensor(Section):
@@ -133,7 +150,7 @@ class Sensor(Section):
     @property
     def reads(self) -> frozenset[str]:
         """Kinds of `Input` that it needs: those that it shows, and forces where they come through a path."""
-        middle = AxisDraws(lambda _: 0.5, "")
+        middle = AxisDraws(lambda _: 0.5, "", lambda _: generator(0, Stage.SENSOR, 0))
         shown = {one.kind for axis in self.axes for one in self.shows(axis, middle)}
         return frozenset(shown | (set() if self.through is None else {FORCE}))
 
@@ -156,6 +173,10 @@ class Sensor(Section):
         """Return what the sensor itself does to its quantity at frequencies (k,); None for nothing."""
         return None
 
+    def transducer(self, axis: str, draw: AxisDraws) -> Transducer | None:  # noqa: ARG002
+        """Return what makes a channel's reading of a whole record; None where it reads what it shows."""
+        return None
+
     def coupling_hz(self, draw: AxisDraws) -> float | None:  # noqa: ARG002
         """Return the corner of the capacitor that couples it, None without."""
         return None
@@ -170,10 +191,21 @@ class Sensor(Section):
 
     def model_problems(self, model: str) -> Iterator[Problem]:
         """Yield what does not go with `dynamics.model`: a place that it has not."""
-        places = PLACES[model]
+        yield from self.problems_among(PLACES[model], model)
+
+    def problems_among(self, places: tuple[str, ...], model: str) -> Iterator[Problem]:
+        """Yield a place that is none of those of a model."""
         if self.place not in places:
-            allowed = f"allowed: one of {', '.join(places)} (dynamics.model: {model})"
-            yield Problem("place", f"'{self.place}'", allowed)
+            named = f"one of {', '.join(places)}" if places else "none, so no sensor of this kind"
+            yield Problem("place", f"'{self.place}'", f"allowed: {named} (dynamics.model: {model})")
+
+    def duration_problems(self, turns: Mapping[str, float]) -> Iterator[Problem]:  # noqa: ARG002
+        """Yield what does not go with how often shafts turn in the slowest record, by shaft."""
+        yield from ()
+
+    def beside_problems(self, others: Mapping[str, Sensor]) -> Iterator[Problem]:  # noqa: ARG002
+        """Yield what does not go with the other sensors of the set, by name."""
+        yield from ()
 
     @property
     def channels(self) -> tuple[tuple[str, str], ...]:
@@ -207,6 +239,6 @@ class Sensor(Section):
         return self
 
 
-def needs_forces(sensors: tuple[Sensor, ...]) -> bool:
-    """Return whether a sensor shows bearing forces, or what a measured path makes of them."""
-    return any(FORCE in sensor.reads for sensor in sensors)
+def needs(sensors: tuple[Sensor, ...], kind: str) -> bool:
+    """Return whether a sensor reads a kind of `Input`, such as bearing forces."""
+    return any(kind in sensor.reads for sensor in sensors)

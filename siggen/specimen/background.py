@@ -6,7 +6,7 @@ seats, on shafts, base and housing. What they do to bearing forces passes the fl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import cos, pi, sin, sqrt
 
@@ -26,7 +26,7 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
-from siggen.sensing.inputs import FORCE, MOTION, Input
+from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input
 from siggen.sensing.sensor_response import resonance_response
 from siggen.specimen.background_numbers import (
     MESH_STIFFNESS_N_PER_UM_MM,
@@ -57,7 +57,7 @@ class ChannelWay:
 
     Attributes
     ----------
-    shown : motions and forces that it shows; of a housing of plates those of the modes that move with the gears
+    shown : motions, forces and readings of shafts; of a housing of plates those of the modes that move with the gears
     accelerance : (bearing forces, k) beyond those motions, m/s² per N; None for none
     entries : (entries of `Body`, k) the same from where other machines press on the housing
     """
@@ -129,14 +129,14 @@ def specimen_background(
     if not directions:
         return SpecimenBackground(section, shafts, bearings, (), {})
     ways = {name: _in_model(way, assembled) for name, way in channels.items()}
-    seen = tuple(dict.fromkeys(motion for way in ways.values() for motion in _motions(way.shown)))
+    seen, readings = (_named(ways.values(), kind) for kind in (MOTION, SHAFT))
     mesh = mean_mesh(specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
     names, rows = tuple(directions), np.array(list(directions.values()))
     turn_rad = _angle(uniform, "auxiliary_drive")
     responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
     for first in range(0, frequency_hz.size, BLOCK):
         block = slice(first, first + BLOCK)
-        forced = forced_motion(assembled, mesh, rows, seen, frequency_hz[block])
+        forced = forced_motion(assembled, mesh, rows, seen, frequency_hz[block], readings)
         for name, way in ways.items():
             try:
                 responses[name][:, block] = _response(names, turn_rad, forced, way, block)
@@ -262,8 +262,9 @@ def _stand(assembled: Structure, shaft: str) -> FloatArray:
     return _on_base(assembled) if "x_b" in assembled.coordinates else _on_rotor(assembled, shaft)
 
 
-def _motions(shown: Mapping[Input, float]) -> tuple[str, ...]:
-    return tuple(one.name for one in shown if one.kind == MOTION)
+def _named(ways: Iterable[ChannelWay], kind: str) -> tuple[str, ...]:
+    """Return the names of one kind of input that channels show, each once."""
+    return tuple(dict.fromkeys(one.name for way in ways for one in way.shown if one.kind == kind))
 
 
 def _in_model(way: ChannelWay, assembled: Structure) -> ChannelWay:
@@ -281,8 +282,9 @@ def _response(
 ) -> ComplexArray:
     """Return the response (inputs, k) of one channel at a block of its frequencies."""
     total = np.zeros_like(next(iter(forced.bearing_force.values())))
+    found = {FORCE: forced.bearing_force, MOTION: forced.acceleration, SHAFT: forced.shaft}
     for one, weight in way.shown.items():
-        total += weight * (forced.bearing_force if one.kind == FORCE else forced.acceleration)[one.name]
+        total += weight * found[one.kind][one.name]
     if way.accelerance is not None:
         for name, row in zip(INPUTS, way.accelerance[:, block], strict=True):
             total += row * forced.bearing_force[name]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import partial, reduce
 
 import numpy as np
 
@@ -13,12 +13,13 @@ from siggen.config import Config
 from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
-from siggen.seeding import Stage, named_uniforms
+from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.block_filter import block_grid
 from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input
 from siggen.sensing.spectral_filter import frequencies
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.transducer import Transducer
 from siggen.specimen.background import (
     ChannelWay,
     SpecimenBackground,
@@ -49,6 +50,7 @@ class ChannelInstrument:
     path_modes, path_rms_m_s2_per_n : number of modes, and rms accelerance over inputs and band; 0 without a path
     path_number : which of several measured paths
     high_pass_hz : corner of the coupling, None without
+    transducer : what makes a reading of the whole record; None where it reads what it shows
     """
 
     name: str
@@ -61,6 +63,7 @@ class ChannelInstrument:
     path_rms_m_s2_per_n: float
     path_number: int = 0
     high_pass_hz: float | None = None
+    transducer: Transducer | None = None
 
     @property
     def is_plain(self) -> bool:
@@ -106,11 +109,12 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     blocks = block_grid(round(history * config.fs_hz), config.samples)
     housing = specimen_housing(config, specimen)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
+    named = partial(_named, config.seed, specimen.specimen_id)
     grid = frequencies(blocks.memory, config.fs_hz)
     channels, ways = [], {}
     for sensor in specimen.sensors:
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
-            draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}")
+            draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
             channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, _Paths(housing, grid))
             channels.append(channel)
     background = None
@@ -142,6 +146,10 @@ def channel_ways(
         rows = zip(background.inputs, background.responses[channel.name], strict=True)
         ways |= {Input(BACKGROUND, name): row * sensed for name, row in rows}
     return ways
+
+
+def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
+    return named_generator(seed, Stage.SENSOR, specimen_id, name=name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,6 +187,7 @@ def _channel(
         path_modes=0 if housing is None or entries is None else housing.modes.frequency_hz.size,
         path_rms_m_s2_per_n=0.0 if accelerance is None else _band_rms(accelerance, grid),
         path_number=path_number(sensor, draw.uniform),
+        transducer=sensor.transducer(axis, draw),
     )
     return channel, ChannelWay(shown, beyond, entries)
 

@@ -20,6 +20,7 @@ from siggen.config import parse
 from siggen.errors import UsageError
 from tests.house.source_tree import ROOT
 from tests.publication.conftest import facts_file
+from tests.sensors.toy_strain_gauge import STRAIN_PER_FORCE
 
 CONFIG = """
 extends: quickstart
@@ -33,10 +34,10 @@ states:
   - {name: slight, damage: {kind: spall, face_length_mm: 4, profile_length_mm: 1, depth_mm: 0.1}}
   - {name: severe, damage: {kind: spall, face_length_mm: 12, profile_length_mm: 2, depth_mm: 0.2}}
 sensors:
-  - {kind: toy_force_washer, name: washer, range_n: 5000, floor_n: {kind: uniform, low: 0.5, high: 2}}
+  - {kind: toy_strain_gauge, name: seat, range_um_m: 100, floor_um_m: {kind: uniform, low: 0.005, high: 0.02}}
 """
 CLEAN = "internals: {quantities: [bearing_force_pinion_bearing_vertical_n]}"
-SIGNAL = "force_washer_vertical_n"
+SIGNAL = "strain_seat_vertical_um_m"
 OTHER_QUANTITY = re.compile(r"accelerat\w*|accelerometer|(?<!m)m/s(²|\^?2)|m_s2", re.IGNORECASE)
 
 
@@ -70,19 +71,19 @@ def words_of(page: Path) -> str:
 def test_its_channel_holds_its_quantity_with_its_own_noise(folder: Path) -> None:
     dataset = siggen.open(folder / "set")
     (channel,) = dataset.channels
-    assert (channel.name, channel.quantity, channel.unit) == ("washer_vertical", "bearing force", "N")
+    assert (channel.name, channel.quantity, channel.unit) == ("seat_vertical", "strain", "um/m")
     assert channel.column == SIGNAL
-    assert dataset.manifest["channels"][0]["quantity"] == "bearing force"
-    assert 0.5 <= dataset.record(0)["noise_floor_washer_vertical_n"] <= 2.0
+    assert dataset.manifest["channels"][0]["quantity"] == "strain"
+    assert 0.005 <= dataset.record(0)["noise_floor_seat_vertical_um_m"] <= 0.02
 
 
 def test_the_plan_takes_it_and_mistakes_in_it_are_named(folder: Path) -> None:
-    doubted = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", "sensors.0.range_n=5")
-    assert "washer_vertical" in doubted
-    assert "range [N]" in doubted
+    doubted = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", "sensors.0.range_um_m=0.5")
+    assert "seat_vertical" in doubted
+    assert "range [um/m]" in doubted
     changes = {
-        "sensors.0.range_n=0.5": "allowed: at least 1",
-        "sensors.0.kind=encoder": "allowed: one of accelerometer, toy_force_washer",
+        "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
+        "sensors.0.kind=thermometer": "transmission_error, torque, bearing_force, motor_current, toy_strain_gauge",
         "dynamics.model=torsional": "allowed: one of pinion_rim, gear_rim",
     }
     for change, allowed in changes.items():
@@ -95,8 +96,8 @@ def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> No
     command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
     for card in ("set/README.md", "published/README.md"):
         text = (folder / card).read_text(encoding="utf-8")
-        assert "labelled bearing force records" in text
-        assert "Toy washers show the force of a bearing" in text
+        assert "labelled strain records" in text
+        assert "Toy gauges show the strain of a bearing's seat" in text
         assert not OTHER_QUANTITY.search(text)
     for file in ("croissant.json", "datacite.json", "i_investigation.json"):
         text = json.dumps(json.loads((folder / "published" / file).read_text()))
@@ -105,46 +106,47 @@ def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> No
 
 def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path) -> None:
     lid = "  - {name: lid, place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
-    washer = CONFIG.partition("sensors:\n")[2]
-    for name, sensors in (("alone", lid), ("both", washer + lid)):
-        own = CONFIG.replace("specimens: 10", f"specimens: 1\nbackground: null\n{CLEAN}").replace(washer, sensors)
+    gauge = CONFIG.partition("sensors:\n")[2]
+    for name, sensors in (("alone", lid), ("both", gauge + lid)):
+        own = CONFIG.replace("specimens: 10", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
         (folder / f"{name}.yaml").write_text(own)
         command(folder, "siggen", "generate", f"{name}.yaml", "--out", name, "--engine", "serial")
     alone, both = (siggen.open(folder / name) for name in ("alone", "both"))
     record = both.record(0)
     assert record["accel_lid_vertical_m_s2"].tobytes() == alone.record(0)["accel_lid_vertical_m_s2"].tobytes()
     inner = next(row for batch in both.internals() for row in batch.to_pylist() if row["record_id"] == 0)
-    noise = record[SIGNAL] - np.array(inner["bearing_force_pinion_bearing_vertical_n"])
-    assert np.std(noise) == pytest.approx(record["noise_floor_washer_vertical_n"], rel=0.05)
-    assert abs(noise.mean()) < 0.1 * record["noise_floor_washer_vertical_n"]
+    strain = STRAIN_PER_FORCE * np.array(inner["bearing_force_pinion_bearing_vertical_n"])
+    floor = record["noise_floor_seat_vertical_um_m"]
+    assert np.std(record[SIGNAL] - strain) == pytest.approx(floor, rel=0.05)
+    assert abs(record[SIGNAL].mean()) < 0.1 * abs(strain.mean())
     card = (folder / "both" / "README.md").read_text(encoding="utf-8")
-    assert "labelled bearing force and acceleration records" in card
-    assert "`washer_vertical` (pinion_bearing, vertical), in N; `lid_vertical` (lid, vertical), in m/s^2" in card
+    assert "labelled strain and acceleration records" in card
+    assert "`seat_vertical` (pinion_bearing, vertical), in um/m; `lid_vertical` (lid, vertical), in m/s^2" in card
 
 
 def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:
     command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
-    assert '"washer_vertical":{"word":"bearing force","unit":"N"}' in (folder / "explorer.html").read_text("utf-8")
+    assert '"seat_vertical":{"word":"strain","unit":"um/m"}' in (folder / "explorer.html").read_text("utf-8")
     said = words_of(folder / "explorer.html")
-    assert "RMS [N]" in said
+    assert "RMS [um/m]" in said
     assert not OTHER_QUANTITY.search(said)
 
 
 def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
     command(folder, "siggen", "simulate", "toy.yaml", "--record", "0", "--signals", "--out", "one.parquet")
     found = read_columns(folder / "one.parquet")
-    assert found.own == {"washer_vertical": SIGNAL}
-    assert found.units == {SIGNAL: "N"}
-    file, names = folder / "one.parquet", ("washer_vertical",)
-    for said in (None, "g", "N"):
-        with pytest.raises(UsageError, match=r"states the unit 'N' .* no acceleration") as refused:
+    assert found.own == {"seat_vertical": SIGNAL}
+    assert found.units == {SIGNAL: "um/m"}
+    file, names = folder / "one.parquet", ("seat_vertical",)
+    for said in (None, "g", "um/m"):
+        with pytest.raises(UsageError, match=r"states the unit 'um/m' .* no acceleration") as refused:
             read_recording(file, names, RecordingFacts(unit=said))
         assert "--unit g" not in str(refused.value)
-    read = read_recording(file, names, RecordingFacts(), ("N",))
-    assert read.units == {"washer_vertical": "N"}
-    np.testing.assert_array_equal(read.channels["washer_vertical"], read_columns(file).values[SIGNAL])
-    with pytest.raises(UsageError, match="received the unit 'N'; allowed: kN"):
-        read_recording(file, names, RecordingFacts(), ("kN",))
+    read = read_recording(file, names, RecordingFacts(), ("um/m",))
+    assert read.units == {"seat_vertical": "um/m"}
+    np.testing.assert_array_equal(read.channels["seat_vertical"], read_columns(file).values[SIGNAL])
+    with pytest.raises(UsageError, match="received the unit 'um/m'; allowed: mm/m"):
+        read_recording(file, names, RecordingFacts(), ("mm/m",))
 
 
 @pytest.mark.slow

@@ -3,10 +3,10 @@
 import sys
 
 from siggen.sensors.kinds import KINDS
-from tests.sensors.toy_force_washer import ToyForceWasher
+from tests.sensors.toy_strain_gauge import ToyStrainGauge
 
 if __name__ == "__main__":
-    KINDS.append(ToyForceWasher)
+    KINDS.append(ToyStrainGauge)
     if sys.argv[1] == "siggen":
         from siggen.cli.app import main
     else:

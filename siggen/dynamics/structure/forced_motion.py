@@ -28,14 +28,23 @@ class MeanMesh:
 
 @dataclass(frozen=True, slots=True)
 class ForcedMotion:
-    """Responses (inputs, k): place/axis -> acceleration [m/s² per N], and -> force on the housing [N per N]."""
+    """Responses (inputs, k): place/axis -> acceleration [m/s² per N], and -> force on the housing [N per N].
+
+    `shaft` are those of `Structure.shaft_readings`.
+    """
 
     acceleration: Mapping[str, ComplexArray]
     bearing_force: Mapping[str, ComplexArray]
+    shaft: Mapping[str, ComplexArray]
 
 
 def forced_motion(
-    structure: Structure, mesh: MeanMesh, directions: FloatArray, motions: tuple[str, ...], frequency_hz: FloatArray
+    structure: Structure,
+    mesh: MeanMesh,
+    directions: FloatArray,
+    motions: tuple[str, ...],
+    frequency_hz: FloatArray,
+    readings: tuple[str, ...] = (),
 ) -> ForcedMotion:
     """Return the responses to inputs along generalised forces (inputs, n) at frequencies (k,).
 
@@ -46,6 +55,7 @@ def forced_motion(
     directions : (inputs, n)
     motions : names of `structure.motions` that are wanted
     frequency_hz : (k,)
+    readings : names of `structure.shaft_readings` that are wanted
     """
     p = structure.mesh_vector
     stiffness = structure.stiffness + mesh.stiffness_n_per_m * p[:, None] * p[None, :]
@@ -54,6 +64,8 @@ def forced_motion(
     zero = np.zeros(len(structure.coordinates))
     rows = [(zero, zero, structure.motions[name]) for name in motions]
     rows += [(k, c, zero) for k, c in bearings.values()]
+    of_shafts = structure.shaft_readings
+    rows += [(*of_shafts[name], zero) for name in readings]
     found = forced_responses(
         np.ascontiguousarray(structure.mass),
         np.ascontiguousarray(damping),
@@ -63,6 +75,9 @@ def forced_motion(
         2.0 * np.pi * frequency_hz,
     )
     # a bearing's motion and its force bear the same name
+    first, end = len(motions), len(motions) + len(bearings)
     return ForcedMotion(
-        dict(zip(motions, found[: len(motions)], strict=True)), dict(zip(bearings, found[len(motions) :], strict=True))
+        dict(zip(motions, found[:first], strict=True)),
+        dict(zip(bearings, found[first:end], strict=True)),
+        dict(zip(readings, found[end:], strict=True)),
     )

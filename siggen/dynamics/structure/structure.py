@@ -40,6 +40,10 @@ class Flanks(NamedTuple):
 DRIVE_FLANKS = Flanks()
 
 
+SHAFTS = {"motor": "theta_m", "pinion": "theta_1", "gear": "theta_2", "load": "theta_l"}
+"""What turns -> coordinate of its rotation."""
+COUPLINGS = {"input_coupling": ("theta_m", "theta_1"), "output_coupling": ("theta_2", "theta_l")}
+"""Coupling -> rotations of its driving and of its driven end."""
 MODE = "eta_"
 """How the names of coordinates begin that are modes of a housing."""
 
@@ -85,6 +89,26 @@ class Structure:
     def bodies(self) -> list[int]:
         """Numbers of the coordinates that move a body; modes of a housing move many, and gearboxes differ in them."""
         return [i for i, name in enumerate(self.coordinates) if not name.startswith(MODE)]
+
+    @property
+    def shaft_readings(self) -> dict[str, tuple[FloatArray, FloatArray]]:
+        """What sensors on shafts see, of the shafts that the model has: name -> two (n,), first · q + second · q̇.
+
+        `angle/<shaft>` is the rotation beyond the even one [rad], `torque/<coupling>` what the driving end of a
+        coupling passes on [N m]. Nothing but its coupling ties both ends together, so the matrices hold its numbers.
+        """
+        still = np.zeros(len(self.coordinates))
+        found = {
+            f"angle/{shaft}": (vector(self.coordinates, {name: 1.0}), still)
+            for shaft, name in SHAFTS.items()
+            if name in self.coordinates
+        }
+        for coupling, ends in COUPLINGS.items():
+            if set(ends) <= set(self.coordinates):
+                place = self.coordinates.index(ends[0]), self.coordinates.index(ends[1])
+                twist = vector(self.coordinates, dict(zip(ends, (-1.0, 1.0), strict=True)))
+                found[f"torque/{coupling}"] = (self.stiffness[place] * twist, self.damping[place] * twist)
+        return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from siggen.arrays import FloatArray
 
@@ -19,3 +19,9 @@ class History:
 
     acceleration_m_s2: Mapping[str, FloatArray]
     bearing_force_n: Mapping[str, FloatArray]
+    shaft_reading: Mapping[str, FloatArray] = field(default_factory=dict)
+
+    @property
+    def parts(self) -> tuple[Mapping[str, FloatArray], ...]:
+        """Accelerations, bearing forces and readings of shafts."""
+        return self.acceleration_m_s2, self.bearing_force_n, self.shaft_reading

@@ -1,9 +1,9 @@
-"""Response: accelerations and bearing forces of a gear stage at the output rate, after the transient."""
+"""Response: accelerations, bearing forces and readings of shafts at the output rate, after the transient."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -48,7 +48,7 @@ class SampleGrid:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What of a response is wanted: internals; bearing forces; accelerations of the named motions, None: of all.
+    """What of a response is wanted: internals; bearing forces; accelerations of motions, None: of all; shafts.
 
     Filtering costs about a fifth of a response for four forces or motions.
     """
@@ -56,6 +56,7 @@ class Wanted:
     internals: bool = False
     bearing_forces: bool = True
     motions: Collection[str] | None = None
+    shafts: bool = False
 
 
 ACCELERATIONS_AND_FORCES = Wanted()
@@ -75,8 +76,9 @@ class Response:
     contact_loss_share : share of the time with the approach inside the backlash gap; 0 if the simulation failed
     status, reason : "ok" and "", or what went wrong, with numbers
     internals : name -> (n,), values at the instants of the samples, not low-passed; empty unless asked for
-    history, after : the samples before sample 0 and behind the last one of accelerations and bearing forces; (0,)
-        arrays unless asked for
+    history, after : the samples before sample 0 and behind the last one of accelerations, bearing forces and readings;
+        (0,) arrays unless asked for
+    shaft_reading : name of `Structure.shaft_readings` -> (n,), low-passed alike, mean included; empty if not asked for
     """
 
     fs_hz: float
@@ -90,6 +92,7 @@ class Response:
     internals: Mapping[str, FloatArray]
     history: History
     after: History
+    shaft_reading: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -102,17 +105,20 @@ class Response:
         return tuple(self.bearing_force_n)
 
     @property
+    def readings(self) -> tuple[str, ...]:
+        """Names of the readings of shafts."""
+        return tuple(self.shaft_reading)
+
+    @property
     def before(self) -> int:
         """Samples of the history."""
-        kept = (*self.history.acceleration_m_s2.values(), *self.history.bearing_force_n.values())
-        return max((values.size for values in kept), default=0)
+        return max((values.size for part in self.history.parts for values in part.values()), default=0)
 
     def pieces(self) -> Iterator[Piece]:
         """Yield history, record and what comes behind it."""
         for outside in (self.history, None, self.after):
-            accelerations = self.acceleration_m_s2 if outside is None else outside.acceleration_m_s2
-            forces = self.bearing_force_n if outside is None else outside.bearing_force_n
-            yield Piece(_rows(accelerations), _rows(forces))
+            inside = self.acceleration_m_s2, self.bearing_force_n, self.shaft_reading
+            yield Piece(*(_rows(part) for part in (inside if outside is None else outside.parts)))
 
 
 def response_of(
@@ -167,38 +173,34 @@ def response_stream(
     names = tuple(name for name in motion.structure.motions if wanted.motions is None or name in wanted.motions)
     return ResponseStream(
         Run(motion, drive, grid.fs_hz, grid.steps_per_sample, acting, names), grid.samples, settle=settle,
-        history=history, ahead=ahead, bearing_forces=wanted.bearing_forces, internals=wanted.internals,
+        history=history, ahead=ahead,
+        bearing_forces=wanted.bearing_forces, shafts=wanted.shafts, internals=wanted.internals,
     )  # fmt: skip
 
 
 def collected_response(stream: ResponseStream) -> Response:
     """Return all pieces of a stream as one response; a failed one has a status and its reason."""
     length = stream.before + stream.samples + stream.ahead
-    accelerations = np.empty((len(stream.motions), length))
-    forces = np.empty((len(stream.places), length))
+    whole = Piece(*(np.empty((len(names), length)) for names in (stream.motions, stream.places, stream.readings)))
     done = 0
     try:
         for piece in stream.pieces():
             block = slice(done, done + piece.acceleration_m_s2.shape[1])
-            accelerations[:, block] = piece.acceleration_m_s2
-            if stream.places:
-                forces[:, block] = piece.bearing_force_n
+            for rows, taken in zip(whole, piece, strict=True):
+                rows[:, block] = taken
             done = block.stop
     except SolverFailure as failure:
         return _failed(stream.run, failure)
-    return _finished(stream, accelerations, forces)
+    return _finished(stream, whole)
 
 
-def _finished(stream: ResponseStream, accelerations: FloatArray, forces: FloatArray) -> Response:
-    """Name the rows of accelerations and forces (channels, history + n + ahead), and internals."""
+def _finished(stream: ResponseStream, whole: Piece) -> Response:
+    """Name the rows of accelerations, forces and readings (channels, history + n + ahead), and internals."""
     run, count, end = stream.run, stream.samples, stream.before + stream.samples
+    names_of = stream.motions, stream.places, stream.readings
     parts = [
-        (_named(stream.motions, a), _named(stream.places, f))
-        for a, f in zip(
-            np.split(accelerations, [stream.before, end], axis=1),
-            np.split(forces, [stream.before, end], axis=1),
-            strict=True,
-        )
+        tuple(_named(names, rows[:, block]) for names, rows in zip(names_of, whole, strict=True))
+        for block in (slice(stream.before), slice(stream.before, end), slice(end, None))
     ]
     names = run.motion.internal_names
     return Response(
@@ -213,6 +215,7 @@ def _finished(stream: ResponseStream, accelerations: FloatArray, forces: FloatAr
         internals=_named(names, np.concatenate(stream.inner).T.copy()) if stream.inner else {},
         history=History(*parts[0]),
         after=History(*parts[2]),
+        shaft_reading=parts[1][2],
     )
 
 

@@ -1,4 +1,4 @@
-"""ResponseStream: accelerations and bearing forces of a gear stage at the output rate, piece after piece.
+"""ResponseStream: accelerations, bearing forces and readings of shafts at the output rate, piece after piece.
 
 Transient and record are stepped in blocks, whose states are filtered and forgotten: memory does not grow with the
 record.
@@ -21,7 +21,7 @@ from siggen.dynamics.drive.sampled_excitation import SampledExcitation
 from siggen.dynamics.time.decimation import Decimator, half_length, value_taps
 from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response_filters import acceleration_decimator, force_decimator
+from siggen.dynamics.time.response_filters import ValueDecimator, acceleration_decimator
 from siggen.errors import SolverFailure
 
 APPROACH_LIMIT_PITCHES = 0.1
@@ -63,10 +63,14 @@ class Run:
 
 
 class Piece(NamedTuple):
-    """Accelerations (motions, k) and bearing forces (places, k), static ones included, at the next samples."""
+    """Accelerations (motions, k), bearing forces (places, k) and readings of shafts (readings, k) at the next samples.
+
+    Static forces and readings are included.
+    """
 
     acceleration_m_s2: FloatArray
     bearing_force_n: FloatArray
+    shaft_reading: FloatArray
 
 
 class Stepped(NamedTuple):
@@ -79,7 +83,7 @@ class Stepped(NamedTuple):
 
 
 class Pieces(Protocol):
-    """Pieces of the named motions and bearing forces, the first one from `before` samples before sample 0."""
+    """Pieces of the named motions, forces and readings, the first one from `before` samples before sample 0."""
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -88,6 +92,10 @@ class Pieces(Protocol):
     @property
     def places(self) -> tuple[str, ...]:
         """Names of the rows of bearing forces."""
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Names of the rows of readings of shafts."""
 
     @property
     def before(self) -> int:
@@ -112,11 +120,13 @@ class ResponseStream:
         history: int = 0,
         ahead: int = 0,
         bearing_forces: bool = True,
+        shafts: bool = False,
         internals: bool = False,
     ) -> None:
         self.run, self.samples, self.before, self.ahead = run, samples, history, ahead
         self.motions: tuple[str, ...] = run.motions
         self.places: tuple[str, ...] = tuple(run.motion.structure.bearing_forces) if bearing_forces else ()
+        self.readings: tuple[str, ...] = tuple(run.motion.structure.shaft_readings) if shafts else ()
         self.inner: list[FloatArray] = []
         self._settle, self._with_internals, self._lost = settle, internals, 0
 
@@ -140,11 +150,12 @@ class ResponseStream:
         for _ in stepped_blocks(run, state, -half - self._settle, begin):
             pass
         accelerations = acceleration_decimator(structure, run.motions, run.fs_hz, steps)
-        forces = BearingForces(run) if self.places else None
+        static, shafts = run.motion.equations.static_deflection, structure.shaft_readings
+        forces = BearingForces(run, self.places)
+        readings = ValueDecimator((shafts[name] for name in self.readings), static, steps)
         end = (self.samples + self.ahead - 1) * steps + half + 1
         for block in stepped_blocks(run, state, begin, end):
-            felt = np.empty((0, 0)) if forces is None else forces.take(block)
-            piece = Piece(accelerations.take(block.states), felt)
+            piece = Piece(accelerations.take(block.states), forces.take(block), readings.take(block.states))
             self._count(block)
             if piece.acceleration_m_s2.shape[1]:
                 yield piece
@@ -161,18 +172,16 @@ class ResponseStream:
 class BearingForces:
     """Low-passed bearing forces of a run, from states and inputs that are taken block after block."""
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, places: tuple[str, ...]) -> None:
         motion, steps = run.motion, run.steps_per_sample
-        static, pairs = motion.equations.static_deflection, motion.structure.bearing_forces
-        # filtered about their static values
-        self._at_rest = np.array([(stiffness * static).sum() for stiffness, _ in pairs.values()]).reshape(-1, 1)
-        self._of_states = force_decimator(motion.structure, steps)
-        rows = np.zeros((0, 0)) if run.excitation is None else run.excitation.seat_force_rows(tuple(pairs))
+        pairs = (motion.structure.bearing_forces[name] for name in places)
+        self._of_states = ValueDecimator(pairs, motion.equations.static_deflection, steps)
+        rows = np.zeros((0, 0)) if run.excitation is None else run.excitation.seat_force_rows(places)
         self._of_inputs = Decimator(rows, value_taps(steps), steps) if rows.any() else None
 
     def take(self, block: Stepped) -> FloatArray:
         """Return the forces on the seats (places, k) as far as the filter reaches."""
-        forces = np.asarray(self._of_states.take(block.states) + self._at_rest)
+        forces = self._of_states.take(block.states)
         return forces if self._of_inputs is None else forces + self._of_inputs.take(block.inputs)
 
 

@@ -1,0 +1,133 @@
+"""Currents of the induction motor that drives the gearbox: its rotor's uneven rotation beside the line frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import pi
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from siggen.arrays import FloatArray
+from siggen.errors import Problem, SolverFailure
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Real, Whole
+from siggen.sensing.inputs import SHAFT, Input
+from siggen.sensing.stator_current import InductionMotor, active_current, phase_current
+from siggen.sensors.quantity import Quantity
+from siggen.sensors.sensor import SHAFTS_OF, AxisDraws, Sensor
+from siggen.sensors.transducer import Running, Transducer
+
+PHASES = ("phase_a", "phase_b", "phase_c")
+
+
+class MotorCurrent(Sensor):
+    """Clamps about the phases of an induction motor at a line frequency that does not change within a record."""
+
+    quantity: ClassVar[Quantity] = Quantity("current", "current", "A", "a")
+    noun: ClassVar[str] = "current clamp"
+    acts: ClassVar[str] = (
+        "Current clamps show the phases of an induction motor: the line frequency is that at which it turns as it does "
+        "under its torque, and uneven rotation moves the active current by its slip."
+    )
+    plausible: ClassVar[tuple[float, float, str]] = (0.1, 1e5, "is it in A?")
+
+    kind: Literal["motor_current"] = Field(description="current of a phase of the induction motor that drives")
+    place: Literal["motor"] = Field(default="motor", description="the motor; not with dynamics.model: 6dof")
+    axes: Annotated[tuple[Literal["phase_a", "phase_b", "phase_c"], ...], Field(min_length=1)] = Field(
+        default=("phase_a",), description="phases, one channel each"
+    )
+    pole_pairs: Annotated[Whole, Field(ge=1, le=50)] = Field(default=2, description="of the motor")
+    rated_torque_nm: Annotated[Number, Within(above=0)] = Field(description="torque at the rated slip")
+    rated_slip: Annotated[Number, Within(above=0, most=0.2)] = Field(
+        default=0.03, description="slip at the rated torque; slip follows torque"
+    )
+    breakdown_slip: Annotated[Number, Within(above=0, most=1)] = Field(
+        default=0.15, description="slip of the largest torque; sets how fast torque follows slip"
+    )
+    active_a: Annotated[Number, Within(above=0)] = Field(
+        default=10.0, description="amplitude of the active current at the rated torque"
+    )
+    magnetising_a: Annotated[Number, Within(least=0)] = Field(
+        default=5.0, description="amplitude of the magnetising current, whatever the load"
+    )
+    floor_a: Annotated[Number, Within(least=0)] = Field(
+        default=0.0, description="standard deviation of its white noise, drawn for every record and phase"
+    )
+    range_a: Annotated[Real, Field(gt=0)] = Field(
+        default=100.0, description="readings are clipped at plus and minus this"
+    )
+
+    def model_problems(self, model: str) -> Iterator[Problem]:
+        """Yield a model without a motor."""
+        yield from self.problems_among(tuple(s for s in SHAFTS_OF[model] if s == "motor"), model)
+
+    @property
+    def limit(self) -> float:
+        """Its range [A]."""
+        return self.range_a
+
+    @property
+    def limit_key(self) -> str:
+        """The key of its range."""
+        return "range_a"
+
+    @property
+    def noise_floor(self) -> Number | None:
+        """Standard deviation of its white noise [A]."""
+        return self.floor_a
+
+    def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:  # noqa: ARG002
+        """Return the vibration of the rotor."""
+        return {Input(SHAFT, "angle/motor"): 1.0}
+
+    def transducer(self, axis: str, draw: AxisDraws) -> Transducer:
+        """Return the winding of a phase; all phases are those of one motor."""
+        numbers = {
+            key: draw.of_sensor(getattr(self, key), key)
+            for key in ("rated_torque_nm", "rated_slip", "breakdown_slip", "active_a", "magnetising_a")
+        }
+        motor = InductionMotor(
+            pole_pairs=self.pole_pairs,
+            rated_torque_nm=numbers["rated_torque_nm"],
+            rated_slip=numbers["rated_slip"],
+            rated_active_a=numbers["active_a"],
+            breakdown_slip=numbers["breakdown_slip"],
+            magnetising_a=numbers["magnetising_a"],
+        )
+        return Winding(self.name, motor, 2.0 * pi / 3.0 * PHASES.index(axis))
+
+
+@dataclass(frozen=True, slots=True)
+class Winding:
+    """One phase of a motor, and by what angle it is behind the first."""
+
+    sensor: str
+    motor: InductionMotor
+    behind_rad: float
+
+    def reading(self, shown: FloatArray, running: Running) -> FloatArray:
+        """Return the current (n,) [A] of a rotor that vibrates by (n,) [rad].
+
+        Raises
+        ------
+        SolverFailure
+            If the speed changes more than a motor's at one line frequency.
+        """
+        motor, fs_hz = self.motor, running.fs_hz
+        turned = running.shaft_rad("motor") + shown
+        seconds = np.arange(shown.size) / fs_hz
+        speed = (turned[-1] - turned[0]) / seconds[-1]
+        line_hz = motor.line_hz(speed / (2.0 * pi), running.torque_nm)
+        added = active_current(motor, turned - speed * seconds, fs_hz, line_hz)
+        steady = motor.rated_active_a * running.torque_nm / motor.rated_torque_nm
+        largest = motor.rated_active_a * motor.breakdown_slip / motor.rated_slip
+        if not (steady + added < largest).all():
+            raise SolverFailure(
+                "unreadable",
+                f"sensor {self.sensor}: the slip would pass breakdown_slip ({motor.breakdown_slip:g}), beyond which a "
+                "motor stalls; lower the torque or the variation of the speed in a record, or raise rated_torque_nm",
+            )
+        return phase_current(motor, steady + added, 2.0 * pi * line_hz * seconds + running.line_rad, self.behind_rad)

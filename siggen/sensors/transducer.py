@@ -1,0 +1,50 @@
+"""Transducers: sensors whose reading is not a filter's of what the model gives, but made of a whole record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from siggen.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """How the gearbox runs in a record, beside its vibration.
+
+    Attributes
+    ----------
+    fs_hz : sampling rate
+    pinion_rad : (n,) prescribed angle of the pinion's shaft at the samples
+    gear_ratio : turns of the gear per turn of the pinion
+    torque_nm : of the operating point, on the pinion's shaft
+    base_radii_m : of pinion and gear
+    line_rad : phase of the electrical line at the first sample, one for all sensors
+    readings : channel -> (n,) of those that show something of the model and were read as a whole already
+    """
+
+    fs_hz: float
+    pinion_rad: FloatArray
+    gear_ratio: float
+    torque_nm: float
+    base_radii_m: tuple[float, float]
+    line_rad: float
+    readings: Mapping[str, FloatArray] = field(default_factory=dict)
+
+    def shaft_rad(self, shaft: str) -> FloatArray:
+        """Return the prescribed angle (n,) of `motor` or `pinion`, or of `gear` or `load`."""
+        return self.pinion_rad if shaft in {"motor", "pinion"} else self.gear_ratio * self.pinion_rad
+
+
+class Transducer(Protocol):
+    """A channel of one gearbox."""
+
+    def reading(self, shown: FloatArray, running: Running) -> FloatArray:
+        """Return what the channel reads (n,) of what it shows of the model (n,).
+
+        Raises
+        ------
+        SolverFailure
+            If it cannot read this record; says why.
+        """

@@ -1,0 +1,96 @@
+"""The transmission error that two encoders see: what one shaft is ahead of the other, on the line of action."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from siggen.arrays import FloatArray
+from siggen.errors import Problem
+from siggen.keys.section import Whole
+from siggen.sensing.inputs import Input
+from siggen.sensors.encoder import Encoder
+from siggen.sensors.quantity import Quantity
+from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.transducer import Running, Transducer
+
+SHAFTS = {"pinion_encoder": ("pinion", "motor"), "gear_encoder": ("gear", "load")}
+"""Key -> shafts on which its encoder may sit."""
+LARGEST_UM = 1e6
+MICROMETRES = 1e6
+
+
+class TransmissionError(Sensor):
+    """R_b1 θ_1 - R_b2 θ_2 of the angles that two encoders of the set count, about its mean (standard literature).
+
+    Encoders count from where they began: the mean error under load is in no record.
+    """
+
+    quantity: ClassVar[Quantity] = Quantity("transmission error", "transmission_error", "um", "um", "rotation")
+    noun: ClassVar[str] = "pair of encoders"
+    acts: ClassVar[str] = (
+        "Transmission errors are those that two encoders see, base radius times angle of the pinion's shaft less that "
+        "of the gear's, about their mean."
+    )
+
+    kind: Literal["transmission_error"] = Field(description="difference of two encoders on the line of action")
+    place: Literal["mesh"] = Field(default="mesh", description="between both encoders")
+    axes: Annotated[tuple[Literal["line_of_action"], ...], Field(min_length=1)] = Field(
+        default=("line_of_action",), description="along which it counts"
+    )
+    pinion_encoder: str = Field(description="name of an encoder of the set on pinion or motor")
+    gear_encoder: str = Field(description="name of an encoder of the set on gear or load")
+    bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
+        default=None, description="of what is stored; null: not quantised beyond the counter"
+    )
+
+    def model_problems(self, model: str) -> Iterator[Problem]:  # noqa: ARG002
+        """Yield nothing: its encoders say what the model has not."""
+        yield from ()
+
+    def beside_problems(self, others: Mapping[str, Sensor]) -> Iterator[Problem]:
+        """Yield names that are none of an encoder on a shaft of their side."""
+        for key, shafts in SHAFTS.items():
+            name = getattr(self, key)
+            fitting = [n for n, one in others.items() if isinstance(one, Encoder) and one.place in shafts]
+            if name not in fitting:
+                listed = ", ".join(fitting) or "none there is; add one"
+                yield Problem(key, f"'{name}'", f"allowed: an encoder at place {' or '.join(shafts)}: {listed}")
+
+    @property
+    def limit(self) -> float:
+        """An error that no teeth have [um]: nothing is clipped."""
+        return LARGEST_UM
+
+    @property
+    def limit_key(self) -> str:
+        """The key that its size follows from."""
+        return "pinion_encoder"
+
+    def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:  # noqa: ARG002
+        """Return nothing: it reads other sensors."""
+        return {}
+
+    def transducer(self, axis: str, draw: AxisDraws) -> Transducer:  # noqa: ARG002
+        """Return the difference of both channels."""
+        return Difference(f"{self.pinion_encoder}_rotation", f"{self.gear_encoder}_rotation")
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """The channels of both encoders."""
+
+    pinion: str
+    gear: str
+
+    def reading(self, shown: FloatArray, running: Running) -> FloatArray:  # noqa: ARG002
+        """Return the error (n,) [um] at the samples."""
+        radii, readings = running.base_radii_m, running.readings
+        rate = radii[0] * readings[self.pinion] - radii[1] * readings[self.gear]
+        after = np.cumsum(rate) / running.fs_hz  # each speed holds from half an interval before its sample on
+        error = MICROMETRES * (after - 0.5 * rate / running.fs_hz)
+        return np.asarray(error - error.mean())
