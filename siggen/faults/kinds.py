@@ -1,10 +1,11 @@
 """The kinds of damage that a state may have: a new one is a line here."""
 
 from siggen.faults.clustered import ClusteredPits
+from siggen.faults.crack import RootCracks
 from siggen.faults.fault import Fault
 from siggen.faults.irregular import IrregularSpalls
 from siggen.faults.layered import LayeredPits
 from siggen.faults.listed import ListedPits
 from siggen.faults.spalls import Spalls
 
-KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls]
+KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, RootCracks]
