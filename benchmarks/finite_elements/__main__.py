@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks.finite_elements import comparison, coupling, face_kernel, face_losses, neighbour_face, single_pair
+from benchmarks.finite_elements import (
+    comparison,
+    coupling,
+    crack_comparison,
+    face_kernel,
+    face_losses,
+    neighbour_face,
+    single_pair,
+)
 
 TABLES = {
     "models": comparison.model_table,
@@ -18,6 +26,8 @@ TABLES = {
     "variants": comparison.variants_table,
     "outside": comparison.outside_table,
     "spots": comparison.spots,
+    "crack": crack_comparison.crack_table,
+    "crack_convergence": crack_comparison.crack_convergence_table,
     "face": face_kernel.kernel_table,
     "face_losses": face_losses.loss_table,
     "misalignment": face_losses.misalignment_table,
@@ -25,11 +35,13 @@ TABLES = {
     "single_pair": single_pair.single_pair_table,
 }
 
+ACTIONS = ("figures", "calibrate", "couple", "fit_crack")
+
 
 def main() -> None:
     """Run what the command line asks for: `models` (about 5 s) without an argument."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.finite_elements", description=__doc__)
-    parser.add_argument("what", nargs="*", default=["models"], choices=[*TABLES, "figures", "calibrate", "couple"])
+    parser.add_argument("what", nargs="*", default=["models"], choices=[*TABLES, *ACTIONS])
     for what in parser.parse_args().what:
         if what in TABLES:
             print(f"\n{what}\n", *TABLES[what](), sep="\n")
@@ -41,6 +53,10 @@ def main() -> None:
             from benchmarks.finite_elements.coupling_fit import couple
 
             print(*couple().items(), sep="\n")
+        elif what == "fit_crack":
+            from benchmarks.finite_elements.crack_fit import fit_crack
+
+            print(*fit_crack().items(), sep="\n")
         else:
             from benchmarks.finite_elements.calibration_file import calibrate
 

@@ -7,6 +7,7 @@ Every load point is a node. The other teeth are left out: their gaps are root ci
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -175,25 +176,42 @@ def tooth_mesh(gear: SpurGear, load_roll: np.ndarray, size: float = DEFAULT_SIZE
     -------
     ToothMesh
     """
+    bore = bore_polygon(gear, size)
+    points, triangles = meshed((outline(gear, size, load_roll), bore))
+    loads = np.stack([turned(flank(gear, r), i * 2 * np.pi / gear.teeth) for i, r in enumerate(load_roll)])
+    return ToothMesh(points, triangles, float(np.hypot(*bore[0])), loads)
+
+
+def meshed(loops: tuple[np.ndarray, ...], inside: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Mesh of a plane body.
+
+    Parameters
+    ----------
+    loops : tuple of (n, 2) arrays
+        Nodes of the closed boundaries, the outer one first.
+    inside : (k, 2) array, optional
+        Nodes of a line that edges follow; the first one is a node of the outer boundary.
+
+    Returns
+    -------
+    ((2, n) array, (3, e) int array)
+        Points, and nodes of each triangle.
+    """
     import gmsh
 
-    outer = outline(gear, size, load_roll)
-    bore = _bore(gear, size)
     gmsh.initialize(["-noenv"], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)
         gmsh.option.setNumber("Mesh.Algorithm", 5)
-        _loops(outer, bore)
+        _body(loops, inside)
         gmsh.model.mesh.generate(2)
-        points, triangles = _read()
+        return _read()
     finally:
         gmsh.finalize()
-    loads = np.stack([turned(flank(gear, r), i * 2 * np.pi / gear.teeth) for i, r in enumerate(load_roll)])
-    return ToothMesh(points, triangles, float(np.hypot(*bore[0])), loads)
 
 
-def _bore(gear: SpurGear, size: float) -> np.ndarray:
+def bore_polygon(gear: SpurGear, size: float) -> np.ndarray:
     """Polygon whose mean radius is the bore's: an inscribed one would hold the body on a smaller circle."""
     thickness = (gear.root_radius_m - gear.bore_radius_m) / gear.module_m
     radius = gear.bore_radius_m / gear.module_m
@@ -202,20 +220,38 @@ def _bore(gear: SpurGear, size: float) -> np.ndarray:
     return _arc(radius * (1 + (2 * np.pi / edges) ** 2 / 12), 0.0, 2 * np.pi, edges + 1)[:-1]
 
 
-def _loops(outer: np.ndarray, bore: np.ndarray) -> None:
+def _body(boundaries: tuple[np.ndarray, ...], inside: np.ndarray | None) -> None:
     import gmsh
 
-    loops = []
-    for nodes in (outer, bore):
+    loops, first = [], []
+    for nodes in boundaries:
         edge = np.hypot(*(np.roll(nodes, -1, axis=0) - nodes).T)
-        local = np.maximum(edge, np.roll(edge, 1))
-        tags = [gmsh.model.geo.addPoint(x, y, 0.0, h) for (x, y), h in zip(nodes, local, strict=True)]
-        lines = [gmsh.model.geo.addLine(a, b) for a, b in zip(tags, tags[1:] + tags[:1], strict=True)]
-        for line in lines:
-            gmsh.model.geo.mesh.setTransfiniteCurve(line, 2)
-        loops.append(gmsh.model.geo.addCurveLoop(lines))
-    gmsh.model.geo.addPlaneSurface(loops)
+        tags = _points(nodes, np.maximum(edge, np.roll(edge, 1)))
+        loops.append(gmsh.model.geo.addCurveLoop(_lines([*tags, tags[0]])))
+        first = first or tags
+    surface = gmsh.model.geo.addPlaneSurface(loops)
+    drawn: list[int] = []
+    if inside is not None:
+        mouth = first[int(np.hypot(*(boundaries[0] - inside[0]).T).argmin())]
+        edge = np.hypot(*np.diff(inside, axis=0).T)
+        drawn = _lines([mouth, *_points(inside[1:], edge)])
     gmsh.model.geo.synchronize()
+    gmsh.model.mesh.embed(1, drawn, 2, surface)
+
+
+def _points(nodes: np.ndarray, size: np.ndarray) -> list[int]:
+    import gmsh
+
+    return [gmsh.model.geo.addPoint(x, y, 0.0, h) for (x, y), h in zip(nodes, size, strict=True)]
+
+
+def _lines(tags: list[int]) -> list[int]:
+    import gmsh
+
+    lines = [gmsh.model.geo.addLine(a, b) for a, b in pairwise(tags)]
+    for line in lines:
+        gmsh.model.geo.mesh.setTransfiniteCurve(line, 2)
+    return lines
 
 
 def _read() -> tuple[np.ndarray, np.ndarray]:

@@ -248,6 +248,8 @@ def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem
         received = f"no {nouns} beyond those of {milder.name}, which this state contains (grows_from)"
         allowed = f"allowed: more {nouns} than {milder.name} has, or grows_from: none"
         yield Problem(f"{path}.damage.{key}", received, allowed)
+    for problem in state.damage.growth_problems(milder.damage):
+        yield replace(problem, path=f"{path}.damage.{problem.path}")
 
 
 def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

@@ -2,10 +2,11 @@
 
 from siggen.faults.bearing_spall import BearingSpalls
 from siggen.faults.clustered import ClusteredPits
+from siggen.faults.crack import RootCracks
 from siggen.faults.fault import Fault
 from siggen.faults.irregular import IrregularSpalls
 from siggen.faults.layered import LayeredPits
 from siggen.faults.listed import ListedPits
 from siggen.faults.spalls import Spalls
 
-KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, BearingSpalls]
+KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, RootCracks, BearingSpalls]

@@ -28,8 +28,8 @@ splits: {train: 10, validation: 5, test: 5}
 dynamics: {mesh: {damage: all}}
 states:
   - {name: healthy}
-  - {name: slight, damage: {kind: toy_crack, depth_mm: {kind: uniform, low: 0.8, high: 1.2}}}
-  - {name: severe, damage: {kind: toy_crack, depth_mm: {kind: uniform, low: 3, high: 4}}}
+  - {name: slight, damage: {kind: toy_hinge, depth_mm: {kind: uniform, low: 0.8, high: 1.2}}}
+  - {name: severe, damage: {kind: toy_hinge, depth_mm: {kind: uniform, low: 3, high: 4}}}
 """
 OTHER_KINDS = re.compile(r"\b(pits?|pitting|spall\w*)\b", re.IGNORECASE)
 
@@ -64,14 +64,14 @@ def words_of(page: Path) -> str:
 def test_it_is_labelled_softens_its_tooth_and_has_its_rows(folder: Path) -> None:
     dataset = siggen.open(folder / "set")
     labels = dataset.labels().to_pylist()
-    assert {label["fault"] for label in labels} == {"healthy", "crack"}
+    assert {label["fault"] for label in labels} == {"healthy", "hinge"}
     losses = {s: [one["mesh_stiffness_loss"] for one in labels if one["state"] == s] for s in ("healthy", "severe")}
     assert max(losses["healthy"]) == 0.0 < min(losses["severe"])
-    assert {row["kind"] for row in dataset.damage().to_pylist()} == {"crack"}
+    assert {row["kind"] for row in dataset.damage().to_pylist()} == {"hinge"}
 
 
 def test_the_plan_counts_its_states_and_a_mistake_in_it_is_named(folder: Path) -> None:
-    assert "crack" in command(folder, "siggen", "plan", "toy.yaml", "--trial", "0")
+    assert "hinge" in command(folder, "siggen", "plan", "toy.yaml", "--trial", "0")
     change = "states.2.damage.depth_mm=0.01"
     said = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", change, code=2)
     assert "states.2.damage.depth_mm" in said
@@ -83,14 +83,14 @@ def test_card_and_publication_name_it_and_no_other(folder: Path) -> None:
     command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
     for card in ("set/README.md", "published/README.md"):
         text = (folder / card).read_text(encoding="utf-8")
-        assert "Toy cracks soften their teeth" in text
+        assert "Toy hinges soften their teeth" in text
         assert not OTHER_KINDS.search(text)
-    assert "crack" in json.dumps(json.loads((folder / "published" / "croissant.json").read_text()))
+    assert "hinge" in json.dumps(json.loads((folder / "published" / "croissant.json").read_text()))
 
 
 def test_the_explorer_names_it_and_no_other(folder: Path) -> None:
     command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
-    assert "crack" in (folder / "explorer.html").read_text(encoding="utf-8")
+    assert "hinge" in (folder / "explorer.html").read_text(encoding="utf-8")
     assert not OTHER_KINDS.search(words_of(folder / "explorer.html"))
 
 
@@ -100,7 +100,7 @@ def test_report_and_audit_name_no_other(folder: Path, what: str) -> None:
     options = ("--no-cnn",) if what == "report" else ()
     command(folder, "siggen-diagnostics", what, "set", *options, "--out", what)
     said = words_of(folder / what / f"{what}.html")
-    assert "crack" in said
+    assert "hinge" in said
     assert not OTHER_KINDS.search(said)
 
 

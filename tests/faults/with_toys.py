@@ -3,10 +3,10 @@
 import sys
 
 from siggen.faults.kinds import KINDS
-from tests.faults.toy_crack import ToyCrack
+from tests.faults.toy_hinge import ToyHinge
 
 if __name__ == "__main__":
-    KINDS.append(ToyCrack)
+    KINDS.append(ToyHinge)
     if sys.argv[1] == "siggen":
         from siggen.cli.app import main
     else:

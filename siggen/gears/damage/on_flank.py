@@ -66,7 +66,7 @@ class OnFlank:
         """Return the rows of the outline with its floor."""
         return self.outline.rows(self.depth_m, self.floor == "dish")
 
-    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray) -> float:  # noqa: ARG002
+    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray, sound_m_per_n: FloatArray) -> float:  # noqa: ARG002
         """Return 0: all that it takes is in its rows."""
         return 0.0
 

@@ -51,9 +51,9 @@ class Sham:
         """Return no rows: it takes nothing."""
         return []
 
-    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray) -> FloatArray:
+    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray, sound_m_per_n: FloatArray) -> FloatArray:
         """Return no compliance, of the shape that the damage has one."""
-        return np.zeros(np.shape(self.of.tooth_compliance_m_per_n(pair, roll_rad)))
+        return np.zeros(np.shape(self.of.tooth_compliance_m_per_n(pair, roll_rad, sound_m_per_n)))
 
     def profile_arc_m(self, gear: SpurGear) -> float:  # noqa: ARG002 - as a damage is asked
         """Return no length."""

@@ -37,8 +37,10 @@ class ToothDamage(Part, Protocol):
     def rows(self) -> list[tuple[float, ...]]:
         """Return what it takes from contact and sections, as rows of `siggen.gears.damage.row_columns`; may be none."""
 
-    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray) -> FloatArray | float:
-        """Return what it adds to the compliance of its tooth beside the material of its rows, (k,) or a number."""
+    def tooth_compliance_m_per_n(
+        self, pair: GearPair, roll_rad: FloatArray, sound_m_per_n: FloatArray
+    ) -> FloatArray | float:
+        """Return what it adds to the compliance of its tooth, sound (k,), beside its rows, (k,) or a number [m/N]."""
 
     def profile_arc_m(self, gear: SpurGear) -> float:
         """Return the longest arc along the involute that a line along the profile crosses [m]; 0 without outline."""

@@ -122,8 +122,9 @@ def _damaged(
     beam, foundation = healthy
     if pit_rows(pits).size:
         beam = beam + _beam_compliances(pair, arms, _pit_gain(pair, gear, options.shape, angles, pits))
+    sound = healthy[0].sum(axis=0) + healthy[1]
     for one in pits:
-        foundation = foundation + one.tooth_compliance_m_per_n(pair, angles)
+        foundation = foundation + one.tooth_compliance_m_per_n(pair, angles, sound)
     for array in (beam, foundation):
         array.setflags(write=False)
     return ToothCompliance(beam[0], beam[1], beam[2], foundation)

@@ -1,4 +1,4 @@
-"""A toy kind of damage, as somebody would add one: a crack in the root as a hinge, on neighbouring teeth of a gear."""
+"""A toy kind of damage, as somebody would add one: a soft root as a hinge, on neighbouring teeth of a gear."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ SPRING_NM_PER_RAD, SHALLOWEST_MM = 2e4, 0.1
 
 @dataclass(frozen=True, slots=True)
 class Hinge:
-    """A crack as a torsional spring in the root: at the lever u of a contact it adds u²/k to the compliance."""
+    """A torsional spring in the root: at the lever u of a contact it adds u²/k to the compliance."""
 
     gear: str
     tooth: int
     depth_m: float
     spring_nm_per_rad: float
-    kind: str = "crack"
+    kind: str = "hinge"
     outline: None = None
 
     def rows(self) -> list[tuple[float, ...]]:
         return []
 
-    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray) -> FloatArray:
+    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray, sound_m_per_n: FloatArray) -> FloatArray:
         gear = pair.member(self.gear)
         slant = roll_rad - gear.base_half_angle_rad
         lever = gear.height_m(roll_rad) * np.cos(slant) - gear.half_thickness_m(roll_rad) * np.sin(slant)
@@ -73,19 +73,19 @@ class Hinge:
         }
 
 
-class ToyCrack(Fault):
+class ToyHinge(Fault):
     """What a user writes about it."""
 
-    words: ClassVar[tuple[str, ...]] = ("crack",)
-    acts: ClassVar[str] = "Toy cracks soften their teeth by a hinge in the root."
+    words: ClassVar[tuple[str, ...]] = ("hinge",)
+    acts: ClassVar[str] = "Toy hinges soften their teeth by a hinge in the root."
 
-    kind: Literal["toy_crack"] = "toy_crack"
+    kind: Literal["toy_hinge"] = "toy_hinge"
     gear: AnyGear = "pinion"
     teeth: Teeth = 1
     depth_mm: Length
 
     def drawn(self, growth: Growth) -> Parts:
-        one = draw(self, growth.place(self.gear, ToyCrack), f"toy_crack.{self.gear}")
+        one = draw(self, growth.place(self.gear, ToyHinge), f"toy_hinge.{self.gear}")
         depth_m = MM * constant(one.depth_mm)
         spring = SPRING_NM_PER_RAD * (1e-3 / depth_m) ** 2
         return tuple(Hinge(self.gear, tooth, depth_m, spring) for tooth in growth.teeth(self))

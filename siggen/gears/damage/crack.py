@@ -1,0 +1,130 @@
+"""Crack in the root of a tooth, on the loaded side: it softens the tooth and shows on no flank.
+
+It leaves the chord of the root (`root_chord`) at an angle to the tooth's centre line and runs straight into the body.
+Its depth across the face is the same everywhere, or falls from one end, q = q_0 √(1 - w/w_0) (Chen and Shao 2011,
+memory). Slices of the face then stand in parallel, each with a crack of its own depth: k = (1/b) ∫ k(q(w)) dw.
+Under load it is open; the other flank closes it, and then the tooth is as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import cos, degrees, inf, pi, sqrt
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.gears.damage.crack_law import ANGLE_RANGE_RAD, DEEPEST_SHARE, unit_compliance
+from siggen.gears.damage.part import Part, Refusal
+from siggen.gears.damage.sham import Sham
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.root_chord import root_chord
+from siggen.gears.geometry.spur_gear import SpurGear
+
+SLACK = 1e-9
+"""Of a share or an angle that was divided and multiplied again."""
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+"""Over the root of the rest of the run, in which compliances are smooth: exact to 1e-9 (tested against fine sums)."""
+
+
+@dataclass(frozen=True, slots=True)
+class RootCrack:
+    """A crack in the root.
+
+    Attributes
+    ----------
+    gear : str
+        'pinion' or 'gear'.
+    tooth : int
+        Index, from 0.
+    depth_m : float
+        Largest length along the crack, at the end of the face where it began [m].
+    angle_rad : float
+        Between the crack and the tooth's centre line.
+    run_m : float
+        Place across the face at which its depth falls to 0, also beyond the other end; infinite: the same depth
+        everywhere [m].
+    """
+
+    gear: str
+    tooth: int
+    depth_m: float
+    angle_rad: float
+    run_m: float = inf
+    kind: str = "crack"
+    outline: None = None
+
+    def rows(self) -> list[tuple[float, ...]]:
+        """Return none: contact and sections keep their material."""
+        return []
+
+    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray, sound_m_per_n: FloatArray) -> FloatArray:
+        """Return what it adds to the compliance of its tooth under load (k,) [m/N]."""
+        per_unit = pair.youngs_modulus_pa * pair.face_width_m
+        gear = pair.member(self.gear)
+        share = self.depth_m / root_chord(gear).length_m
+        if self.run_m == inf:
+            return unit_compliance(gear, roll_rad, share, self.angle_rad) / per_unit
+        cracked = min(1.0, self.run_m / pair.face_width_m)
+        stiffness = (1.0 - cracked) / sound_m_per_n
+        end = sqrt(max(0.0, 1.0 - pair.face_width_m / self.run_m))
+        for node, weight in zip(0.5 * (1.0 + end) + 0.5 * (1.0 - end) * NODES, WEIGHTS, strict=True):
+            added = unit_compliance(gear, roll_rad, share * node, self.angle_rad) / per_unit
+            width = weight * (1.0 - end) * node * self.run_m / pair.face_width_m
+            stiffness = stiffness + width / (sound_m_per_n + added)
+        return np.asarray(1.0 / stiffness - sound_m_per_n)
+
+    def profile_arc_m(self, gear: SpurGear) -> float:  # noqa: ARG002
+        """Return 0: it shows on no flank."""
+        return 0.0
+
+    def hides(self, other: Part) -> bool:
+        """Return whether a milder one on the same tooth is nowhere deeper; q² is straight across the face."""
+        if not isinstance(other, RootCrack) or (other.gear, other.tooth) != (self.gear, self.tooth):
+            return False
+        return self.depth_m >= other.depth_m and self.run_m >= other.run_m
+
+    def sham(self) -> Sham:
+        """Return a sham in its place."""
+        return Sham(self)
+
+    def own_problems(self) -> Iterator[Refusal]:
+        """Yield an impossible depth, angle or run."""
+        if not 0.0 < self.depth_m < inf:
+            yield Refusal("depth_m", f"depth_m {self.depth_m:.6g} m", "above 0")
+        low, high = ANGLE_RANGE_RAD
+        if not low - SLACK <= self.angle_rad <= high + SLACK:
+            allowed = f"{degrees(low):g} to {degrees(high):g} degrees to the tooth's centre line"
+            yield Refusal("angle_rad", f"{degrees(self.angle_rad):.6g} degrees", allowed)
+        if not self.run_m > 0.0:
+            yield Refusal("run_m", f"run_m {self.run_m:.6g} m", "above 0")
+
+    def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
+        """Yield a tooth that there is not, a root without the chord, a crack too deep for it or into the bore."""
+        if self.gear not in ("pinion", "gear"):
+            yield Refusal("gear", f"gear {self.gear!r}", "'pinion', 'gear'")
+            return
+        gear = pair.member(self.gear)
+        if not 0 <= self.tooth < gear.teeth:
+            yield Refusal("tooth", f"tooth {self.tooth!r}", f"0 to {gear.teeth - 1}")
+        try:
+            chord = root_chord(gear)
+        except ValueError as error:
+            yield Refusal("gear", str(error), "a gear whose root has one")
+            return
+        deepest = DEEPEST_SHARE * chord.length_m
+        if self.depth_m > deepest * (1.0 + SLACK):
+            allowed = f"at most {deepest:.6g} m, {DEEPEST_SHARE:g} of the chord of the root {chord.length_m:.6g} m"
+            yield Refusal("depth_m", f"depth_m {self.depth_m:.6g} m", allowed)
+        elif chord.height_m - self.depth_m * cos(self.angle_rad) < gear.bore_radius_m:
+            allowed = f"a crack that ends above the bore of {gear.bore_radius_m:.6g} m"
+            yield Refusal("depth_m", f"depth_m {self.depth_m:.6g} m", allowed)
+
+    def table_row(self) -> dict[str, object]:
+        """Return depth, angle and run."""
+        return {
+            "gear": self.gear, "tooth": self.tooth, "kind": self.kind, "shape": "none",
+            "depth_mm": 1e3 * self.depth_m, "crack_angle_deg": 180.0 / pi * self.angle_rad,
+            "crack_run_mm": 0.0 if self.run_m == inf else 1e3 * self.run_m,
+        }  # fmt: skip

@@ -1,0 +1,125 @@
+"""A crack in the root: what it adds to the tooth, by scale, depth, place and face, and where it acts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf, radians
+
+import numpy as np
+import pytest
+
+from siggen.gears.contact.contact_table import contact_table
+from siggen.gears.contact.table_columns import FORCE
+from siggen.gears.contact.table_options import TableOptions
+from siggen.gears.damage.crack import RootCrack
+from siggen.gears.damage.crack_law import unit_compliance
+from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.geometry.root_chord import TANGENT_RAD, root_chord
+from siggen.gears.stiffness.compliance import tooth_compliance
+from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from tests.gears.builders import pair_18_47, spur_gear
+
+PAIR, OPTIONS = pair_18_47(), StiffnessOptions()
+ROLL = np.linspace(PAIR.pinion.involute_start_roll_rad, PAIR.pinion.tip_roll_rad, 9)
+SOUND = tooth_compliance(PAIR, "pinion", ROLL, OPTIONS).total
+
+
+def crack(share=0.25, angle_deg=45.0, gear="pinion", tooth=0, run_m=inf, pair=PAIR):
+    return RootCrack(gear, tooth, share * root_chord(pair.member(gear)).length_m, radians(angle_deg), run_m)
+
+
+def added(one, pair=PAIR, sound=SOUND):
+    return one.tooth_compliance_m_per_n(pair, ROLL, sound)
+
+
+@pytest.mark.parametrize("teeth", [17, 18, 47, 120])
+def test_the_chord_ends_where_the_fillet_s_tangent_makes_30_degrees(teeth):
+    gear = spur_gear(teeth, 1e-3)
+    gamma = np.linspace(gear.involute_start_gamma_rad, np.pi / 2, 4001)
+    height, half = np.array([gear.trochoid_point_m(one) for one in gamma]).T
+    tangent = np.arctan(np.gradient(half) / -np.gradient(height))
+    index = np.argmin(np.abs(tangent - TANGENT_RAD))
+    # A step of the grid along the fillet is 1e-4 modules.
+    assert root_chord(gear).height_m == pytest.approx(height[index], abs=1e-3 * gear.module_m)
+    assert root_chord(gear).length_m == pytest.approx(2.0 * half[index], abs=1e-3 * gear.module_m)
+
+
+def test_it_is_the_same_for_every_module_and_halves_on_twice_the_face():
+    big = pair_18_47(module_m=7e-3, bores_m=(25e-3, 40e-3))
+    per_unit = PAIR.youngs_modulus_pa * PAIR.face_width_m
+    assert added(crack(pair=big), big) * per_unit == pytest.approx(added(crack()) * per_unit, rel=1e-12)
+    wide = replace(PAIR, face_width_m=2.0 * PAIR.face_width_m)
+    assert 2.0 * added(crack(), wide) == pytest.approx(added(crack()), rel=1e-12)
+
+
+@pytest.mark.parametrize("gear", [spur_gear(18), spur_gear(47), spur_gear(80)])
+@pytest.mark.parametrize("angle_deg", [35.0, 50.0, 70.0])
+def test_a_deeper_one_adds_more_wherever_the_load_is(gear, angle_deg):
+    roll = np.linspace(gear.involute_start_roll_rad, gear.tip_roll_rad, 33)
+    shares = np.linspace(0.005, 0.45, 90)
+    found = np.array([unit_compliance(gear, roll, share, radians(angle_deg)) for share in shares])
+    assert np.all(np.diff(found, axis=0) > 0.0)
+    assert np.all(found[0] > 0.0)
+
+
+def test_a_short_one_adds_in_proportion_to_its_square_and_none_of_it_nothing():
+    short, shorter = added(crack(2e-6)), added(crack(1e-6))
+    assert short == pytest.approx(4.0 * shorter, rel=1e-4)
+    assert np.max(short / SOUND) < 1e-9
+
+
+def test_depth_that_falls_across_the_face_adds_what_fine_slices_in_parallel_add():
+    b, run = PAIR.face_width_m, 0.6 * PAIR.face_width_m
+    for run in (0.6 * b, b, 1.7 * b):
+        place = (np.arange(20_000) + 0.5) / 20_000 * b
+        stiffness = np.zeros(ROLL.size)
+        for share in 0.3 * np.sqrt(np.maximum(1.0 - place / run, 0.0)):
+            more = unit_compliance(PAIR.pinion, ROLL, share, radians(45.0)) / (PAIR.youngs_modulus_pa * b)
+            stiffness += 1.0 / (SOUND + more) / place.size
+        # Middles of 20,000 slices leave 1e-7 where the depth falls steeply to 0.
+        assert added(crack(0.3, run_m=run)) == pytest.approx(1.0 / stiffness - SOUND, rel=1e-6)
+
+
+def test_depth_that_hardly_falls_is_that_of_the_whole_face():
+    assert added(crack(run_m=1e6 * PAIR.face_width_m)) == pytest.approx(added(crack()), rel=2e-6)
+    assert np.all(added(crack(run_m=0.5 * PAIR.face_width_m)) < added(crack(run_m=PAIR.face_width_m)))
+
+
+def test_a_crack_in_the_gear_acts_at_every_turn_of_the_gear_and_nowhere_else():
+    tables = mesh_tables(PAIR, (crack(gear="gear", tooth=5),), OPTIONS, points=33)
+    assert np.all(tables.table_of_pair[:, 5] == 1)
+    assert not np.any(np.delete(tables.table_of_pair, 5, axis=1))
+    healthy, cracked = tables.pair_stiffness_n_per_m
+    assert np.all(cracked < healthy)
+
+
+@pytest.mark.parametrize("section_loss", [False, True])
+def test_solved_across_the_face_it_enters_once_whatever_damage_does_to_sections(section_loss):
+    """At equal approach less what the crack gives way by, the forces are equal: F(x) = F_healthy(x - F Δc)."""
+    table = contact_table(PAIR, (crack(),), OPTIONS, TableOptions(section_loss=section_loss), 65)
+    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 65)
+    node = table.unit_m * np.arange(table.upright.shape[1]) ** 2
+    for point in (8, 32, 56):
+        healthy, cracked = (table.upright[int(table.column[row, point])][:, FORCE] for row in (0, 1))
+        roll = np.array([position[point] / PAIR.pinion.base_radius_m])
+        given = cracked * crack().tooth_compliance_m_per_n(PAIR, roll, SOUND[:1])
+        assert np.interp(node[5:] - given[5:], node, healthy) == pytest.approx(cracked[5:], rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("one", "blamed"),
+    [
+        (crack(0.46), "depth_m"), (crack(-0.1), "depth_m"), (crack(angle_deg=30.0), "angle_rad"),
+        (crack(run_m=0.0), "run_m"), (crack(tooth=18), "tooth"), (crack(float("nan")), "depth_m"),
+    ],
+)  # fmt: skip
+def test_one_that_cannot_be_is_refused_by_what_is_wrong(one, blamed):
+    assert [problem.name for problem in damage_problems(PAIR, (one,))] == [blamed]
+
+
+def test_the_deepest_one_is_possible_and_hides_the_milder_ones_of_its_tooth():
+    assert not damage_problems(PAIR, (crack(0.45),))
+    assert crack(0.3).hides(crack(0.2))
+    assert not crack(0.3, run_m=0.01).hides(crack(0.2))
+    assert not crack(0.3).hides(crack(0.2, tooth=1))
