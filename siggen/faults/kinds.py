@@ -6,5 +6,6 @@ from siggen.faults.irregular import IrregularSpalls
 from siggen.faults.layered import LayeredPits
 from siggen.faults.listed import ListedPits
 from siggen.faults.spalls import Spalls
+from siggen.faults.wear import FlankWear
 
-KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls]
+KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, FlankWear]

@@ -182,7 +182,7 @@ MISTAKES = [
     # damage
     ({"states__1__damage__kind": "blob"}, "states.1.damage.kind", "'blob'", "one of layered, clustered, spall, list"),
     ({"states__1__damage": {"layers": 1}}, "states.1.damage.kind", "nothing", "one of layered, clustered, spall, list"),
-    ({"states__1__damage": []}, "states.1.damage", "a list of 0", "kind: layered, clustered, spall, list or irregular"),
+    ({"states__1__damage": []}, "states.1.damage", "a list of 0", "kind: layered, clustered, spall, list, "),
     ({"states__1__damage__teeth": [0, 0]}, "states.1.damage.teeth", "[0, 0]", "different tooth indices"),
     ({"states__1__damage__teeth": 0}, "states.1.damage.teeth", "0", "a whole number from 1"),
     ({"states__1__damage__teeth": 19}, "states.1.damage.teeth", "19", "at most 18, the teeth of the pinion"),
