@@ -35,6 +35,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _sensors_beside,
         _sensor_turns,
         _mesh_law,
+        _flank_shapes,
         _manufacture,
         _forces_at_bearings,
         _housing,
@@ -149,6 +150,15 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.damping == "asperity_share" and dynamics.rubbing != "mixed_ehl":
         allowed = "allowed: constant, or dynamics.friction.model: mixed_ehl, which the asperity share comes from"
         yield Problem("dynamics.mesh.damping", "'asperity_share'", allowed)
+
+
+def _flank_shapes(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "dynamics" not in sections or sections["dynamics"].mesh.law != "linear":
+        return
+    for index, state in sections.get("states", {}).items():
+        if state.damage is not None and state.damage.needs_pairs:
+            allowed = "allowed: another kind with dynamics.mesh.law: linear, whose flanks have no shape; or law: pairs"
+            yield Problem(f"states.{index}.damage.kind", f"'{state.damage.kind_word()}'", allowed)
 
 
 def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

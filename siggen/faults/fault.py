@@ -50,6 +50,9 @@ class Fault(Section):
     columns: ClassVar[tuple[Column, ...]] = ()
     """Columns that its rows of the table of damage have beyond those of all kinds; 0 or empty in others' rows."""
 
+    needs_pairs: ClassVar[bool] = False
+    """Whether it acts through the shape of the flanks, which the law linear does not know."""
+
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Make the kind known to the messages, in whose paths it is no key.

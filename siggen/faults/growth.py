@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from siggen.gears.damage.part import Parts
+from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.teeth import TeethValue
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
@@ -26,6 +27,11 @@ class OnTeeth(Protocol):
 
     @property
     def teeth(self) -> TeethValue: ...  # noqa: D102
+
+
+def _no_load(force_n: float) -> LoadAtRest:
+    """Stand for gears whose load nobody asks for."""
+    raise TypeError(f"load_at_rest: received {force_n} N for gears without tables; allowed: a Growth that has them")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +50,8 @@ class Growth:
         States that this one has grown from, with the section of their damage, the nearest first.
     before : Parts
         Damage of the nearest of them.
+    load_at_rest : callable
+        Force of all pairs [N] -> how these gears, without errors, share it.
     """
 
     seed: int
@@ -52,11 +60,17 @@ class Growth:
     pair: GearPair
     milder: tuple[tuple[int, object], ...] = ()
     before: Parts = ()
+    load_at_rest: Callable[[float], LoadAtRest] = _no_load
 
     def began(self, gear: str, kind: type) -> int:
         """Return the first state of this growth that has such damage on the gear."""
         found = [n for n, older in self.milder if isinstance(older, kind) and getattr(older, "gear", None) == gear]
         return found[-1] if found else self.state_id
+
+    def place_of(self, kind: type) -> Callable[[str], float]:
+        """Return path -> uniform of the first state of this growth that has such damage, which is of both gears."""
+        found = [number for number, older in self.milder if isinstance(older, kind)]
+        return named_uniforms(self.seed, Stage.DAMAGE, self.specimen_id, found[-1] if found else self.state_id)
 
     def place(self, gear: str, kind: type) -> Callable[[str], float]:
         """Return path -> uniform of the first state of this growth that has such damage on the gear."""

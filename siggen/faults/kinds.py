@@ -8,5 +8,8 @@ from siggen.faults.irregular import IrregularSpalls
 from siggen.faults.layered import LayeredPits
 from siggen.faults.listed import ListedPits
 from siggen.faults.spalls import Spalls
+from siggen.faults.wear import FlankWear
 
-KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, RootCracks, BearingSpalls]
+KINDS: list[type[Fault]] = [
+    LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, RootCracks, FlankWear, BearingSpalls,
+]  # fmt: skip

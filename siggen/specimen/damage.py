@@ -13,8 +13,12 @@ from functools import partial
 from siggen.config import Config
 from siggen.faults.growth import Growth
 from siggen.gears.damage.part import Parts
+from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import gearbox_config
+from siggen.planning.specimen import draw_specimen
+from siggen.specimen.gears import stiffness_options
+from siggen.specimen.worn_loads import load_at_rest
 
 
 def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int) -> Parts:
@@ -42,11 +46,18 @@ def grown_damage(
     state = config.states[state_id]
     milder = tuple(_milder(config, state_id))
     before = milder_damage(milder[0][0]) if milder else ()
-    growth = Growth(config.seed, specimen_id, state_id, pair, milder, before)
+    loads = partial(_load_at_rest, config, specimen_id, pair)
+    growth = Growth(config.seed, specimen_id, state_id, pair, milder, before, loads)
     parts = before
     for section in state.damages:
         parts = _united(parts, section.drawn(growth))
     return tuple(one.sham() for one in parts) if state.sham else parts
+
+
+def _load_at_rest(config: Config, specimen_id: int, pair: GearPair, force_n: float) -> LoadAtRest:
+    """Return how the gears of a specimen share a force; what is drawn for it waits until a kind of damage asks."""
+    specimen = draw_specimen(config, specimen_id)
+    return load_at_rest(specimen.dynamics, pair, stiffness_options(specimen.stiffness), force_n)
 
 
 def _milder(config: Config, state_id: int) -> Iterator[tuple[int, object]]:

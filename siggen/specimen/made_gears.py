@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from siggen.config import Config
+from siggen.gears.damage.flank_loss import Losses, from_flanks, with_losses
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
@@ -27,7 +28,8 @@ class MadeGears:
         self._config, self._specimen = config, specimen
         # not over instances: what belongs to a gearbox ends with it
         self._errors = cache(self._computed_errors)
-        self._waves_and_missing = cache(self._computed_missing)
+        self._waves = cache(self._computed_waves)
+        self._missing = cache(self._computed_missing)
         self._damage = cache(self._drawn_damage)
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
@@ -42,11 +44,11 @@ class MadeGears:
 
     def waves(self, state_id: int) -> SpecimenWaves | None:
         """Return the waves; None without them."""
-        return self._waves_and_missing(self._drawn_for(state_id))[0]
+        return self._waves(self._drawn_for(state_id))
 
     def missing(self, state_id: int) -> WavyTeeth:
-        """Return the missing material of relief, errors and waves, under any torque."""
-        return self._waves_and_missing(self._drawn_for(state_id))[1]
+        """Return the missing material of relief, damage, errors and waves, under any torque."""
+        return self._missing(self._drawn_for(state_id), from_flanks(self.damage(state_id)))
 
     def damage(self, state_id: int) -> Parts:
         """Return the damage of a state.
@@ -68,8 +70,10 @@ class MadeGears:
     def _computed_errors(self, drawn_for: int) -> SpecimenErrors | None:
         return specimen_errors(self._config, self.pair, self._specimen.specimen_id, drawn_for)
 
-    def _computed_missing(self, drawn_for: int) -> tuple[SpecimenWaves | None, WavyTeeth]:
-        config, specimen, pair = self._config, self._specimen, self.pair
-        plain = teeth_missing(specimen.dynamics, pair, TABLE_POINTS)
-        waves = specimen_waves(config, pair, specimen.specimen_id, drawn_for)
-        return waves, WavyTeeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), pair, waves)
+    def _computed_waves(self, drawn_for: int) -> SpecimenWaves | None:
+        return specimen_waves(self._config, self.pair, self._specimen.specimen_id, drawn_for)
+
+    def _computed_missing(self, drawn_for: int, losses: Losses) -> WavyTeeth:
+        pair = self.pair
+        plain = with_losses(teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS), pair, losses)
+        return WavyTeeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), pair, self._waves(drawn_for))

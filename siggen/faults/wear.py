@@ -1,0 +1,128 @@
+"""Wear of both gears: keys of its depth or its cycles, and of the load under which it grew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+import pyarrow as pa
+from pydantic import Field, model_validator
+
+from siggen.errors import Problem
+from siggen.faults.fault import Fault, HitTeeth
+from siggen.faults.flank_place import MODULE
+from siggen.faults.growth import Growth
+from siggen.gears.contact.table_options import reference_force_n
+from siggen.gears.damage.part import Parts
+from siggen.gears.damage.wear import LABEL_POINTS, POINTS, Wear, turn_factors, worn_until
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.column import MICROMETRE, Column, list_of
+from siggen.keys.drawing import draw
+from siggen.keys.number import Number, Within, bounds, constant, number_text
+from siggen.keys.problems import refusal
+from siggen.keys.scaling import Grows
+
+DEEPEST_SHARE = 0.1
+"""Of the module: beyond, a tooth is no involute with some wear any more (severe wear: 0.02 to 0.05, from memory)."""
+COEFFICIENT_M2_PER_N = 1e-17
+"""Mild wear of lubricated steel: 1e-18 to 1e-16 (Flodin and Andersson 1997, from memory)."""
+OF_REFERENCE = 0.5
+"""Share of the pair's reference force that is taken for its own load: 1 GPa between steel flanks in mid path."""
+DEPTHS_UM = Column(
+    "wear_depths_um",
+    list_of(pa.float64()),
+    MICROMETRE,
+    f"depth of wear at {LABEL_POINTS} even places along the line of action, from the root's end of the active flank to "
+    "the tip; empty for other damage",
+)
+
+
+class FlankWear(Fault):
+    """Wear of all teeth, after Archard, under one load."""
+
+    words: ClassVar[tuple[str, ...]] = ("wear",)
+    acts: ClassVar[str] = (
+        "Wear takes material from all teeth alike, most where they slide most under load, after Archard; it changes "
+        "the path of the teeth and weakens none."
+    )
+    columns: ClassVar[tuple[Column, ...]] = (DEPTHS_UM,)
+    needs_pairs: ClassVar[bool] = True
+
+    kind: Literal["wear"] = "wear"
+    depth_um: Annotated[Number | None, Within(above=0, words=(None,)), Grows(MODULE)] = Field(
+        default=None,
+        description="largest depth on any flank, usually at the root of the pinion; null: by cycles",
+    )
+    cycles: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="turns of the pinion since the flanks were new; null: by depth_um"
+    )
+    coefficient_m2_per_n: Annotated[Number, Within(above=0)] = Field(
+        default=COEFFICIENT_M2_PER_N, description="Archard's wear coefficient, depth per pressure and way (cycles)"
+    )
+    torque_nm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None,
+        description="torque at the pinion under which it wore, whatever it is measured under; null: that of 1 GPa "
+        "between steel flanks in the middle of the path",
+    )
+
+    @model_validator(mode="after")
+    def _depth_or_cycles(self) -> FlankWear:
+        if (self.depth_um is None) == (self.cycles is None):
+            received = "null, as is cycles" if self.depth_um is None else f"{number_text(self.depth_um)}, beside cycles"
+            raise refusal([Problem("depth_um", received, "allowed: either depth_um or cycles")])
+        return self
+
+    def hit_teeth(self) -> HitTeeth:
+        """Yield nothing: no tooth is named."""
+        return iter(())
+
+    def key_that_adds_nothing(self, milder: Fault) -> str | None:
+        """Return the key of a depth or of cycles that never pass those of the milder state."""
+        if not isinstance(milder, FlankWear):
+            return None
+        for key in ("depth_um", "cycles"):
+            own, before = getattr(self, key), getattr(milder, key)
+            if own is not None and before is not None and bounds(own)[1] <= bounds(before)[0]:
+                return key
+        return None
+
+    def drawn(self, growth: Growth) -> Parts:
+        """Return the worn flanks of this state; what is nowhere less deep takes the place of milder wear."""
+        own = draw(self, growth.place_of(FlankWear), "wear")
+        pair, torque = growth.pair, None if own.torque_nm is None else constant(own.torque_nm)
+        worn = worn_until(
+            pair,
+            growth.load_at_rest(_force_n(pair, torque)),
+            constant(own.coefficient_m2_per_n),
+            depth_m=np.inf if own.depth_um is None else 1e-6 * constant(own.depth_um),
+            turns=np.inf if own.cycles is None else constant(own.cycles),
+        )
+        return Wear("pinion", tuple(worn.pinion_m.tolist())), Wear("gear", tuple(worn.gear_m.tolist()))
+
+    def place_problems(self, pair: GearPair) -> Iterator[Problem]:
+        """Yield wear that may go deeper than a share of the module."""
+        allowed_um = 1e6 * DEEPEST_SHARE * pair.pinion.module_m
+        share = f"{DEEPEST_SHARE:g} of the module"
+        if self.depth_um is not None and bounds(self.depth_um)[1] > allowed_um:
+            yield Problem("depth_um", number_text(self.depth_um), f"allowed: up to {allowed_um:.6g} um, {share}")
+        if self.cycles is not None:
+            # No pair ever carries more than all of them: its depth stays below this one.
+            most = 1e6 * bounds(self.cycles)[1] * self._most_per_turn_m(pair)
+            if most > allowed_um:
+                received = f"{number_text(self.cycles)}, which may wear {most:.4g} um"
+                yield Problem("cycles", received, f"allowed: at most {allowed_um:.6g} um, {share}; fewer cycles")
+
+    def _most_per_turn_m(self, pair: GearPair) -> float:
+        """Return the largest depth by one turn of the pinion if one pair carried everything [m]."""
+        ends = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
+        torque = None if self.torque_nm is None else bounds(self.torque_nm)[1]
+        largest = max(float(factor.max()) for factor in turn_factors(pair, ends, bounds(self.coefficient_m2_per_n)[1]))
+        return largest * _force_n(pair, torque)
+
+
+def _force_n(pair: GearPair, torque_nm: float | None) -> float:
+    """Return the force of a torque on the pinion; without one that of the pair itself [N]."""
+    if torque_nm is None:
+        return OF_REFERENCE * reference_force_n(pair)
+    return torque_nm / pair.pinion.base_radius_m

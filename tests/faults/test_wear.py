@@ -1,0 +1,114 @@
+"""Wear of a state: from the configuration to worn flanks, records and labels; growth and messages."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.columns.record import Record
+from siggen.errors import ConfigError
+from siggen.gears.damage.wear import LABEL_POINTS, Wear
+from siggen.record.damage_rows import damage_rows
+from siggen.record.simulation import simulate
+from tests.faults.test_damage import config_with, damage_of
+
+WEAR: dict[str, Any] = {"kind": "wear", "depth_um": 20.0}
+
+
+def test_both_gears_wear_and_the_pinion_deeper() -> None:
+    pinion, gear = damage_of(config_with(WEAR), 1)
+    assert (pinion.gear, gear.gear, pinion.tooth, gear.tooth) == ("pinion", "gear", -1, -1)
+    assert pinion.depth_m == pytest.approx(20e-6, rel=1e-12)
+    # By the ratio of turns alone the gear's flank would have 0.38 of the pinion's sliding way at its own root.
+    assert 0.2 < gear.depth_m / pinion.depth_m < 0.6
+
+
+def test_a_state_grows_from_the_milder_one_and_is_nowhere_less_deep() -> None:
+    drawn = {"kind": "uniform", "low": 5.0, "high": 15.0}
+    config = config_with({**WEAR, "depth_um": drawn}, WEAR, {**WEAR, "depth_um": 60.0})
+    slight, moderate, severe = (damage_of(config, state) for state in (1, 2, 3))
+    assert len(slight) == len(moderate) == len(severe) == 2
+    for milder, deeper in ((slight, moderate), (moderate, severe)):
+        for one, two in zip(milder, deeper, strict=True):
+            assert np.all(np.asarray(two.depths_m) >= np.asarray(one.depths_m))
+
+
+def test_cycles_and_depth_say_the_same_and_the_load_changes_the_shape() -> None:
+    by_cycles = {"kind": "wear", "cycles": 2e6, "torque_nm": 60.0}
+    pinion, gear = damage_of(config_with(by_cycles), 1)
+    by_depth = {"kind": "wear", "depth_um": 1e6 * pinion.depth_m, "torque_nm": 60.0}
+    same = damage_of(config_with(by_depth), 1)
+    np.testing.assert_allclose(same[0].depths_m, pinion.depths_m, rtol=1e-9, atol=1e-18)
+    np.testing.assert_allclose(same[1].depths_m, gear.depths_m, rtol=1e-9, atol=1e-18)
+    other = damage_of(config_with({**by_depth, "torque_nm": 300.0}), 1)
+    assert np.abs(np.asarray(other[0].depths_m) - pinion.depths_m).max() > 0.05 * pinion.depth_m
+
+
+def test_another_operating_point_moves_no_record() -> None:
+    alone = config_with(WEAR)
+    points = alone.operating_points
+    with_more = alone.model_copy(
+        update={"operating_points": (*points, points[0].model_copy(update={"torque_nm": 250.0}))}
+    )
+    assert damage_of(alone, 1) == damage_of(with_more, 1)
+
+
+def test_rows_tell_the_depths_of_all_teeth_of_each_gear() -> None:
+    config = config_with(WEAR)
+    parts = damage_of(config, 1)
+    rows = damage_rows(config, 1)
+    assert [(row["gear"], row["tooth"], row["kind"], row["shape"]) for row in rows] == [
+        ("pinion", -1, "wear", "none"),
+        ("gear", -1, "wear", "none"),
+    ]
+    assert rows[0]["depth_mm"] == pytest.approx(0.02, rel=1e-12)
+    depths = np.asarray(rows[0]["wear_depths_um"])
+    assert depths.size == LABEL_POINTS
+    assert depths.argmax() < LABEL_POINTS // 4  # from the root's end on
+    gear = np.asarray(rows[1]["wear_depths_um"])
+    assert gear[0] == pytest.approx(1e6 * parts[1].depths_m[-1])
+
+
+def test_worn_gears_that_are_perfect_otherwise_stay_on_mesh_lines() -> None:
+    """18 turns of the pinion, 50 samples per mesh period: all that is no harmonic of it stands in other lines."""
+    config = config_with(WEAR).model_copy(update={"fs_hz": 27000.0, "duration_s": 0.6})
+    healthy, worn = simulate(config, [0, 1])
+    assert isinstance(healthy, Record)
+    assert isinstance(worn, Record)
+    assert (healthy.labels["fault"], worn.labels["fault"]) == ("healthy", "wear")
+    assert (worn.labels["faulty_gear"], worn.labels["faulty_teeth_pinion"]) == ("both", [])
+    lines = []
+    for record in (healthy, worn):
+        found = np.abs(np.fft.rfft(record.channels["bearing_vertical"].astype(float)))
+        mesh = found[324::324].copy()
+        found[324::324] = 0.0
+        assert found[1:].max() < 1e-6 * mesh.max()
+        lines.append(mesh)
+    # 20 µm are twice the deflection: mesh lines are others.
+    assert np.abs(lines[1][:4] / lines[0][:4] - 1.0).max() > 0.2
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"depth_um": 0.0}, r"states\.1\.damage\.depth_um: received 0\.0; allowed: a number above 0"),
+        ({"cycles": 1e6}, "either depth_um or cycles"),
+        ({"depth_um": None}, "either depth_um or cycles"),
+        ({"depth_um": 301.0}, r"states\.1\.damage\.depth_um: received 301; allowed: up to 300 um, 0\.1 of the module"),
+        ({"depth_um": None, "cycles": 1e9}, r"states\.1\.damage\.cycles: received 1e\+09, which may wear"),
+        ({"coefficient_m2_per_n": 0.0}, r"states\.1\.damage\.coefficient_m2_per_n"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name(change: dict[str, Any], said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        config_with({**WEAR, **change})
+
+
+def test_wear_needs_flanks_with_a_shape_and_a_state_more_wear_than_its_milder_one() -> None:
+    with pytest.raises(ConfigError, match=r"states\.1\.damage\.kind: received 'wear'; allowed: another kind with"):
+        config_with(WEAR, law="linear")
+    with pytest.raises(ConfigError, match=r"states\.2\.damage\.depth_um"):
+        config_with(WEAR, {**WEAR, "depth_um": 15.0})
+    assert all(isinstance(one, Wear) for one in damage_of(config_with(WEAR), 1))

@@ -1,0 +1,130 @@
+"""Archard's wear on the flanks: volumes against the work of sliding, symmetry, growth, and where it is nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from math import hypot, sqrt
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from siggen.arrays import FloatArray
+from siggen.gears.damage.flank_loss import with_losses
+from siggen.gears.damage.part import Refusal
+from siggen.gears.damage.wear import POINTS, AtRest, Wear, turn_factors, worn_until
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import TipRelief, missing_material
+from tests.gears.builders import pair_18_47
+
+PAIR = pair_18_47()
+FORCE_N, COEFFICIENT = 3000.0, 2e-17
+PATH = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, POINTS)
+
+
+def shared(pair: GearPair, position_m: FloatArray) -> FloatArray:
+    """A load that is shared in halves by two pairs, and turns with the driver."""
+    ahead, behind = position_m + pair.base_pitch_m, position_m - pair.base_pitch_m
+    together = (ahead <= pair.contact_end_m) | (behind >= pair.contact_start_m)
+    return np.where(together, 0.5 * FORCE_N, FORCE_N)
+
+
+def rigid(position_m: FloatArray, *_: FloatArray) -> AtRest:
+    return AtRest(shared(PAIR, position_m), 1e-3)
+
+
+def test_a_pass_takes_the_coefficient_times_the_work_of_sliding_from_either_gear() -> None:
+    """By quadrature over time, of speeds and arcs of flanks that are points at their radii."""
+    base_1, base_2 = PAIR.pinion.base_radius_m, PAIR.gear.base_radius_m
+    omega_1, line = 1.0, PAIR.line_of_action_m
+    omega_2 = omega_1 * base_1 / base_2
+
+    def speeds(s: float) -> tuple[float, float]:
+        """Speeds along the flank: that of the point across the line of action."""
+        first = sqrt((omega_1 * hypot(base_1, s)) ** 2 - (omega_1 * base_1) ** 2)
+        second = sqrt((omega_2 * hypot(base_2, line - s)) ** 2 - (omega_2 * base_2) ** 2)
+        return first, second
+
+    def work_rate(s: float) -> float:
+        first, second = speeds(s)
+        return FORCE_N * abs(first - second) / (omega_1 * base_1)  # ds = R_b Ω dt
+
+    ends = PAIR.contact_start_m, PAIR.contact_end_m
+    work = quad(work_rate, *ends, points=[PAIR.pitch_point_m], epsabs=0, epsrel=1e-10)[0]
+    factors = turn_factors(PAIR, PATH, COEFFICIENT)
+    per_pass = factors[0] * FORCE_N, factors[1] * FORCE_N * 47 / 18
+    fine = np.linspace(*ends, 40001)
+    along = np.array([speeds(s) for s in fine]).T / (omega_1 * base_1)
+    for depths, arc_rate in zip(per_pass, along, strict=True):
+        volume = np.trapezoid(PAIR.face_width_m * np.interp(fine, PATH, depths) * arc_rate, fine)
+        # Depths are linear between 513 places: 1e-5 of their curvature; the kink at the pitch point lies in one cell.
+        assert volume == pytest.approx(COEFFICIENT * work, rel=1e-4)
+
+
+def test_nothing_wears_at_the_pitch_point_and_most_at_the_pinions_root() -> None:
+    worn = worn_until(PAIR, rigid, COEFFICIENT, depth_m=20e-6)
+    assert np.interp(PAIR.pitch_point_m, PATH, worn.pinion_m) < 0.02 * worn.largest_m  # linear beside the point itself
+    assert turn_factors(PAIR, np.array([PAIR.pitch_point_m]), 1.0)[0][0] == pytest.approx(0.0, abs=1e-12)
+    assert worn.largest_m == pytest.approx(20e-6, rel=1e-12)
+    assert worn.pinion_m[0] == worn.largest_m
+    assert worn.gear_m.max() == worn.gear_m[-1]
+
+
+def test_under_a_load_that_stays_depth_is_turns_times_that_of_one() -> None:
+    turns = 1e6
+    worn = worn_until(PAIR, rigid, COEFFICIENT, turns=turns)
+    factors = turn_factors(PAIR, PATH, COEFFICIENT)
+    for found, factor in zip((worn.pinion_m, worn.gear_m), factors, strict=True):
+        np.testing.assert_allclose(found, turns * factor * shared(PAIR, PATH), rtol=1e-9)
+    back = worn_until(PAIR, rigid, COEFFICIENT, depth_m=worn.largest_m)
+    assert back.turns == pytest.approx(turns, rel=1e-9)
+
+
+def test_the_other_gear_as_driver_wears_the_same() -> None:
+    """The way of a pair runs backwards, and a turn of the new driver is another time."""
+    swapped = replace(PAIR, pinion=PAIR.gear, gear=PAIR.pinion)
+
+    def mirrored(position_m: FloatArray, *_: FloatArray) -> AtRest:
+        return AtRest(shared(swapped, position_m), 1e-3)
+
+    worn = worn_until(PAIR, rigid, COEFFICIENT, depth_m=20e-6)
+    other = worn_until(swapped, mirrored, COEFFICIENT, depth_m=20e-6)
+    # Where a pair joins, half a load or a whole one may stand in a point that lies within rounding of the place.
+    same = np.isclose(worn.pinion_m, other.gear_m[::-1], rtol=1e-9, atol=1e-15)
+    assert np.count_nonzero(~same) <= 2
+    assert other.turns == pytest.approx(worn.turns * 18 / 47, rel=1e-9)
+
+
+def test_more_wear_is_nowhere_less_deep_and_hides_the_milder() -> None:
+    softening = [5e-6, 7.3e-6, 20e-6]
+    found = [worn_until(PAIR, _yielding, COEFFICIENT, depth_m=depth) for depth in softening]
+    parts = [Wear("pinion", tuple(one.pinion_m.tolist())) for one in found]
+    for milder, deeper in pairwise(parts):
+        assert deeper.hides(milder)
+        assert not milder.hides(deeper)
+
+
+def _yielding(position_m: FloatArray, pinion_m: FloatArray, gear_m: FloatArray) -> AtRest:
+    return AtRest(shared(PAIR, position_m) * np.exp(-(pinion_m + gear_m) / 10e-6), 20e-6)
+
+
+def test_worn_flanks_miss_their_depth_on_all_teeth_and_two_of_them_the_deeper() -> None:
+    relieved = missing_material(PAIR, TipRelief(8e-6, 2e-3), points=1025)
+    deep, flat = Wear("pinion", (4e-6, 0.0, 1e-6)), Wear("pinion", (2e-6,) * 3)
+    assert with_losses(relieved, PAIR, ()) is relieved
+    worn = with_losses(relieved, PAIR, (deep, flat))
+    places = np.linspace(relieved.start_m, relieved.end_m, 1025)
+    expected = np.maximum(2e-6, np.interp(places, np.linspace(PATH[0], PATH[-1], 3), [4e-6, 0.0, 1e-6]))
+    np.testing.assert_allclose(worn.pinion.profile_m - relieved.pinion.profile_m, expected[None], atol=1e-18)
+    np.testing.assert_array_equal(worn.gear.profile_m, relieved.gear.profile_m)
+    again = with_losses(relieved, PAIR, (flat, deep))
+    np.testing.assert_array_equal(again.pinion.profile_m, worn.pinion.profile_m)
+
+
+def test_wear_without_depth_and_without_end_is_refused() -> None:
+    assert [one.name for one in Wear("gear", (0.0, 0.0)).own_problems()] == ["depths_m"]
+    assert isinstance(next(Wear("gear", (0.0, np.nan)).own_problems()), Refusal)
+    assert not list(Wear("gear", (0.0, 1e-6)).own_problems())
+    with pytest.raises(ValueError, match="a finite depth or turns"):
+        worn_until(PAIR, rigid, COEFFICIENT)
