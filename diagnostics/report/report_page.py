@@ -20,10 +20,12 @@ from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.state_classes import CLASS, ordered_states
 from diagnostics.report.answer import answer_sentences
 from diagnostics.report.comparison_tables import score_blocks, study_blocks
+from diagnostics.report.confusion import confusion_table
 from diagnostics.report.detector_table import detection_blocks, detector_table
 from diagnostics.report.drawing import Drawing
 from diagnostics.report.indicator_figures import term_cell
 from diagnostics.report.indicator_tables import definition_html
+from diagnostics.report.nested_tables import nested_blocks
 from diagnostics.report.sentences import (
     area_sentence,
     comparison_sentence,
@@ -31,7 +33,7 @@ from diagnostics.report.sentences import (
     scores_sentence,
     trust_sentence,
 )
-from diagnostics.statistics.judgement import TITLES, Judged
+from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.detectors import Detectors
 from diagnostics.training.realism import is_error_free, meaning_of_scores
@@ -51,37 +53,6 @@ CAPTION = (
     "underlined below. Below: from the point on (broad), nine of ten records are found; thin: 95 % limits; cross: not "
     "even at the largest size. All limits stand under Detectors."
 )
-
-
-def confusion_table(judged: Judged, explorer: str = "") -> str:
-    """Return the confusion matrix of one classifier: counts of the test records, shaded by share of the true state.
-
-    Parameters
-    ----------
-    judged : Judged
-    explorer : str
-        Page to explore with the predictions of this classifier; its records are behind every count.
-    """
-    classes, counts = judged.scores.classes, judged.scores.confusion
-    share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
-    rows = [
-        [
-            Cell(true),
-            *(_count(explorer, true, classes[k], int(counts[row, k]), share[row, k]) for k in range(len(classes))),
-        ]
-        for row, true in enumerate(classes)
-    ]
-    caption = (
-        f"{capitalised(TITLES[judged.name])}: true state in rows, named state in columns; test records, and their "
-        f"share of the true state.{' A count leads to its records.' if explorer else ''}"
-    )
-    return table(["True state", *classes], rows, caption=caption)
-
-
-def _count(explorer: str, true: str, named: str, count: int, share: float) -> Cell:
-    link = explorer_link(explorer, split="test", **{"class": true}, predicted=named) if count else ""
-    hint = f"records of {true} that are named {named}" if link else ""
-    return Cell(str(count), f"{share:.0%}" if count else "", float(count), link, hint, float(share))
 
 
 def wrong_records_table(training: Training, matrix: FeatureMatrix, explorer: str = "") -> str:
@@ -217,6 +188,7 @@ def _scores(training: Training | None) -> list[str]:
         tables.calibration_table(training),
         *detection_blocks(training),
         *score_blocks(training),
+        *nested_blocks(training.nested),
     ]
 
 
@@ -225,7 +197,10 @@ def _named(reported: Reported) -> list[str]:
     training, explorer = reported.training, reported.explorer
     if training is None:
         return []
-    matrices = [confusion_table(found, "" if place else explorer) for place, found in enumerate(training.judged)]
+    matrices = [
+        confusion_table(found.scores, TITLES[found.name], explorer="" if place else explorer)
+        for place, found in enumerate(training.judged)
+    ]
     wrong = wrong_records_table(training, reported.matrix, explorer)
     return [html.figure_grid([f"<div>{matrix}</div>" for matrix in matrices]), *([wrong] if wrong else [])]
 

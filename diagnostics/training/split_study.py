@@ -150,18 +150,18 @@ def _together(labels: dict[str, np.ndarray], seed: int) -> list[tuple[str, bool,
     every = np.arange(specimens.size)
     bands = speed_bands(labels["speed_hz"].astype(np.float64))
     return [
-        ("random windows (leaky)", True, held_out(_fold_of(every, seed))),
-        ("records", True, held_out(_fold_of(labels["record_id"], seed))),
-        ("specimens", False, held_out(_fold_of(specimens, seed))),
-        ("gear pairs", False, held_out(_fold_of(pairs, seed)) if np.unique(pairs).size > 1 else []),
+        ("random windows (leaky)", True, held_out(fold_of(every, seed))),
+        ("records", True, held_out(fold_of(labels["record_id"], seed))),
+        ("specimens", False, held_out(fold_of(specimens, seed))),
+        ("gear pairs", False, held_out(fold_of(pairs, seed)) if np.unique(pairs).size > 1 else []),
         ("one speed band", True, held_out(bands)),
-        ("one speed band of other specimens", False, crossed(bands, _fold_of(specimens, seed))),
+        ("one speed band of other specimens", False, crossed(bands, fold_of(specimens, seed))),
     ]
 
 
 def _single(labels: dict[str, np.ndarray], seed: int) -> list[tuple[str, bool, list[Fold]]]:
     _, channel = np.unique(labels["channel"], return_inverse=True)
-    fold = _fold_of(labels["specimen_id"], seed)
+    fold = fold_of(labels["specimen_id"], seed)
     several = int(channel.max()) > 0
     return [
         ("single channel: specimens", False, held_out(fold)),
@@ -185,7 +185,7 @@ def speed_bands(speed_hz: np.ndarray) -> np.ndarray:
     return np.unique(np.digitize(speed_hz, limits, right=True), return_inverse=True)[1]
 
 
-def _fold_of(group: np.ndarray, seed: int) -> np.ndarray:
+def fold_of(group: np.ndarray, seed: int) -> np.ndarray:
     """Return the fold of every row; rows of a group share it."""
     members, index = np.unique(group, return_inverse=True)
     return (generator(seed, Purpose.FOLDS).permutation(members.size) % min(FOLDS, members.size))[index]

@@ -38,6 +38,7 @@ from diagnostics.training.baselines import (
 )
 from diagnostics.training.boosting import train_boosting
 from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
+from diagnostics.training.nested_folds import Nested, nested_folds, nested_metrics, strange_classes
 from diagnostics.training.network_training import NetworkOptions, TrainedNetworkFile, judge_networks
 from diagnostics.training.other_set import classifier_predictions, network_predictions_of
 from diagnostics.training.referenced import Referenced, referenced_classifiers
@@ -81,6 +82,8 @@ class Training:
         Network on the synchronous average; None without networks.
     referenced : Referenced or None
         Classifiers beside a healthy record of the same gearbox; None where the set has no second one.
+    nested : Nested or None
+        Logistic regression judged on every gearbox; None with too few.
     """
 
     judged: tuple[Judged, ...]
@@ -96,6 +99,7 @@ class Training:
     severity: tuple[AreaScores, ...]
     circular: TrainedCircularFile | None = None
     referenced: Referenced | None = None
+    nested: Nested | None = None
 
 
 @single_thread
@@ -161,7 +165,13 @@ def train_models(
         severity=_severity(results, matrix, split, seed),
         circular=circular,
         referenced=referenced_classifiers(matrix, split, results, averages, seed, options, stage),
+        nested=_nested(matrix, split, seed, stage),
     )
+
+
+def _nested(matrix: FeatureMatrix, split: SpecimenSplit, seed: int, stage: Stage) -> Nested | None:
+    with stage("nested folds", len(strange_classes(split)) or 1) as advance:
+        return nested_folds(matrix, split, seed, advance)
 
 
 def _averages(dataset: Dataset, table: pa.Table) -> Any:
@@ -294,6 +304,7 @@ def training_metrics(training: Training) -> dict[str, Any]:
         "classifiers_on_other_set": {found.name: judged_metrics(found) for found in training.other},
         "comparisons": [_pair_metrics(pair) for pair in training.comparisons],
         "beside_a_healthy_record": _referenced_metrics(training.referenced) if training.referenced else None,
+        "nested_folds": nested_metrics(training.nested) if training.nested else None,
         "rms_severe_auc": training.rms_severe.numbers() if training.rms_severe else None,
         "damaged_area": [
             {"title": s.title, "error_mm2": s.error_mm2.numbers(), "spearman": s.spearman.numbers()}

@@ -1,0 +1,45 @@
+"""Confusion matrices as tables: counts of records, shaded by their share of the true state."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnostics.page.html import Cell, table
+from diagnostics.page.tables import explorer_link
+from diagnostics.page.wording import capitalised
+from diagnostics.statistics.scores import Scores
+
+
+def confusion_table(scores: Scores, title: str, records: str = "test records", explorer: str = "") -> str:
+    """Return the confusion matrix of one classifier.
+
+    Parameters
+    ----------
+    scores : Scores
+    title : str
+        Of the classifier.
+    records : str
+        Which records are counted.
+    explorer : str
+        Page to explore with the predictions of this classifier; its records are behind every count.
+    """
+    classes, counts = scores.classes, scores.confusion
+    share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+    rows = [
+        [
+            Cell(true),
+            *(_count(explorer, true, classes[k], int(counts[row, k]), share[row, k]) for k in range(len(classes))),
+        ]
+        for row, true in enumerate(classes)
+    ]
+    caption = (
+        f"{capitalised(title)}: true state in rows, named state in columns; {records}, and their "
+        f"share of the true state.{' A count leads to its records.' if explorer else ''}"
+    )
+    return table(["True state", *classes], rows, caption=caption)
+
+
+def _count(explorer: str, true: str, named: str, count: int, share: float) -> Cell:
+    link = explorer_link(explorer, split="test", **{"class": true}, predicted=named) if count else ""
+    hint = f"records of {true} that are named {named}" if link else ""
+    return Cell(str(count), f"{share:.0%}" if count else "", float(count), link, hint, float(share))
