@@ -35,7 +35,8 @@ def contact_notes(config: Config) -> tuple[str, ...]:
         return ()
     healthy, pitted = zip(*_groups(config), strict=True)
     notes = lubrication_notes(_united(healthy), "masjedi_khonsari")
-    if not (solves_across_the_face(config.dynamics) and any(state.damaged for state in config.states)):
+    missing = any(one.nouns for state in config.states if state.damaged for one in state.damages)
+    if not (missing and solves_across_the_face(config.dynamics)):
         return notes
     # Load, speed and material are those of the healthy flank: only the roughness is news.
     inside = lubrication_notes(_united(pitted), "masjedi_khonsari", checked=("roughness",))

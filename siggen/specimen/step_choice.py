@@ -3,7 +3,8 @@
 The rule knows speed, friction and natural frequencies, but not how often flanks part and how hard they meet again. So a
 stretch of the record is integrated twice from one state, with the steps at hand and with twice as many, and delivered
 accelerations are compared. Where they differ too much steps are refined. The stretch begins before a damaged pair
-enters, if one does, since such a pair may be rare. Its length follows from the speed and from how long motions ring.
+enters, if one does, since such a pair may be rare. Its length follows from the speed, from how long motions ring
+and from what pushes now and then, such as a spalled bearing.
 
 Errors fall with the square of the step, so a difference is three quarters of the error. Motions of sensors are left
 out: a sensor that is added must not change the others.
@@ -92,10 +93,15 @@ class Probe:
     def stretch(self, motion: Motion) -> Stretch:
         """Return where the record is looked at."""
         pitches_hz = motion.teeth * abs(self.point.speed_hz)
-        compared_s = max(LEAST_S, LEAST_PITCHES / pitches_hz)
+        compared_s = max(LEAST_S, LEAST_PITCHES / pitches_hz, self._sharp_s())
         ringing = self.ringing(motion)
         count = max(2, min(ceil(compared_s * self.config.fs_hz), self.config.samples))
         return Stretch(self._first(motion) - ringing, ringing + count)
+
+    def _sharp_s(self) -> float:
+        """Return the time over which what acts shows all that it changes within few steps."""
+        acting = self.driven.excitation
+        return 0.0 if acting is None else acting.sharp_turn_rad / (2.0 * np.pi * abs(self.point.speed_hz))
 
     def _first(self, motion: Motion) -> int:
         """Return the sample before the first damaged pair enters; without one the first of the record."""

@@ -81,7 +81,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         "speed_hz": point.speed_hz,
         "start_angle_rad": angle,
         **grid,
-        **_inputs(driven, grid, motion.structure.flanks.ahead_pitches),
+        **_inputs(driven, grid, motion.structure),
         "start_state": start,
         "law": specimen.dynamics.mesh.law,
         **_law(motion.law),
@@ -179,17 +179,19 @@ def _time_grid(config: Config, specimen: Specimen, motion: Motion, rotation: Rot
     }
 
 
-def _inputs(driven: RecordDrive, grid: Mapping[str, Any], ahead_pitches: float) -> dict[str, Any]:
+def _inputs(driven: RecordDrive, grid: Mapping[str, Any], structure: Structure) -> dict[str, Any]:
     """Return angle and inputs at all steps up to the end of the filter behind the last sample, where they vary."""
     if driven.excitation is None:
         return {}
     count = round((grid["samples"] / grid["fs_hz"] - grid["start_s"]) / grid["step_s"])
     time_s = grid["start_s"] + np.arange(count + half_length(grid["steps_per_sample"]) + 1) * grid["step_s"]
+    rows = driven.excitation.seat_force_rows(tuple(structure.bearing_forces))
     return {
-        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"] + ahead_pitches,
+        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"] + structure.flanks.ahead_pitches,
         "inputs": driven.excitation.inputs(time_s, driven.rotation),
         "input_vectors": driven.excitation.vectors,
         "speed_input": driven.speed_input,
+        **({"input_bearing_force_rows": rows} if rows.any() else {}),
     }
 
 

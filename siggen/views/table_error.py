@@ -74,11 +74,11 @@ def worst_contact_table_error(
     options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair))
     force_n = mean_force_n(pair, draw_operating_point(config, specimen_id, 0))
     milder = {config.grown_from(index) for index in range(len(config.states))}
-    damaged = [i for i, state in enumerate(config.states) if state.damaged and i not in milder]
+    drawn = {i: on_teeth(state_damage(config, specimen_id, pair, i)) for i in range(len(config.states))}
+    damaged = [i for i, on in drawn.items() if on and config.states[i].damaged and i not in milder]
     found = []
     for index in (None, *damaged[-STATES:]):
-        drawn = () if index is None else on_teeth(state_damage(config, specimen_id, pair, index))
-        damage = tuple(one for one in drawn if has_extent(one))
+        damage = () if index is None else tuple(one for one in drawn[index] if has_extent(one))
         errors = specimen_errors(config, pair, specimen_id, index or 0)
         slices = face_slices(pair, options)
         lead = np.zeros(slices) if errors is None else errors.lead_m(slices)

@@ -22,6 +22,7 @@ from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
 from siggen.specimen.drive import record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import structure
+from siggen.views.exported_model import exported_model
 from tests.config.minimal import config, minimal
 
 SPEED_HZ, BALLS = 30.0, 9
@@ -134,6 +135,29 @@ def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
     rotation = record_rotation(made, point, record, start_angle_rad(made, pair, record))
     parts = specimen_state(made, specimen, record.state_id).parts
     return spall_sources(made, specimen, structure(made, specimen), point, record, rotation, parts)
+
+
+def test_an_exported_model_has_what_a_spall_pushes_and_what_of_it_the_housing_feels() -> None:
+    model = exported_model(with_states(SPALL, duration_s=0.02), 1)
+    names = [str(name) for name in model["bearing_force_names"]]
+    felt = model["input_bearing_force_rows"]
+    assert np.abs(model["inputs"]).max() > 100.0
+    # 8dof: a seat is the ground, so that a shaft's coordinate gets what its seat gets, with the other sign
+    for axis, name in (("x_1", "pinion_bearing/horizontal"), ("y_1", "pinion_bearing/vertical")):
+        on_shaft = model["input_vectors"][:, list(model["coordinates"]).index(axis)]
+        np.testing.assert_allclose(felt[names.index(name)], -on_shaft, atol=1e-12)
+    assert not felt[[names.index(name) for name in names if name.startswith("gear")]].any()
+    assert "input_bearing_force_rows" not in exported_model(with_states(None, duration_s=0.02), 1)
+
+
+@pytest.mark.parametrize(("element", "turns"), [("outer", 2.0 / BALLS / CAGE), ("inner", 1.0), ("ball", 1.0 / CAGE)])
+def test_steps_are_chosen_on_a_stretch_that_no_passage_of_the_zone_can_miss(element: str, turns: float) -> None:
+    (source,) = sources_of(with_states({**SPALL, "element": element, "bearing": "gear_bearing"}), 1)
+    of_pinion = source.sharp_turn_rad / (2.0 * math.pi)
+    assert turns * 47 / 18 <= of_pinion <= turns * 47 / 18 / (1.0 - SLIP[1])
+    angle = np.linspace(0.0, source.sharp_turn_rad, 20_000)
+    for start in np.linspace(0.0, 30.0, 7):
+        assert source.lost_n(start + angle)[0].max() > 100.0
 
 
 def test_half_of_the_tooth_force_loads_the_bearing_along_the_line_of_action() -> None:

@@ -56,12 +56,18 @@ class SpalledBearing(Source):
     order: float
     directions: FloatArray
     on_seat: Mapping[str, FloatArray]
-    is_sharp = True
 
     @property
     def vectors(self) -> FloatArray:
         """The directions (2, n)."""
         return self.directions
+
+    @property
+    def sharp_turn_rad(self) -> float:
+        """Until the spall stood at all angles to the load; of the outer race until two balls have passed."""
+        cage_rad = 2.0 * pi / self.cage.order
+        turns = {"outer": 2.0 * cage_rad / self.spall.bearing.balls, "inner": 2.0 * pi, "ball": cage_rad}
+        return turns[self.spall.element] / abs(self.order)
 
     @property
     def seat_forces(self) -> Mapping[str, FloatArray]:

@@ -13,12 +13,7 @@ from siggen.dynamics.drive.drive import Rotation, Turning
 
 
 class Source(Protocol):
-    """One cause of inputs; to be derived from.
-
-    `is_sharp`: whether inputs change within few steps of integration, so that no coarser grid can stand for them.
-    """
-
-    is_sharp: bool = False
+    """One cause of inputs; to be derived from."""
 
     @property
     def vectors(self) -> FloatArray:
@@ -26,6 +21,14 @@ class Source(Protocol):
 
     def inputs(self, turning: Turning) -> FloatArray:
         """Return the inputs (k, m) at k times."""
+
+    @property
+    def sharp_turn_rad(self) -> float:
+        """Turn of the pinion over which inputs show all that they change within few steps of integration; 0: nothing.
+
+        No coarser grid can stand for such inputs.
+        """
+        return 0.0
 
     @property
     def seat_forces(self) -> Mapping[str, FloatArray]:
@@ -40,9 +43,9 @@ class Excitation:
     sources: tuple[Source, ...]
 
     @property
-    def is_sharp(self) -> bool:
-        """Whether any source is."""
-        return any(source.is_sharp for source in self.sources)
+    def sharp_turn_rad(self) -> float:
+        """The largest of all sources."""
+        return max(source.sharp_turn_rad for source in self.sources)
 
     @property
     def vectors(self) -> FloatArray:

@@ -65,7 +65,7 @@ class SampledExcitation:
         """Make the spline of a span, no coarser than the one before; none if its grid were finer than the steps."""
         self._spline, self._until_s = None, last_s
         coarser: FloatArray | None = None
-        while self._rate_hz < self._finest_hz and not self._excitation.is_sharp:
+        while self._rate_hz < self._finest_hz and self._excitation.sharp_turn_rad == 0.0:
             knots = _knots(first_s, last_s, self._rate_hz)
             values = self._values(knots, coarser)
             spline = CubicSpline(knots, values)
