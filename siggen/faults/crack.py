@@ -63,18 +63,24 @@ class RootCracks(Fault):
     )  # fmt: skip
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
-        """Return 'depth_share' for a crack that is nowhere deeper than the milder one on the same teeth."""
+        """Return 'depth_share' for cracks as deep and as long as those of the milder state on the same teeth."""
         if not isinstance(milder, RootCracks) or (milder.gear, milder.teeth) != (self.gear, self.teeth):
             return None
-        if self._reach > milder._reach:
-            return None
-        return "depth_share" if bounds(self.depth_share)[1] <= bounds(milder.depth_share)[1] else None
+        return "depth_share" if self._sizes == milder._sizes else None
 
     def growth_problems(self, milder: Fault) -> Iterator[Problem]:
-        """Yield another angle than that of the milder crack on the same gear: cracks do not turn."""
-        if isinstance(milder, RootCracks) and milder.gear == self.gear and milder.angle_deg != self.angle_deg:
-            allowed = f"allowed: {number_text(milder.angle_deg)}, as in the milder state, or grows_from: none"
+        """Yield another angle than that of the milder crack on the same gear, less depth or a shorter run."""
+        if not isinstance(milder, RootCracks) or milder.gear != self.gear:
+            return
+        kept = "as in the milder state, or grows_from: none"
+        if milder.angle_deg != self.angle_deg:
+            allowed = f"allowed: {number_text(milder.angle_deg)}, {kept}"
             yield Problem("angle_deg", number_text(self.angle_deg), allowed)
+        for key, before in milder._sizes.items():
+            own = self._sizes[key]
+            if own[0] < before[0] or own[1] < before[1]:
+                least = "null" if before[0] == inf else f"at least {_span(before)}"
+                yield Problem(key, _span(own), f"allowed: {least}, {kept}")
 
     def drawn(self, growth: Growth) -> Parts:
         """Return a crack in each damaged tooth: the milder one, where it has one, deeper and longer."""
@@ -92,8 +98,9 @@ class RootCracks(Fault):
                 yield Problem(CRACK_KEYS[problem.name], in_mm(problem.received), allowed_text(problem.allowed))
 
     @property
-    def _reach(self) -> float:
-        return inf if self.face_share is None else bounds(self.face_share)[1]
+    def _sizes(self) -> dict[str, tuple[float, float]]:
+        run = (inf, inf) if self.face_share is None else bounds(self.face_share)
+        return {"depth_share": bounds(self.depth_share), "face_share": run}
 
     def _grown(self, growth: Growth, tooth: int) -> RootCrack:
         one = draw(self, growth.place(self.gear, RootCracks), f"crack.{self.gear}.{tooth}")
@@ -109,3 +116,8 @@ class RootCracks(Fault):
         depth_m = constant(self.depth_share) * root_chord(pair.member(self.gear)).length_m
         run_m = inf if self.face_share is None else constant(self.face_share) * pair.face_width_m
         return RootCrack(self.gear, tooth, depth_m, radians(constant(self.angle_deg)), run_m)
+
+
+def _span(values: tuple[float, float]) -> str:
+    low, high = values
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"

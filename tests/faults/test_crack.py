@@ -70,7 +70,16 @@ def test_its_row_has_depth_angle_and_run_and_stands_beside_pits() -> None:
             [cracked(depth_share=0.2), cracked(depth_share=0.3, angle_deg=60)],
             ("states.2.damage.angle_deg", "60", "45, as in the milder state"),
         ),
-        ([cracked(depth_share=0.2), cracked(depth_share=0.1)], ("states.2.damage.depth_share", "grows_from")),
+        ([cracked(depth_share=0.2), cracked(depth_share=0.2)], ("states.2.damage.depth_share", "grows_from")),
+        ([cracked(depth_share=0.2), cracked(depth_share=0.1)], ("states.2.damage.depth_share", "at least 0.2")),
+        (
+            [cracked(depth_share=UNIFORM), cracked(depth_share={**UNIFORM, "low": 0.05})],
+            ("states.2.damage.depth_share", "0.05 to 0.2", "at least 0.1 to 0.2"),
+        ),
+        (
+            [cracked(depth_share=0.2), cracked(depth_share=0.3, face_share=0.6)],
+            ("states.2.damage.face_share", "received 0.6", "allowed: null, as in the milder state"),
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_with_key_value_and_what_is_allowed(damages, said) -> None:
