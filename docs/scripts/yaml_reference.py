@@ -74,6 +74,7 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
     if value.get("type") == "array":
         return listing(schema, value)
     words = {"integer": "whole number", "number": "number", "string": "text", "null": "`null`", "boolean": "yes or no"}
+    words["object"] = "mapping of keys"
     return f"{words[value['type']]} {limits(value)}".strip()
 
 

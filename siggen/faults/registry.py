@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import reduce
 from operator import or_
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from pydantic import Field
 
@@ -24,10 +24,8 @@ DAMAGE = AllowedText("null, or a mapping with kind: {} or {}".format(", ".join([
 
 if TYPE_CHECKING:
     DamageSection: TypeAlias = Fault
-    FaultWord: TypeAlias = str
 else:
     DamageSection = Annotated[reduce(or_, KINDS), Field(discriminator="kind")]
-    FaultWord = Literal[FAULT_WORDS]
 
 
 def default_word(damage: object) -> str:

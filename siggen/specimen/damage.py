@@ -40,8 +40,8 @@ def grown_damage(
     """Return `state_damage`, with that of the milder state from `milder_damage`, which takes its number."""
     config = gearbox_config(config, specimen_id)
     state = config.states[state_id]
-    milder = tuple(_milder(config, state_id))
-    before = milder_damage(milder[0][0]) if milder else ()
+    milder, older = tuple(_milder(config, state_id)), config.grown_from(state_id)
+    before = () if older is None else milder_damage(older)
     growth = Growth(config.seed, specimen_id, state_id, pair, milder, before)
     parts = before
     for section in state.damages:
