@@ -9,7 +9,7 @@ from typing import Any
 from siggen.config.housing import PlateHousing
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
-from siggen.faults.registry import HEALTHY, kinds_called
+from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
@@ -200,6 +200,7 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
         before = (section for i in states if i < index and states[i].damaged for section in states[i].damages)
         inherited = (word for section in before for word in section.own_words)
         words = dict.fromkeys([*own, *(word for word in inherited if word not in outranked)])
+        words |= {COMBINED: None} if len(words) > 1 else {}
         kinds = kinds_called(state.fault)
         if state.fault not in words and (kinds or not state.changes):
             yield Problem(f"states.{index}.fault", _shown_text(state), _words_text([*words], state.fault, kinds))

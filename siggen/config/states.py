@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, model_validator
 from siggen.config.changes import Change, Changes
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.registry import DAMAGE, FAULT_WORDS, HEALTHY, DamageSection, default_word
+from siggen.faults.registry import DAMAGE, FAULT_WORDS, HEALTHY, DamageSections, default_word
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -53,7 +53,9 @@ class State(Section):
         default="previous",
         description="whose damage it contains: previous (the nearest earlier state with damage), none, or a name",
     )
-    damage: Annotated[DamageSection | None, DAMAGE] = Field(default=None, description="null for a healthy state")
+    damage: Annotated[DamageSections | None, DAMAGE] = Field(
+        default=None, description="null for a healthy state; a list for several at once"
+    )
     sham: bool = Field(
         default=False,
         strict=True,
@@ -70,12 +72,20 @@ class State(Section):
     @property
     def damages(self) -> tuple[Fault, ...]:
         """Sections of its damage, none of a healthy state; those of a sham too."""
-        return () if self.damage is None else (self.damage,)
+        if self.damage is None:
+            return ()
+        return self.damage if isinstance(self.damage, tuple) else (self.damage,)
+
+    def with_damages(self, sections: tuple[Fault, ...]) -> State:
+        """Return the state with other sections in place of its own, as many."""
+        if not sections:
+            return self
+        return self.model_copy(update={"damage": sections if isinstance(self.damage, tuple) else sections[0]})
 
     def placed(self, path: str) -> Iterator[tuple[str, Fault]]:
         """Yield path and section of all of its damage, for the state's own path."""
-        if self.damage is not None:
-            yield f"{path}.damage", self.damage
+        listed = isinstance(self.damage, tuple)
+        yield from ((f"{path}.damage{f'.{i}' if listed else ''}", one) for i, one in enumerate(self.damages))
 
     @property
     def damaged(self) -> bool:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from siggen.config import Config
+from siggen.faults.fault import Fault
 from siggen.faults.growth import Growth
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
@@ -44,9 +45,13 @@ def grown_damage(
     before = () if older is None else milder_damage(older)
     growth = Growth(config.seed, specimen_id, state_id, pair, milder, before)
     parts = before
-    for section in state.damages:
+    for section in sorted(state.damages, key=_rank):  # whatever order they were written in
         parts = _united(parts, section.drawn(growth))
     return tuple(one.sham() for one in parts) if state.sham else parts
+
+
+def _rank(section: Fault) -> str:
+    return section.model_dump_json()
 
 
 def _milder(config: Config, state_id: int) -> Iterator[tuple[int, object]]:
