@@ -11,6 +11,7 @@ from diagnostics.audit.detectability import FEWEST_SPECIMENS, Detection, in_orde
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.reference_comparison import ReferenceComparison
+from diagnostics.audit.sham import ShamFound
 
 SINGLE = "the best single indicator"
 """Name of the probe that takes one indicator, chosen on other gearboxes."""
@@ -54,6 +55,8 @@ class Audit:
         What the strongest attacker reaches by chance.
     reference : ReferenceComparison, optional
         Where the user gave recordings.
+    shams : tuple of ShamFound
+        What attackers tell of states in whose damage nothing is removed.
     """
 
     findings: tuple[Finding, ...]
@@ -69,6 +72,7 @@ class Audit:
     best: dict[str, BestIndicator] = field(default_factory=dict)
     chance: ChanceLimit | None = None
     reference: ReferenceComparison | None = None
+    shams: tuple[ShamFound, ...] = ()
 
     @property
     def gearboxes_needed(self) -> int | None:

@@ -26,6 +26,7 @@ from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
 from diagnostics.audit.separability_findings import separability_findings, verdict
+from diagnostics.audit.sham import ShamFound, shams_found
 from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
@@ -58,6 +59,7 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
             name: _entries_numbers(audit.ladder(referenced=side), audit)
             for name, side in ((ALONE, False), (WITH_REFERENCE, True))
         },
+        "shams": [one.numbers() for one in audit.shams],
         "chance": _chance_numbers(audit.chance) if audit.chance else None,
         "best_single_indicator": {
             state: {
@@ -197,7 +199,7 @@ def audit_set(
     with stage("detectability", 1):
         found = _detections(measured, seed, options.paired)
         best = best_indicators(measured.matrix(), seed)
-    attacked, chance = _attacks(measured, seed, stage)
+    attacked, chance, shams = _attacks(measured, seed, stage)
     found |= attacked
     compared = realism(measured, options.speed) if options.with_realism else None
     beside = None
@@ -219,6 +221,7 @@ def audit_set(
         best=best,
         chance=chance,
         reference=beside,
+        shams=shams,
     )
 
 
@@ -230,14 +233,16 @@ def _detections(measured: MeasuredSet, seed: int, paired: bool) -> dict[str, lis
     return found
 
 
-def _attacks(measured: MeasuredSet, seed: int, stage: Stage) -> tuple[dict[str, list[Detection]], ChanceLimit]:
-    """Return what the bank of attackers on waveforms reaches, and what it reaches by chance."""
+def _attacks(
+    measured: MeasuredSet, seed: int, stage: Stage
+) -> tuple[dict[str, list[Detection]], ChanceLimit, tuple[ShamFound, ...]]:
+    """Return what the bank of attackers on waveforms reaches, by chance too, and on shams."""
     with stage("preparing attackers", PREPARED) as advance:
         bank = signal_attackers(measured, seed, advance)
     with stage("attacking", len(bank)) as advance:
         found = bank_detections(measured, bank, seed, advance)
     with stage("permuted states", len(damaged_states(measured))) as advance:
-        return found, chance_limit(measured, bank, seed, advance)
+        return found, chance_limit(measured, bank, seed, advance), shams_found(measured, bank, seed)
 
 
 def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realism: bool) -> list[str]:

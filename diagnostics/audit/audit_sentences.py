@@ -12,6 +12,7 @@ from diagnostics.audit.audit import Audit
 from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detection, length_at
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.reference_comparison import FEWEST_GEARBOXES, FEWEST_RECORDINGS, TELLING_AUC, ReferenceComparison
+from diagnostics.audit.sham import sham_sentences
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.wording import counted, decimal, joined, limits, percent
@@ -90,6 +91,7 @@ def audit_summary(audit: Audit) -> list[str]:
     found += reference_sentences(audit.reference) if audit.reference else []
     return [
         audit.verdict,
+        *sham_sentences(audit.shams),
         *found,
         *_hardest_sentence(audit),
         *([] if audit.gearboxes_needed else _size_sentence(shown_ladders(audit))),

@@ -206,14 +206,15 @@ def bank_detections(
     folds = dealt_folds(measured.labels["specimen_id"], seed)
     found = {}
     for attacker in attackers:
-        entries = [_detection(measured, attacker, state, folds, seed) for state in damaged_states(measured)]
+        entries = [detection_by(measured, attacker, state, folds, seed) for state in damaged_states(measured)]
         if any(math.isfinite(entry.auc.value) for entry in entries):
             found[attacker.name] = in_order(entries)
         advance()
     return found
 
 
-def _detection(measured: MeasuredSet, attacker: Attacker, state: str, folds: np.ndarray, seed: int) -> Detection:
+def detection_by(measured: MeasuredSet, attacker: Attacker, state: str, folds: np.ndarray, seed: int) -> Detection:
+    """Return the detection of one state by one attacker; folds as of `dealt_folds`."""
     labels = measured.labels
     of_state = np.asarray(labels["state"] == state) & ~measured.healthy
     rows = judged_rows(attacker, measured.healthy, of_state, labels["specimen_id"])
@@ -240,7 +241,7 @@ def chance_limit(
     folds, blocks = dealt_folds(measured.labels["specimen_id"], seed), exchange_blocks(measured)
     found = {}
     for state in damaged_states(measured):
-        law = _state_chance(measured, asked, state, folds, blocks, seed)
+        law = state_chance(measured, asked, state, folds, blocks, seed)
         if law is not None:
             found[state] = law
         advance()
@@ -248,9 +249,10 @@ def chance_limit(
     return ChanceLimit(least, len(asked), PERMUTATIONS if found else 0, found)
 
 
-def _state_chance(
+def state_chance(
     measured: MeasuredSet, asked: Sequence[Attacker], state: str, folds: np.ndarray, blocks: np.ndarray, seed: int
 ) -> StateChance | None:
+    """Return what the strongest of some attackers reaches on a state by chance; None where none could be asked."""
     specimen, of_state = measured.labels["specimen_id"], np.asarray(measured.labels["state"] == state)
     of_state = of_state & ~measured.healthy
     able = [attacker for attacker in asked if judged_rows(attacker, measured.healthy, of_state, specimen).size]

@@ -60,7 +60,7 @@ GROUPS = (
 
 CONSEQUENCES = re.compile(
     r"^(record_id|specimen_id|state_id|state|split|repeat|fault|severity|faulty_.*|damage.*|contact_length_loss.*|"
-    r"mesh_stiffness_loss.*|through_face|sham|sink_depth_.*|contact_loss_share|integration_error|snr_.*|clipped_share_.*|"
+    r"mesh_stiffness_loss.*|through_face|sham|changed_keys|has_.*|sink_depth_.*|contact_loss_share|integration_error|snr_.*|clipped_share_.*|"
     r"(.*_)?(pits?|spalls?|film|lambda|asperity|friction)(_.*)?)$"
 )
 """Identities, what the damage is, and what follows from it: these may differ between states."""

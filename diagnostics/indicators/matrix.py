@@ -20,7 +20,7 @@ LABEL_ROLES = {
     **dict.fromkeys(("record_id", "specimen_id", "state_id", "operating_point_id", "repeat", "split"), KEY),
     **dict.fromkeys(("teeth_pinion", "teeth_gear", "speed_hz", "torque_nm"), CONDITION),
     **dict.fromkeys(("state", CLASS, "fault", "severity", "damaged_area_mm2", "damaged_area_share"), TARGET),
-    "through_face": TARGET,  # where a set has it
+    **dict.fromkeys(("through_face", "sham"), TARGET),  # where a set has them
     "mesh_stiffness_loss": CONSEQUENCE,
 }
 """Role of every label that goes along with indicators."""

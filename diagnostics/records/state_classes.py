@@ -19,7 +19,7 @@ from siggen.errors import UsageError
 
 THROUGH = " through the face"
 
-HEALTHY = "healthy"
+HEALTHY, SHAM = "healthy", "sham"
 CLASS = "class"
 """Label column with the name of each record's class, beside `state`, which stays as it is."""
 

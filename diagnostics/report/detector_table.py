@@ -23,6 +23,7 @@ CAPTION = (
     "a state above the threshold that 5 % of the healthy records exceed. Last columns: damaged area from which 90 % "
     "give an alarm. Limits of 95 % come from resampled gearboxes."
 )
+SHAM_CAPTION = " Sham: healthy records whose damage was drawn with nothing removed; an AUC above chance is a leak."
 
 
 def detection_blocks(training: Training) -> list[str]:
@@ -116,16 +117,20 @@ def detector_table(found: Detectors, explorer: str = "") -> str:
         return ""
     states = list(dict.fromkeys(name for detector in every for name in detector.states))
     kinds = list(dict.fromkeys(state.kind for detector in every for state in detector.states.values()))
+    shams = any(one.sham for one in every)
     head = [
-        *("Detector", "Gearboxes", "AUC, all damage"),
+        *("Detector", "Gearboxes"),
+        *(["AUC, sham"] if shams else []),
+        "AUC, all damage",
         *(f"AUC, {name}" for name in states),
         *(f"Alarms, {name} [%]" for name in states),
         *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
     ]
-    return table(head, [_row(detector, states, kinds, explorer) for detector in every], caption=CAPTION, sortable=True)
+    rows = [_row(detector, states, kinds, explorer, shams=shams) for detector in every]
+    return table(head, rows, caption=CAPTION + (SHAM_CAPTION if shams else ""), sortable=True)
 
 
-def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str) -> list[Cell]:
+def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str, *, shams: bool) -> list[Cell]:
     beside = "beside a healthy record" if detector.referenced else ""
     basis = in_a_sentence(detector.basis) if detector.basis else picked(detector.picks)
     small = ", ".join(part for part in (basis, beside) if part)
@@ -138,6 +143,7 @@ def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str)
     return [
         Cell(detector.title, small),
         Cell(str(detector.specimens), value=float(detector.specimens)),
+        *([interval_cell(detector.sham) if detector.sham else none] if shams else []),
         interval_cell(detector.every),
         *(
             behind(interval_cell(detector.states[name].auc), name) if name in detector.states else none

@@ -26,7 +26,7 @@ from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted, decimal, joined
 from diagnostics.prediction.saved_models import save_models
-from diagnostics.records.state_classes import ordered_states
+from diagnostics.records.state_classes import SHAM, ordered_states
 from diagnostics.report.answer import answer_figure, answer_sentences
 from diagnostics.report.drawing import draw
 from diagnostics.report.report_page import ANSWER, CAPTION, Reported, report_page
@@ -45,7 +45,7 @@ from siggen.errors import DatasetError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-THROUGH = "through_face"
+KINDS = ("through_face", SHAM)
 
 
 def audit_beside(dataset: Dataset) -> dict[str, Any] | None:
@@ -158,13 +158,13 @@ def write_report(
 
 
 def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
-    """Return the matrix with the label that sets damage through the face apart, where the set has it."""
-    if THROUGH not in dataset.labels().column_names:
-        return matrix
-    found = dataset.labels(columns=["record_id", THROUGH])
-    by_record = dict(zip(found.column("record_id").to_pylist(), found.column(THROUGH).to_pylist(), strict=True))
-    through = np.array([bool(by_record[record]) for record in matrix.labels["record_id"].tolist()])
-    return replace(matrix, labels={**matrix.labels, THROUGH: through})
+    """Return the matrix with the labels that set damage through the face and shams apart, where the set has them."""
+    present = [name for name in KINDS if name in dataset.labels().column_names]
+    found = dataset.labels(columns=["record_id", *present]).to_pylist()
+    by_record = {row["record_id"]: row for row in found}
+    rows = [by_record[record] for record in matrix.labels["record_id"].tolist()]
+    more = {name: np.array([bool(row[name]) for row in rows]) for name in present}
+    return replace(matrix, labels={**matrix.labels, **more})
 
 
 def _write_pictures(folder: Path, figures: dict[str, tuple[Figure, str]]) -> dict[str, tuple[bytes, str]]:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
+from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kinds, ordered_states
 from diagnostics.statistics.assessment import size_interval
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
@@ -87,6 +87,8 @@ class Detector:
         The column that it took most often, or nothing.
     picks : tuple of (str, int)
         Which detectors it stands for, and in how many folds; empty for one that is always the same.
+    sham : Interval, optional
+        AUC of the records of shams against other healthy ones, where there are any: above chance it tells a leak.
     """
 
     title: str
@@ -99,6 +101,7 @@ class Detector:
     healthy: int
     basis: str = ""
     picks: tuple[tuple[str, int], ...] = ()
+    sham: Interval | None = None
 
     def numbers(self) -> dict[str, Any]:
         """Return everything for JSON; undefined and unreached numbers are null."""
@@ -110,6 +113,7 @@ class Detector:
             "records": self.records,
             "specimens": self.specimens,
             "healthy_records": self.healthy,
+            "auc_sham": self.sham.numbers() if self.sham else None,
             "auc": self.every.numbers(),
             "states": {
                 name: {
@@ -141,7 +145,8 @@ def judged_detector(
     score : (n,) float64
         Larger means more damage; without NaN.
     labels : mapping of str to (n,)
-        Columns `specimen_id`, `state`, `state_id`, `fault`, `damaged_area_mm2`; `through_face` where the set has it.
+        Columns `specimen_id`, `state`, `state_id`, `fault`, `damaged_area_mm2`; `through_face` and `sham` where the
+        set has them.
     seed : int
         Of the resamples.
     referenced, basis
@@ -177,7 +182,16 @@ def judged_detector(
         int(np.unique(specimen).size),
         int(healthy.sum()),
         basis,
+        sham=_sham_auc(score, labels, weights),
     )
+
+
+def _sham_auc(score: np.ndarray, labels: Mapping[str, np.ndarray], weights: np.ndarray) -> Interval | None:
+    healthy = labels["fault"] == HEALTHY
+    sham = labels[SHAM].astype(bool) if SHAM in labels else np.zeros_like(healthy)
+    if not sham.any() or not (healthy & ~sham).any():
+        return None
+    return _auc(score[healthy], sham[healthy], weights[:, healthy], labels["specimen_id"][healthy])
 
 
 def _auc(score: np.ndarray, positive: np.ndarray, weights: np.ndarray, specimen: np.ndarray) -> Interval:

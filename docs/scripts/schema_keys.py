@@ -41,8 +41,11 @@ class Schema:
                 yield from self.keys(section, f"{path}{ending}.")
 
     def sections(self, value: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Yield (how a path goes on, section) for the sections that a value may hold."""
-        for option, listed in self.options(value):
+        """Yield (how a path goes on, section) for the sections that a value may hold; what may be listed too once."""
+        found = list(self.options(value))
+        for option, listed in found:
+            if listed and (option, False) in found:
+                continue
             section = self.resolved(option)
             if is_number_part(option) or "properties" not in section:
                 continue

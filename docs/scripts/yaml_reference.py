@@ -70,10 +70,14 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
         return f"section (kind: {kind})" if kind else "section"
     alternatives = value.get("anyOf") or value.get("oneOf")
     if alternatives is not None:
-        return several(schema, alternatives)
+        # what may be listed too is described once
+        listed = [part.get("items") for part in alternatives if part.get("type") == "array"]
+        text = several(schema, [part for part in alternatives if part.get("items") not in alternatives])
+        return f"{text} or a list of them" if any(items in alternatives for items in listed) else text
     if value.get("type") == "array":
         return listing(schema, value)
     words = {"integer": "whole number", "number": "number", "string": "text", "null": "`null`", "boolean": "yes or no"}
+    words["object"] = "mapping of keys"
     return f"{words[value['type']]} {limits(value)}".strip()
 
 

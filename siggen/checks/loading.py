@@ -28,6 +28,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.checks.emptied_pairs import emptied_pairs
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.quantity_names import quantity_problems
+    from siggen.checks.state_problems import state_problems
     from siggen.specimen.measured_path import response_problems, with_measured_responses
 
     if isinstance(source, Mapping):
@@ -43,6 +44,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         *written,
         *parsed.problems,
         *physical_problems(parsed),
+        *state_problems(parsed),
         *unread,
         *unusable,
         *response_problems(parsed.sections),

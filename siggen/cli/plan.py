@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from siggen.sets.trial import StateTrial
 
 
-NOTES = ("stiffness_notes", "lubrication_notes", "torque_notes", "damage_notes", "shaft_notes")
+NOTES = ("stiffness_notes", "lubrication_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
 """Lists of sentences in the summary, in the order in which they are printed."""
 
 
@@ -121,6 +121,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     from siggen.checks.damage_notes import damage_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
+    from siggen.checks.state_notes import state_notes
     from siggen.checks.torque_notes import torque_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import (
@@ -163,6 +164,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "lubrication_notes": list(contact_notes(config)),
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
         "damage_notes": _of_every_pair(config, damage_notes),
+        "state_notes": list(state_notes(config)),
         "implausible": list(implausible(config)),
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }

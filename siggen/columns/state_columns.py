@@ -6,17 +6,47 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import Column
+from siggen.faults.registry import default_word
+from siggen.keys.column import Column, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 SHAM_COLUMN = Column("sham", pa.bool_(), "", "whether its damage was drawn and passed on with nothing removed")
 
+CHANGED_COLUMN = Column(
+    "changed_keys", list_of(pa.string()), "", "keys that differ from the healthy gearbox, besides damage"
+)
+
 
 def state_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns that sets have whose states need them."""
-    return (SHAM_COLUMN,) if has_sham(config) else ()
+    sham = (SHAM_COLUMN,) if has_sham(config) else ()
+    kinds = (Column(f"has_{word}", pa.bool_(), "", f"whether it shows {word}") for word in combined_words(config))
+    return (*sham, *((CHANGED_COLUMN,) if has_changes(config) else ()), *kinds)
+
+
+def combined_words(config: Config) -> tuple[str, ...]:
+    """Return what damage a set has by its words, where a state has several sections at once; else nothing."""
+    if not any(len(state.damages) > 1 for state in config.states):
+        return ()
+    return tuple(sorted({default_word(one) for state in config.states if state.damaged for one in state.damages}))
+
+
+def shown_words(config: Config, state_id: int) -> set[str]:
+    """Return the words of what a state and its milder states damage."""
+    found: set[str] = set()
+    index: int | None = state_id
+    while index is not None:
+        state = config.states[index]
+        found |= {default_word(one) for one in state.damages if state.damaged}
+        index = config.grown_from(index)
+    return found
+
+
+def has_changes(config: Config) -> bool:
+    """Tell whether a state of a set changes keys of the machine."""
+    return any(state.changes for state in config.states)
 
 
 def has_sham(config: Config) -> bool:

@@ -10,12 +10,13 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from siggen.config.background import Background
+from siggen.config.changes import Change
 from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears
 from siggen.config.housing import Housing, PlateHousing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
-from siggen.config.states import State, grown_from
+from siggen.config.states import State, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
 from siggen.errors import Problem
@@ -127,6 +128,10 @@ class Config(Section):
     def grown_from(self, state_id: int) -> int | None:
         """Return the index of the state whose damage a state contains, or None."""
         return grown_from(self.states, state_id)
+
+    def changes_of(self, state_id: int) -> tuple[tuple[int, Change], ...]:
+        """Return the keys that a state changes, those of its milder states too, each with the state that says so."""
+        return changes_of(self.states, state_id)
 
     def canonical(self) -> dict[str, Any]:
         """Return the configuration with all defaults, as plain mappings and lists; parsing it gives an equal one."""

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from siggen.config.housing import PlateHousing
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
-from siggen.faults.registry import HEALTHY, kinds_called
+from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
+from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
 from siggen.sensors.sensor import PLATES
 
@@ -208,16 +209,16 @@ def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[
     states: Mapping[int, State] = sections.get("states", {})
     names = _raw_names(raw, "states")
     for index, state in states.items():
-        if not state.damaged or state.grows_from == "none":
+        if not state.faulty or state.grows_from == "none":
             continue
-        earlier = [i for i in states if i < index and states[i].damaged]
+        earlier = [i for i in states if i < index and states[i].faulty]
         if state.grows_from == "previous":
-            milder = earlier[-1] if earlier else None
+            milder = next((i for i in reversed(earlier) if states[i].damaged), None) if state.damaged else None
         else:
             milder = next((i for i, name in names.items() if name == state.grows_from), None)
             if milder is None or milder >= index or (milder in states and milder not in earlier):
                 candidates = ["previous", "none", *(states[i].name for i in earlier)]
-                allowed = f"allowed: an earlier state with damage: one of {', '.join(candidates)}"
+                allowed = f"allowed: an earlier state with damage or changes: one of {', '.join(candidates)}"
                 yield Problem(f"states.{index}.grows_from", f"'{state.grows_from}'", allowed)
                 continue
         if milder is not None and milder in states:
@@ -228,38 +229,42 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     """Yield labels that do not say what a state shows, by its own damage or by that of a state before it."""
     states: Mapping[int, State] = sections.get("states", {})
     for index, state in states.items():
-        if not state.damaged or state.fault == HEALTHY:
+        if not state.faulty or state.fault == HEALTHY:
             continue
         own = [word for section in state.damages for word in section.own_words]
         outranked = {word for section in state.damages for word in section.outranked}
         before = (section for i in states if i < index and states[i].damaged for section in states[i].damages)
         inherited = (word for section in before for word in section.own_words)
         words = dict.fromkeys([*own, *(word for word in inherited if word not in outranked)])
-        if state.fault not in words:
-            kinds = " or ".join(kinds_called(state.fault))
-            allowed = f"allowed: {' or '.join(words)}; {state.fault} needs kind: {kinds}"
-            shown = " and ".join(dict.fromkeys(section.kind_word() for section in state.damages))
-            yield Problem(
-                f"states.{index}.fault", f"'{state.fault}', with damage of kind {shown}",
-                f"{allowed}, here or in a milder state",
-            )  # fmt: skip
+        words |= {COMBINED: None} if len(words) > 1 else {}
+        kinds = kinds_called(state.fault)
+        if state.fault not in words and (kinds or not state.changes):
+            yield Problem(f"states.{index}.fault", _shown_text(state), _words_text([*words], state.fault, kinds))
+
+
+def _shown_text(state: State) -> str:
+    kinds = " and ".join(dict.fromkeys(section.kind_word() for section in state.damages))
+    return f"'{state.fault}', with {f'damage of kind {kinds}' if kinds else 'changes alone'}"
+
+
+def _words_text(words: Sequence[str], fault: str, kinds: Sequence[str]) -> str:
+    known = f"allowed: {' or '.join(words) or 'another word'}"
+    needed = f"{fault} needs kind: {' or '.join(kinds)}, here or in a milder state"
+    return f"{known}; {needed}" if kinds else f"{known}{nearest(fault, words)}"
 
 
 def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem]:
     if SEVERITIES.index(milder.severity) > SEVERITIES.index(state.severity):
         received = f"'{state.grows_from}', which is {milder.name} ({milder.severity}), for a {state.severity} state"
         yield Problem(f"{path}.grows_from", received, "allowed: a state that is not more severe, or none")
-    if milder.damage is None or state.damage is None:
-        return
-    for problem in state.damage.contradictions(milder.damage):
-        yield replace(problem, path=f"{path}.damage.{problem.path}")
-    if key := state.damage.key_that_adds_nothing(milder.damage):
-        nouns = state.damage.nouns or "damage"
-        received = f"no {nouns} beyond those of {milder.name}, which this state contains (grows_from)"
-        allowed = f"allowed: more {nouns} than {milder.name} has, or grows_from: none"
-        yield Problem(f"{path}.damage.{key}", received, allowed)
-    for problem in state.damage.growth_problems(milder.damage):
-        yield replace(problem, path=f"{path}.damage.{problem.path}")
+    for where, one in state.placed(path):
+        if key := next((key for older in milder.damages if (key := one.key_that_adds_nothing(older))), None):
+            nouns = one.nouns or "damage"
+            received = f"no {nouns} beyond those of {milder.name}, which this state contains (grows_from)"
+            allowed = f"allowed: more {nouns} than {milder.name} has, or grows_from: none"
+            yield Problem(f"{where}.{key}", received, allowed)
+        for problem in (problem for older in milder.damages for problem in one.contradictions(older)):
+            yield replace(problem, path=f"{where}.{problem.path}")
 
 
 def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

@@ -7,15 +7,26 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
+from siggen.config.changes import Change, Changes
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.registry import DAMAGE, FAULT_WORDS, HEALTHY, DamageSection, FaultWord, default_word
+from siggen.faults.registry import DAMAGE, FAULT_WORDS, HEALTHY, DamageSections, default_word
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
 SEVERITIES = ("healthy", "slight", "moderate", "severe")
 RESERVED_NAMES = ("previous", "none")
+KNOWN_CHANGES = (
+    "misalignment", "eccentricity", "unbalance", "lubrication", "looseness", "clearance", "bearing", "coupling",
+    "resonance", "sensor",
+)  # fmt: skip
+"""What changed machines and sensors are called; any other word will do."""
+FAULT = AllowedText(
+    f"with damage {', '.join(FAULT_WORDS[1:])}; with changes a word such as {', '.join(KNOWN_CHANGES)}; "
+    "lower-case letters, digits, - and _"
+)
+WORDS = {"damage": " or ".join(FAULT_WORDS[1:]), "changes": f"a word such as {', '.join(KNOWN_CHANGES)}"}
 STATE_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter, at most 200")
 
 
@@ -32,7 +43,9 @@ class State(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
         description="label of the state"
     )
-    fault: FaultWord = Field(description="default: what its kind of damage is called; healthy without damage")
+    fault: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), FAULT] = Field(
+        description="default: what its kind of damage is called; healthy without damage and changes"
+    )
     severity: Literal["healthy", "slight", "moderate", "severe"] = Field(
         description="default: the state's name if that is a severity; healthy without damage"
     )
@@ -40,7 +53,9 @@ class State(Section):
         default="previous",
         description="whose damage it contains: previous (the nearest earlier state with damage), none, or a name",
     )
-    damage: Annotated[DamageSection | None, DAMAGE] = Field(default=None, description="null for a healthy state")
+    damage: Annotated[DamageSections | None, DAMAGE] = Field(
+        default=None, description="null for a healthy state; a list for several at once"
+    )
     sham: bool = Field(
         default=False,
         strict=True,
@@ -48,15 +63,29 @@ class State(Section):
         "record may give away",
     )
 
+    changes: Changes = Field(
+        default=(),
+        description="keys of the machine or of its sensors that differ from the healthy gearbox: a number instead, "
+        "times or plus a number",
+    )
+
     @property
     def damages(self) -> tuple[Fault, ...]:
         """Sections of its damage, none of a healthy state; those of a sham too."""
-        return () if self.damage is None else (self.damage,)
+        if self.damage is None:
+            return ()
+        return self.damage if isinstance(self.damage, tuple) else (self.damage,)
+
+    def with_damages(self, sections: tuple[Fault, ...]) -> State:
+        """Return the state with other sections in place of its own, as many."""
+        if not sections:
+            return self
+        return self.model_copy(update={"damage": sections if isinstance(self.damage, tuple) else sections[0]})
 
     def placed(self, path: str) -> Iterator[tuple[str, Fault]]:
         """Yield path and section of all of its damage, for the state's own path."""
-        if self.damage is not None:
-            yield f"{path}.damage", self.damage
+        listed = isinstance(self.damage, tuple)
+        yield from ((f"{path}.damage{f'.{i}' if listed else ''}", one) for i, one in enumerate(self.damages))
 
     @property
     def damaged(self) -> bool:
@@ -64,22 +93,29 @@ class State(Section):
         return bool(self.damages) and not self.sham
 
     @property
+    def faulty(self) -> bool:
+        """Whether it differs from a healthy machine by itself: by damage, or by what it changes."""
+        return self.damaged or bool(self.changes)
+
+    @property
     def remarks(self) -> tuple[str, ...]:
         """What fault and severity do not say about it, in words."""
-        return ("sham: its damage passes everywhere, with nothing removed",) if self.sham else ()
+        sham = ("sham: its damage passes everywhere, with nothing removed",) if self.sham else ()
+        return (*sham, *(f"changes {one.text}" for one in self.changes))
 
     @model_validator(mode="before")
     @classmethod
     def _fill_labels(cls, value: Any) -> Any:
         if not isinstance(value, Mapping):
             return value
-        damaged = value.get("damage") is not None and value.get("sham") is not True
-        labels = {"fault": default_word(value["damage"]) if damaged else HEALTHY}
-        name = value.get("name")
-        if not damaged:
-            labels["severity"] = "healthy"
-        elif name in SEVERITIES:
-            labels["severity"] = str(name)
+        sound = value.get("damage") is None or value.get("sham") is True
+        labels = {}
+        if not sound:
+            labels["fault"] = default_word(value["damage"])
+        elif not value.get("changes"):
+            labels |= {"fault": HEALTHY, "severity": HEALTHY}
+        if "severity" not in labels and value.get("name") in SEVERITIES:
+            labels["severity"] = str(value["name"])
         return {**labels, **value}
 
     @model_validator(mode="after")
@@ -98,22 +134,25 @@ class State(Section):
 
     def _label_problems(self) -> Iterator[Problem]:
         healthy = self.fault == HEALTHY, self.severity == HEALTHY
+        faulty, shown = self.faulty, "damage" if self.damages else "changes"
         if self.sham:
             yield from self._sham_problems()
-        elif not self.damaged and not all(healthy):
+        elif not faulty and not all(healthy):
             received = f"{MISSING}, with fault {self.fault} and severity {self.severity}"
-            yield Problem("damage", received, "allowed: damage, or fault and severity both healthy")
-        elif self.damaged and healthy[0]:
-            allowed = f"allowed: {' or '.join(FAULT_WORDS[1:])}, or no damage"
-            yield Problem("fault", "healthy, with damage", allowed)
-        if self.damaged and healthy[1]:
-            yield Problem("severity", "healthy, with damage", "allowed: slight, moderate or severe, or no damage")
-        if not self.damaged and self.grows_from not in RESERVED_NAMES:
+            yield Problem("damage", received, "allowed: damage or changes, or fault and severity both healthy")
+        elif faulty and healthy[0]:
+            allowed = f"allowed: {WORDS[shown]}, or no {shown}"
+            yield Problem("fault", f"healthy, with {shown}", allowed)
+        if faulty and not self.sham and healthy[1]:
+            yield Problem("severity", f"healthy, with {shown}", f"allowed: slight, moderate or severe, or no {shown}")
+        if not faulty and self.grows_from not in RESERVED_NAMES:
             received = f"'{self.grows_from}', {'with sham: true' if self.sham else 'without damage'}"
-            yield Problem("grows_from", received, "only a state with damage grows from another one")
+            yield Problem("grows_from", received, "only a state with damage or changes grows from another one")
 
     def _sham_problems(self) -> Iterator[Problem]:
         """Yield what a state in whose damage nothing is removed cannot be."""
+        if self.changes:
+            yield Problem("changes", "a mapping, with sham: true", "allowed: none, or sham: false")
         if not self.damages:
             yield Problem("sham", "true, without damage", "allowed: damage, of which nothing is then removed; or false")
         for key in ("fault", "severity"):
@@ -123,11 +162,23 @@ class State(Section):
 
 
 def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
-    """Return the index of the state whose damage a state contains, or None if it begins with an intact gear."""
+    """Return the index of the state whose damage and changes a state contains, or None if it begins anew.
+
+    Changes alone grow from nothing that is not named.
+    """
     state = states[state_id]
+    if state.grows_from not in RESERVED_NAMES:
+        return next(i for i in range(state_id) if states[i].name == state.grows_from)
     if not state.damaged or state.grows_from == "none":
         return None
-    earlier = [i for i in range(state_id) if states[i].damaged]
-    if state.grows_from == "previous":
-        return earlier[-1] if earlier else None
-    return next(i for i in earlier if states[i].name == state.grows_from)
+    return next((i for i in reversed(range(state_id)) if states[i].damaged), None)
+
+
+def changes_of(states: tuple[State, ...], state_id: int) -> tuple[tuple[int, Change], ...]:
+    """Return what a state changes, each with the state that says so: its own and, of other keys, its milder state's."""
+    found: dict[str, tuple[int, Change]] = {}
+    index: int | None = state_id
+    while index is not None:
+        found = {one.path: (index, one) for one in states[index].changes} | found
+        index = grown_from(states, index)
+    return tuple(found[path] for path in sorted(found))

@@ -72,7 +72,7 @@ def card(config: Config, sidecars: Sequence[Sidecar], quantities: Sequence[Colum
 
 def faults(config: Config) -> tuple[str, ...]:
     """Return the kinds of fault of a set, in the order of its states; none of a set of healthy gearboxes."""
-    return tuple(dict.fromkeys(state.fault for state in config.states if state.damaged))
+    return tuple(dict.fromkeys(state.fault for state in config.states if state.faulty))
 
 
 def tags(config: Config) -> tuple[str, ...]:

@@ -42,6 +42,8 @@ BACKGROUND = {
 }
 """Part of `background` -> what it adds."""
 
+CHANGED = "A state that changes keys is the healthy gearbox with the same draws, but for these keys (`changed_keys`)."
+
 
 def making(config: Config) -> str:
     """Return the section `How it was made` of a set's card."""
@@ -90,11 +92,12 @@ def damage_text(config: Config) -> str:
     """Say how the kinds of damage act on the teeth."""
     shown = (section for state in config.states if state.damaged for section in state.damages)
     kinds = list(dict.fromkeys(type(section) for section in shown))
+    changed = [CHANGED] if any(state.changes for state in config.states) else []
     if not kinds:
-        return "None: every state is healthy."
+        return " ".join(["No teeth are damaged.", *changed] if changed else ["None: every state is healthy."])
     nouns = list(dict.fromkeys(noun for kind in kinds if kind.nouns for noun in kind.nouns.split(" and ")))
     said = [_flank_text(config, " and ".join(nouns))] if nouns else []
-    return " ".join([*said, *dict.fromkeys(kind.acts for kind in kinds if kind.acts), GROWTH])
+    return " ".join([*said, *dict.fromkeys(kind.acts for kind in kinds if kind.acts), GROWTH, *changed])
 
 
 def _flank_text(config: Config, nouns: str) -> str:

@@ -68,7 +68,7 @@ class RootCracks(Fault):
             return None
         return "depth_share" if self._sizes == milder._sizes else None
 
-    def growth_problems(self, milder: Fault) -> Iterator[Problem]:
+    def contradictions(self, milder: Fault) -> Iterator[Problem]:
         """Yield another angle than that of the milder crack on the same gear, less depth or a shorter run."""
         if not isinstance(milder, RootCracks) or milder.gear != self.gear:
             return

@@ -120,10 +120,6 @@ class Fault(Section):
         """Return the key by which it adds nothing to the milder damage that it contains, or None if it adds some."""
         return None
 
-    def growth_problems(self, milder: Fault) -> Iterator[Problem]:  # noqa: ARG002
-        """Yield what cannot have grown from the damage of a milder state."""
-        yield from ()
-
     def straight_edges(self, face_width_mm: float) -> tuple[bool, bool] | None:  # noqa: ARG002
         """Return whether all its edges are parallel to the axis, and whether one may then go through the face.
 

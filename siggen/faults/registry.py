@@ -5,33 +5,41 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import reduce
 from operator import or_
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from siggen.faults.fault import Fault
 from siggen.faults.kinds import KINDS
+from siggen.keys.problems import ONE, SEVERAL
 from siggen.keys.wording import AllowedText
 
 BY_WORD: Mapping[str, type[Fault]] = {one.kind_word(): one for one in KINDS}
 """Word of `kind:` -> section."""
 
-HEALTHY = "healthy"
-FAULT_WORDS = (HEALTHY, *dict.fromkeys(word for one in KINDS for word in one.words))
+HEALTHY, COMBINED = "healthy", "combined"
+FAULT_WORDS = (HEALTHY, *dict.fromkeys(word for one in KINDS for word in one.words), COMBINED)
 """What states may be called."""
 
-DAMAGE = AllowedText("null, or a mapping with kind: {} or {}".format(", ".join([*BY_WORD][:-1]), [*BY_WORD][-1]))
+DAMAGE = AllowedText(
+    "null, a mapping with kind: {} or {}, or a list of such mappings".format(", ".join([*BY_WORD][:-1]), [*BY_WORD][-1])
+)
 
 if TYPE_CHECKING:
-    DamageSection: TypeAlias = Fault
-    FaultWord: TypeAlias = str
+    DamageSections: TypeAlias = Fault | tuple[Fault, ...]
 else:
-    DamageSection = Annotated[reduce(or_, KINDS), Field(discriminator="kind")]
-    FaultWord = Literal[FAULT_WORDS]
+    _Section = Annotated[reduce(or_, KINDS), Field(discriminator="kind")]
+    DamageSections = Annotated[
+        Annotated[_Section, Tag(ONE)] | Annotated[tuple[_Section, ...], Field(min_length=1), Tag(SEVERAL)],
+        Discriminator(lambda given: SEVERAL if isinstance(given, (list, tuple)) else ONE),
+    ]
 
 
 def default_word(damage: object) -> str:
-    """Return what a state with a damage, raw or parsed, is called by default."""
+    """Return what a state with a damage, raw or parsed, or with several, is called by default."""
+    if isinstance(damage, (list, tuple)):
+        words = {default_word(one) for one in damage}
+        return COMBINED if len(words) > 1 else next(iter(words), FAULT_WORDS[1])
     read: Callable[[str], object] = (
         damage.get if isinstance(damage, Mapping) else lambda key: getattr(damage, key, None)
     )

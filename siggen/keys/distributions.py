@@ -6,6 +6,8 @@ One uniform per number, whatever its distribution, is what keeps a draw in its p
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from itertools import product
 from statistics import NormalDist
 from typing import Annotated, Literal, TypeAlias
 
@@ -125,6 +127,50 @@ class Choice(Section):
 
 
 Distribution: TypeAlias = Uniform | LogUniform | Normal | Choice
+
+
+@dataclass(frozen=True, slots=True)
+class Changed:
+    """`times` · a number + `add`: the same uniform gives the value of the same rank (no file can hold one).
+
+    A factor or shift that is a distribution itself is not drawn yet: then only bounds are known.
+    """
+
+    number: float | Distribution
+    times: float | Distribution = 1.0
+    add: float | Distribution = 0.0
+
+    def at(self, u: float) -> float:
+        """Return the value at the uniform of the distribution.
+
+        Raises
+        ------
+        TypeError
+            If factor or shift have not been drawn.
+        """
+        if not (isinstance(self.times, float) and isinstance(self.add, float)):
+            raise TypeError(f"a drawn factor and shift were expected, received {self.times} and {self.add}")
+        return self.times * (self.number if isinstance(self.number, float) else self.number.at(u)) + self.add
+
+    def bounds(self) -> tuple[float, float]:
+        """Return the smallest and the largest value of all combinations."""
+        return changed_bounds(self.number, self.times, self.add)
+
+    def __str__(self) -> str:
+        return "from {:g} to {:g}".format(*self.bounds())
+
+
+def changed_bounds(
+    number: float | Distribution, times: float | Distribution, add: float | Distribution
+) -> tuple[float, float]:
+    """Return the smallest and the largest value of `times` · `number` + `add`."""
+    ends = [(one, one) if isinstance(one, float) else one.bounds() for one in (number, times, add)]
+    every = [a * b + c for a, b, c in product(*ends)]
+    return min(every), max(every)
+
+
+DRAWN = (Uniform, LogUniform, Normal, Choice, Changed)
+"""Everything that is drawn."""
 
 KINDS: dict[str, type[Distribution]] = {
     "uniform": Uniform,

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
-from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform
+from siggen.keys.distributions import DRAWN
 from siggen.keys.number import Within, at, bounds
 from siggen.keys.section import Section
 
@@ -26,7 +26,7 @@ def draw(section: SomeSection, uniform: Callable[[str], float], path: str) -> So
     """
 
     def drawn(value: object, name: str) -> object:
-        is_drawn = isinstance(value, (Uniform, LogUniform, Normal, Choice))
+        is_drawn = isinstance(value, DRAWN)
         return at(value, uniform(name)) if is_drawn else value  # type: ignore[arg-type]
 
     return _replaced(section, drawn, path)
@@ -37,7 +37,7 @@ def corners(section: SomeSection) -> Iterator[SomeSection]:
     pairs: list[tuple[object, ...]] = []
 
     def noted(value: object, _: str) -> object:
-        is_drawn = isinstance(value, (Uniform, LogUniform, Normal, Choice))
+        is_drawn = isinstance(value, DRAWN)
         pairs.append(tuple(dict.fromkeys(bounds(value))) if is_drawn else (value,))  # type: ignore[arg-type]
         return value
 

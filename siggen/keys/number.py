@@ -11,12 +11,12 @@ from pydantic import Field, GetCoreSchemaHandler, ValidationError
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from siggen.errors import Problem
-from siggen.keys.distributions import KINDS, Choice, Distribution, LogUniform, Normal, Uniform
+from siggen.keys.distributions import DRAWN, KINDS, Changed, Distribution
 from siggen.keys.problems import MISSING, nearest, received_text, refusal, refused_problems, section_problems
 from siggen.keys.wording import range_text
 
-Number: TypeAlias = float | Uniform | LogUniform | Normal | Choice
-"""A physical number as the YAML file gives it."""
+Number: TypeAlias = float | Distribution | Changed
+"""A physical number as the YAML file gives it, or as a state changes it."""
 
 
 def at(number: Number, u: float) -> float:
@@ -111,7 +111,7 @@ class Within:
         return number
 
     def _unbounded(self, value: object) -> Number:
-        if isinstance(value, (Uniform, LogUniform, Normal, Choice)):
+        if isinstance(value, DRAWN):
             return value
         if isinstance(value, Mapping):
             return _distribution(value)

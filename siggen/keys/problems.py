@@ -24,7 +24,10 @@ MOST_PROBLEMS = 1_000
 SHOWN_NUMBERS = 4
 """Lists of up to as many numbers are shown as they came."""
 
-BRANCHES = {"plates", "rigid"}
+ONE, SEVERAL = "one", "several"
+"""Tags of what may be a section or a list of them."""
+
+BRANCHES = {"plates", "rigid", ONE, SEVERAL}
 """Tags by which pydantic names the branch of a union it took, to which kinds of damage and sensors add their own.
 
 No key of the file has such a name (tested).
@@ -142,7 +145,7 @@ def _translated(model: type[BaseModel], location: Location, error: ErrorDetails)
 
 def _kinds_at(model: type[BaseModel], location: Location) -> str:
     kinds = [get_args(m.model_fields["kind"].annotation)[0] for m in models_in(_field_at(model, location).annotation)]
-    return ", ".join(kinds)
+    return ", ".join(dict.fromkeys(kinds))
 
 
 def _field_at(model: type[BaseModel], location: Location) -> FieldInfo:
@@ -150,7 +153,8 @@ def _field_at(model: type[BaseModel], location: Location) -> FieldInfo:
     if depth < 0:
         return FieldInfo.from_annotation(model)
     field = _model_at(model, location[:depth]).model_fields[str(location[depth])]
-    for part in location[depth + 1 :]:
+    below = location[depth + 1 :]
+    for part in () if SEVERAL in below else below:  # what may be a section or a list says so itself
         if isinstance(part, int):
             field = FieldInfo.from_annotation(get_args(field.annotation)[0])
     return field
@@ -159,6 +163,8 @@ def _field_at(model: type[BaseModel], location: Location) -> FieldInfo:
 def _model_at(model: type[BaseModel], location: Location) -> type[BaseModel]:
     candidates = [model]
     for part in location:
+        if part in (ONE, SEVERAL):
+            continue
         if part in BRANCHES:
             candidates = [c for c in candidates if _is_branch(c, str(part))]
         elif isinstance(part, str):

@@ -8,6 +8,7 @@ from typing import Any
 
 from siggen.config import Config, State
 from siggen.config.oil import oils_of
+from siggen.faults.fault import Fault
 from siggen.keys.distributions import Choice
 from siggen.keys.teeth import drawn_teeth, most_teeth
 from siggen.seeding import Stage, named_uniforms
@@ -27,13 +28,15 @@ def with_drawn_parts(config: Config, specimen_id: int) -> Config:
 def has_drawn_parts(config: Config) -> bool:
     """Tell whether gearboxes differ in what `with_drawn_parts` gives."""
     return isinstance(config.dynamics.friction.oil, tuple) or any(
-        _gear(state) == "either" or isinstance(getattr(state.damage, "teeth", None), Choice) for state in config.states
+        _gear(one) == "either" or isinstance(getattr(one, "teeth", None), Choice)
+        for state in config.states
+        for one in state.damages
     )
 
 
 def possible_states(states: Mapping[int, State]) -> Iterator[dict[int, State]]:
     """Yield the states with each gear that may be damaged, at most of its teeth: what checks look at."""
-    either = any(_gear(state) == "either" for state in states.values())
+    either = any(_gear(one) == "either" for state in states.values() for one in state.damages)
     for gear in ("pinion", "gear") if either else ("pinion",):
         hit = partial(_most_hit, gear)
         yield {index: _state_hit(state, hit) for index, state in states.items()}
@@ -56,8 +59,8 @@ def _hit(damage: Any, gear: str, teeth: int | tuple[int, ...]) -> dict[str, obje
     return {"gear": gear if damage.gear == "either" else damage.gear, "teeth": teeth}
 
 
-def _gear(state: State) -> str | None:
-    return getattr(state.damage, "gear", None)
+def _gear(damage: Fault) -> str | None:
+    return getattr(damage, "gear", None)
 
 
 def _with_damage(config: Config, hit: Hit) -> Config:
@@ -65,9 +68,8 @@ def _with_damage(config: Config, hit: Hit) -> Config:
 
 
 def _state_hit(state: State, hit: Hit) -> State:
-    if state.damage is None or _gear(state) is None:
-        return state
-    return state.model_copy(update={"damage": state.damage.model_copy(update=hit(state.damage))})
+    hits = (one if _gear(one) is None else one.model_copy(update=hit(one)) for one in state.damages)
+    return state.with_damages(tuple(hits))
 
 
 def _with_oil(config: Config, oil: str) -> Config:

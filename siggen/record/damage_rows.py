@@ -10,6 +10,7 @@ from siggen.gears.damage.part import Parts
 from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
+from siggen.planning.state_config import state_config
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
 
@@ -25,7 +26,7 @@ def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
 @lru_cache(maxsize=8)  # records of one specimen and state come one after the other
 def _damage(config: Config, specimen_id: int, state_id: int) -> tuple[Parts, dict[str, object]]:
     """Return the damage of a state, and in sets that store edges those of damage that states none itself."""
-    specimen = draw_specimen(config, specimen_id)
+    specimen = draw_specimen(state_config(config, specimen_id, state_id), specimen_id)
     damage = state_damage(config, specimen_id, gear_pair(specimen.gears), state_id)
     if not has_drawn_edges(config):
         return damage, {}

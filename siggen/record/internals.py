@@ -12,9 +12,9 @@ from siggen.config import Config
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
 from siggen.keys.column import Column
-from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
+from siggen.planning.state_config import state_config
 from siggen.record.channels import measured_channels
 from siggen.record.quantities import internal_quantities, quantity_column
 from siggen.record.simulation import SpecimenState, record_response, specimen_state
@@ -36,7 +36,7 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
         If the record cannot be simulated; says why.
     """
     record = planned_record(config, record_id)
-    own = gearbox_config(config, record.specimen_id)
+    own = state_config(config, record.specimen_id, record.state_id)
     specimen, _, response, point = _simulated(own, record, internals=internals)
     stored, _ = measured_channels(own, specimen, record, response)
     columns: dict[str, np.ndarray] = {
@@ -68,7 +68,7 @@ def record_internals(
     SolverFailure
         If the record cannot be simulated; says why.
     """
-    own = gearbox_config(config, record.specimen_id)
+    own = state_config(config, record.specimen_id, record.state_id)
     specimen, state, response, point = _simulated(own, record, internals=True)
     return state, point, response.angle_rad, internal_quantities(specimen, response)
 

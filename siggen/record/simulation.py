@@ -21,12 +21,12 @@ from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
-from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
-from siggen.record.labels import damage_labels, gearbox_labels, operating_labels, state_labels
+from siggen.record.labels import damage_labels, operating_labels, state_labels
+from siggen.record.machine import Machine, machines
 from siggen.record.quantities import is_asked_for
 from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
@@ -39,7 +39,7 @@ from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, va
 from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
 from siggen.specimen.gears import stiffness_options
-from siggen.specimen.instrument import Instrument, history_s, settle_s, specimen_instrument
+from siggen.specimen.instrument import Instrument, history_s, settle_s
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import SpecimenMesh
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
@@ -101,10 +101,7 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
             specimen.dynamics, pair, damage, options, TABLE_POINTS,
             largest_force_n(config.operating_points, pair), lead_of(errors),
         )  # fmt: skip
-        labels = {
-            **damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m),
-            **state_labels(config, state_id),
-        }
+        labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
     return StateTeeth(pair, options, damage, errors, tables, labels, parts)
 
 
@@ -286,25 +283,22 @@ class _RefusedPieces:
 
 
 def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
-    with stage("plan"):
-        config = gearbox_config(whole, records[0].specimen_id)
-        specimen = draw_specimen(whole, records[0].specimen_id)
-        family = gearbox_labels(whole, specimen)
-        gears = MadeGears(config, specimen)
-    with stage("sensing"):
-        instrument = specimen_instrument(config, specimen)
-    state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(config, specimen, state_id, gears))
+    machine_of = machines(whole, records[0].specimen_id)
+    state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(machine_of(state_id), state_id))
+    machine_of(records[0].state_id)
     for record in records:
         try:
-            made = simulated(config, specimen, instrument, state_of(record.state_id), record)
-            yield replace(made, labels={**made.labels, **family}) if family else made
+            machine, state = machine_of(record.state_id), state_of(record.state_id)
+            made = simulated(machine.config, machine.specimen, machine.instrument, state, record)
+            labels = {**made.labels, **machine.labels, **state_labels(whole, record.state_id)}
+            yield replace(made, labels=labels)
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
 
 
-def _staged_state(config: Config, specimen: Specimen, state_id: int, gears: MadeGears) -> SpecimenState:
+def _staged_state(machine: Machine, state_id: int) -> SpecimenState:
     with stage("tables"):
-        return specimen_state(config, specimen, state_id, gears)
+        return specimen_state(machine.config, machine.specimen, state_id, machine.gears)
 
 
 def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[Record | RecordFailure]:

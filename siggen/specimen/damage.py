@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from siggen.config import Config
+from siggen.faults.fault import Fault
 from siggen.faults.growth import Growth
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.wear import LoadAtRest
@@ -44,12 +45,12 @@ def grown_damage(
     """Return `state_damage`, with that of the milder state from `milder_damage`, which takes its number."""
     config = gearbox_config(config, specimen_id)
     state = config.states[state_id]
-    milder = tuple(_milder(config, state_id))
-    before = milder_damage(milder[0][0]) if milder else ()
+    milder, older = tuple(_milder(config, state_id)), config.grown_from(state_id)
+    before = () if older is None else milder_damage(older)
     loads = partial(_load_at_rest, config, specimen_id, pair)
     growth = Growth(config.seed, specimen_id, state_id, pair, milder, before, loads)
     parts = before
-    for section in state.damages:
+    for section in sorted(state.damages, key=_rank):  # whatever order they were written in
         parts = _united(parts, section.drawn(growth))
     return tuple(one.sham() for one in parts) if state.sham else parts
 
@@ -58,6 +59,10 @@ def _load_at_rest(config: Config, specimen_id: int, pair: GearPair, force_n: flo
     """Return how the gears of a specimen share a force; what is drawn for it waits until a kind of damage asks."""
     specimen = draw_specimen(config, specimen_id)
     return load_at_rest(specimen.dynamics, pair, stiffness_options(specimen.stiffness), force_n)
+
+
+def _rank(section: Fault) -> str:
+    return section.model_dump_json()
 
 
 def _milder(config: Config, state_id: int) -> Iterator[tuple[int, object]]:

@@ -24,9 +24,9 @@ from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.transient import settling_steps
 from siggen.errors import UsageError
-from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.planning.state_config import state_config
 from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
@@ -55,7 +55,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         If what was drawn cannot be built; says why.
     """
     record = planned_record(whole, record_id)
-    config = gearbox_config(whole, record.specimen_id)
+    config = state_config(whole, record.specimen_id, record.state_id)
     specimen = draw_specimen(config, record.specimen_id)
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)

@@ -19,9 +19,9 @@ from siggen.gears.contact.table_columns import TableSolver, row_faces, table_sol
 from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
+from siggen.planning.state_config import state_config
 from siggen.record.internals import record_internals
 from siggen.record.simulation import SpecimenState, refused_as
 from siggen.specimen.contact import face_options, largest_force_n
@@ -86,7 +86,7 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
             "dynamics.mesh.law: received linear; allowed: pairs, whose tooth pairs have forces of their own"
         )
     record = planned_record(config, record_id)
-    config = gearbox_config(config, record.specimen_id)
+    config = state_config(config, record.specimen_id, record.state_id)
     torque_nm = draw_operating_point(config, record.specimen_id, record.operating_point_id).torque_nm
     if torque_nm < 0.0:
         raise UsageError(

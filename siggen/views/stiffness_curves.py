@@ -21,6 +21,7 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_complianc
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.planning.state_config import state_config
 from siggen.record.simulation import specimen_state
 from siggen.specimen.contact import largest_force_n, solves_across_the_face
 from siggen.specimen.damage import state_damage
@@ -140,7 +141,8 @@ def stiffness_meaning(config: Config, torque_nm: float) -> str:
 def _as_simulated(
     config: Config, specimen: Specimen, state_id: int, curve: StiffnessCurve, engagement: int, torque_nm: float
 ) -> StiffnessCurve:
-    state = specimen_state(config, specimen, state_id)
+    own = state_config(config, specimen.specimen_id, state_id)
+    state = specimen_state(own, draw_specimen(own, specimen.specimen_id), state_id)
     pair, angle, contact = state.pair, curve.angle_rad, state.static.contact
     if contact is None:
         return curve

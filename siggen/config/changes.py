@@ -1,0 +1,183 @@
+"""What a state changes about the healthy gearbox: keys with another number, or with theirs times or plus another one.
+
+The numbers of the gearbox stay drawn as they are: a factor or a shift acts on what was drawn, so that a changed gearbox
+is the healthy one but for these keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import BeforeValidator, PlainSerializer, ValidationError, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from siggen.errors import Problem
+from siggen.keys.distributions import DRAWN, Changed
+from siggen.keys.number import Number, Within, at
+from siggen.keys.problems import joined, nearest, received_text, refusal, refused_problems, section_problems
+from siggen.keys.section import Section
+from siggen.keys.wording import AllowedText
+
+SECTIONS = ("dynamics", "housing", "background", "variation", "manufacture", "sensors")
+"""Where a state may change keys; what lies elsewhere is what records of all states share, or what names them."""
+WORDS = ("oil",)
+"""Keys that hold a word and may be changed; all others hold numbers."""
+FIXED = ("position_mm", "integration_tolerance", "steps_per_sample")
+"""Numbers that say where a channel is or how it is computed."""
+HOW = ("times", "add")
+ALLOWED = "a number, a distribution, {times: x} or {add: x}"
+
+
+class Change(Section):
+    """One key and what becomes of it."""
+
+    path: str
+    how: Literal["to", "times", "add"] = "to"
+    value: Any
+
+    @property
+    def text(self) -> str:
+        """The change in words."""
+        sign = {"to": "=", "times": "times", "add": "plus"}[self.how]
+        return f"{self.path} {sign} {f'{self.value:g}' if isinstance(self.value, float) else self.value}"
+
+    def drawn(self, uniform: Callable[[str], float], state: str) -> Change:
+        """Return it with its own number drawn, by the name of the state and its key."""
+        if not isinstance(self.value, DRAWN):
+            return self
+        return self.model_copy(update={"value": at(self.value, uniform(f"changes.{state}.{self.path}"))})
+
+
+def _parsed(value: object) -> object:
+    """Return the changes that a mapping stands for, in the order of their keys; anything else as it is."""
+    if not isinstance(value, Mapping):
+        return value
+    found, problems = [], []
+    for path, given in sorted(value.items(), key=lambda item: str(item[0])):
+        try:
+            found.append(_change(str(path), given))
+        except PydanticCustomError as error:
+            problems += refused_problems(error, str(path))
+    if problems:
+        raise refusal(problems)
+    return tuple(found)
+
+
+def _change(path: str, given: object) -> Change:
+    if isinstance(given, Mapping) and "kind" not in given:
+        keys = [*given]
+        if len(keys) != 1 or keys[0] not in HOW:
+            raise refusal([Problem("", received_text(given), f"allowed: {ALLOWED}")])
+        return Change(path=path, how=keys[0], value=Within().parse(given[keys[0]]))
+    if isinstance(given, str):
+        return Change(path=path, value=given)
+    if given is None or isinstance(given, (bool, list, tuple)):
+        raise refusal([Problem("", received_text(given), f"allowed: {ALLOWED}")])
+    return Change(path=path, value=Within().parse(given))
+
+
+def _written(changes: Sequence[Change]) -> dict[str, Any]:
+    plain = ((one, one.value.model_dump() if isinstance(one.value, Section) else one.value) for one in changes)
+    return {one.path: value if one.how == "to" else {one.how: value} for one, value in plain}
+
+
+Changes: TypeAlias = Annotated[
+    tuple[Change, ...],
+    BeforeValidator(_parsed),
+    PlainSerializer(_written),
+    WithJsonSchema({"type": "object", "additionalProperties": True}),
+    AllowedText(f"a mapping from keys, such as dynamics.friction.oil_temperature_c, to {ALLOWED}"),
+]
+
+
+def changed_sections(sections: Mapping[str, Any], changes: Sequence[Change]) -> dict[str, Any]:
+    """Return the sections with these keys changed, by name; those that stay are left out.
+
+    Parameters
+    ----------
+    sections : mapping
+        Valid sections of a configuration; lists as tuples or as mappings from their index.
+    changes : sequence of Change
+
+    Raises
+    ------
+    PydanticCustomError
+        With the key's path, where a key is none or may not become that.
+    """
+    found: dict[str, Any] = {}
+    for one in changes:
+        name, *below = one.path.split(".")
+        if name not in SECTIONS or not below:
+            near = nearest(one.path, _paths(sections)) if name not in sections else ""
+            raise _refused(one, f"allowed: keys below {', '.join(SECTIONS)}; all else is the same in all states{near}")
+        found[name] = _replaced({**sections, **found}.get(name), below, one)
+    return found
+
+
+def _replaced(value: Any, parts: Sequence[str], change: Change) -> Any:
+    """Return a section, or a list of them, with the key at a path below it changed."""
+    if isinstance(value, (tuple, Mapping)):
+        return _in_list(value, parts, change)
+    if not isinstance(value, Section):
+        raise _refused(change, "allowed: keys of sections that the file has; this one is null")
+    name, *below = parts
+    fields = type(value).model_fields
+    if name not in fields:
+        raise _refused(change, f"there is no such key{nearest(name, [*fields]) or ';'} known keys: {', '.join(fields)}")
+    own = getattr(value, name)
+    new = _replaced(own, below, change) if below else _leaf(value, name, own, change)
+    try:
+        return type(value).model_validate({**{key: getattr(value, key) for key in fields}, name: new})
+    except ValidationError as error:
+        problem = section_problems(type(value), error.errors(include_url=False))[0]
+        raise _refused(change, problem.allowed, problem.received) from None
+
+
+def _in_list(entries: Any, parts: Sequence[str], change: Change) -> Any:
+    """Return a list in which the entry of a name, or of an index, is changed."""
+    numbered = dict(entries) if isinstance(entries, Mapping) else dict(enumerate(entries))
+    names = {one.name: index for index, one in numbered.items()}
+    index = names.get(parts[0], int(parts[0]) if parts[0].isdecimal() else -1)
+    if index not in numbered or len(parts) == 1:
+        raise _refused(change, f"allowed: a key of one of {', '.join(names)}{nearest(parts[0], [*names])}")
+    numbered[index] = _replaced(numbered[index], parts[1:], change)
+    return numbered if isinstance(entries, Mapping) else tuple(numbered.values())
+
+
+def _leaf(section: Section, name: str, own: Any, change: Change) -> Any:
+    """Return what a key becomes."""
+    field = type(section).model_fields[name]
+    numeric = isinstance(own, float) or any(isinstance(mark, Within) for mark in field.metadata)
+    if name in FIXED or not (numeric or name in WORDS):
+        raise _refused(change, "allowed: keys with numbers of the machine or of a sensor, and dynamics.friction.oil")
+    if change.how == "to":
+        return change.value
+    if isinstance(own, tuple) and all(isinstance(one, (float, *DRAWN)) for one in own):
+        return tuple(_number(one, change) for one in own)
+    if not isinstance(own, (float, *DRAWN)):
+        raise _refused(
+            change, f"allowed: a number or a distribution in its place, since the key is {received_text(own)}"
+        )
+    return _number(own, change)
+
+
+def _number(own: Any, change: Change) -> Number:
+    if isinstance(own, float) and isinstance(change.value, float):
+        return own * change.value if change.how == "times" else own + change.value
+    return Changed(own, times=change.value) if change.how == "times" else Changed(own, add=change.value)
+
+
+def _refused(change: Change, allowed: str, received: str = "") -> PydanticCustomError:
+    return refusal([Problem(change.path, received or change.text, allowed)])
+
+
+def _paths(sections: Mapping[str, Any]) -> list[str]:
+    return [joined(name, path) for name in SECTIONS for path in _keys(sections.get(name))]
+
+
+def _keys(value: Any) -> Iterator[str]:
+    if isinstance(value, Section):
+        for name in type(value).model_fields:
+            yield name
+            yield from (f"{name}.{path}" for path in _keys(getattr(value, name)))

@@ -1,0 +1,47 @@
+"""A gearbox as its states share it: what is drawn for it, how it was made, and what measures it.
+
+States that change nothing share the healthy machine. A state that changes keys has a machine of its own, drawn with the
+same uniforms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+from siggen.config import Config
+from siggen.planning.gearbox import gearbox_config
+from siggen.planning.specimen import Specimen, draw_specimen
+from siggen.planning.state_config import state_config
+from siggen.record.labels import gearbox_labels
+from siggen.record.stage_times import stage
+from siggen.specimen.instrument import Instrument, specimen_instrument
+from siggen.specimen.made_gears import MadeGears
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """Configuration of a gearbox, its numbers, its gears, its instrument, and the labels that all its records share."""
+
+    config: Config
+    specimen: Specimen
+    gears: MadeGears
+    instrument: Instrument
+    labels: dict[str, object]
+
+
+def machines(whole: Config, specimen_id: int) -> Callable[[int], Machine]:
+    """Return state -> the machine of a gearbox in that state; the healthy one is kept, and the last changed one."""
+    shared = lru_cache(maxsize=1)(lambda: _machine(whole, gearbox_config(whole, specimen_id), specimen_id))
+    changed = lru_cache(maxsize=1)(lambda state: _machine(whole, state_config(whole, specimen_id, state), specimen_id))
+    return lambda state: changed(state) if whole.changes_of(state) else shared()
+
+
+def _machine(whole: Config, config: Config, specimen_id: int) -> Machine:
+    with stage("plan"):
+        specimen = draw_specimen(config, specimen_id)
+        labels = gearbox_labels(whole, specimen)
+        gears = MadeGears(config, specimen)
+    with stage("sensing"):
+        return Machine(config, specimen, gears, specimen_instrument(config, specimen), labels)

@@ -1,0 +1,41 @@
+"""No key that a state may change adds or takes a column, but where that is refused by its name."""
+
+from __future__ import annotations
+
+from pydantic_core import PydanticCustomError
+
+import siggen
+from siggen.checks.state_problems import _columns
+from siggen.columns.record import label_columns
+from siggen.config import Config
+from siggen.config.changes import Change, _paths, changed_sections
+from siggen.keys.distributions import Uniform
+
+OVERRIDES = (
+    "manufacture={accuracy_class: 6}",
+    "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, second_stage: {order: 7}}",
+    "sensors.0.mounting={frequency_hz: 8000, damping_ratio: 0.05}",
+    "variation={}",
+)
+SOME = Uniform(low=0.3, high=0.4)
+
+
+def test_columns_follow_from_the_healthy_gearbox_alone() -> None:
+    config = siggen.load_config("industrial", list(OVERRIDES))
+    sections = {name: getattr(config, name) for name in Config.model_fields}
+    first = config.sensors[0].name
+    paths = [*_paths(sections), *(f"sensors.{first}.{key}" for key in ("gain", "range_m_s2", "mounting.frequency_hz"))]
+    tried, told = 0, set()
+    for path in paths:
+        for value in (0.35, SOME):
+            try:
+                changed = changed_sections(sections, [Change(path=path, value=value)])
+            except PydanticCustomError:
+                continue
+            tried += 1
+            if label_columns(config.model_copy(update=changed)) != label_columns(config):
+                after = _columns({**sections, **changed})
+                told |= {name for name, present in _columns(sections).items() if present != after[name]}
+                assert after != _columns(sections), path
+    assert tried > 80
+    assert told == {"variation", "manufacture.crowning_um"}

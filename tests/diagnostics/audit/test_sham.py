@@ -1,0 +1,72 @@
+"""A sham that nothing tells from healthy records passes; one that a leak tells does not, and the summary says so."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnostics.audit.column_attackers import best_column
+from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.sham import sham_sentences, shams_found
+from diagnostics.statistics.detector import judged_detector
+
+GEARBOXES = 24
+SPECIMEN = np.repeat(np.arange(GEARBOXES), 4)
+STATES = np.tile(["healthy", "again", "sham", "severe"], GEARBOXES)
+LABELS = {
+    "specimen_id": SPECIMEN,
+    "state": STATES,
+    "state_id": np.tile(np.arange(4), GEARBOXES),
+    "fault": np.where(STATES == "severe", "spalling", "healthy"),
+    "sham": STATES == "sham",
+    "speed_hz": np.full(SPECIMEN.size, 30.0),
+    "torque_nm": np.ones(SPECIMEN.size),
+    "damaged_area_mm2": np.where(STATES == "severe", 4.0, 0.0),
+}
+
+
+def measured(**labels: np.ndarray) -> MeasuredSet:
+    values = {"pulses_per_s": np.full((SPECIMEN.size, 1), 30.0)}
+    return MeasuredSet({**LABELS, **labels}, (), values, (), [], [], np.zeros((SPECIMEN.size, 1)), {}, [])
+
+
+def noise(seed: int) -> np.ndarray:
+    return np.random.default_rng(seed).standard_normal((SPECIMEN.size, 3))
+
+
+def test_noise_tells_a_sham_as_often_as_chance_does() -> None:
+    found = [shams_found(measured(), [best_column("x", noise(seed), ("a", "b", "c"))], seed)[0] for seed in range(20)]
+    # more than 4 of 20 at 5 % each come in 0.3 % of the cases; the seeds are fixed
+    assert sum(one.told for one in found) <= 4
+    passed = next(one for one in found if not one.told)
+    assert "leaks" not in sham_sentences([passed])[0]
+
+
+def test_a_leak_tells_a_sham() -> None:
+    leaking = best_column("columns", noise(0) + 3.0 * (STATES == "sham")[:, None], ("a", "b", "c"))
+    (found,) = shams_found(measured(), [leaking], 0)
+    assert found.told
+    assert found.auc.value == 1.0
+    assert "leaks" in sham_sentences([found])[0]
+
+
+def test_damage_beside_it_does_not_count() -> None:
+    # a column that tells damage and nothing else: a sham that stood among damaged records would be told by it
+    damage = best_column("columns", noise(1) + 9.0 * (STATES == "severe")[:, None], ("a", "b", "c"))
+    assert not shams_found(measured(), [damage], 0)[0].told
+
+
+def test_sets_without_one_are_asked_nothing() -> None:
+    without = measured()
+    del without.labels["sham"]
+    assert shams_found(without, [best_column("columns", noise(0), ("a", "b", "c"))], 0) == ()
+
+
+def test_a_detector_has_the_area_of_shams_against_other_healthy_records() -> None:
+    score = np.where(STATES == "sham", 1.0, 0.0)
+    labels = {name: LABELS[name] for name in LABELS if name not in ("speed_hz", "torque_nm")}
+    found = judged_detector("planted", score, labels, seed=0)
+    assert found is not None
+    assert found.sham is not None
+    assert found.sham.value == 1.0
+    del labels["sham"]
+    assert judged_detector("planted", score, labels, seed=0).sham is None  # type: ignore[union-attr]

@@ -1,0 +1,138 @@
+"""A state that changes keys is the healthy gearbox but for these keys: same draws, and no other state moves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, record_schema
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.planning.specimen import draw_specimen
+from siggen.planning.state_config import state_config
+from siggen.record.simulation import simulate
+from tests.config.minimal import minimal
+
+SPREAD = {"kind": "uniform", "low": 0.05, "high": 0.10}
+HOT = {"name": "hot", "fault": "lubrication", "severity": "moderate"}
+
+
+def config(*states: dict[str, Any], **more: Any) -> Config:
+    dynamics = {"model": "6dof", "mesh_damping_ratio": SPREAD, "mesh": {"law": "linear"}, "friction": {"model": "off"}}
+    raw = minimal(specimens=2, duration_s=0.05, fs_hz=20480.0, mesh_harmonics=3, dynamics=dynamics)
+    sensors = [{"name": "bearing", "gain": {"kind": "uniform", "low": 0.95, "high": 1.05}}, {"name": "other"}]
+    return load_config(raw | {"sensors": sensors, "states": [{"name": "healthy"}, *states]} | more)
+
+
+def changed(changes: dict[str, Any], **more: Any) -> dict[str, Any]:
+    return {**HOT, "changes": changes, **more}
+
+
+def record(chosen: Config, record_id: int) -> Record:
+    result = simulate(chosen, [record_id])[0]
+    assert isinstance(result, Record), result
+    return result
+
+
+def signals(found: Record) -> dict[str, bytes]:
+    return {name: signal.tobytes() for name, signal in found.channels.items()}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"dynamics.mesh_damping_ratio": {"times": 1}}, {"sensors.bearing.gain": {"add": 0}}, {"dynamics.backlash_um": 80}],
+)
+def test_what_changes_nothing_gives_the_bytes_of_healthy(changes: dict[str, Any]) -> None:
+    found = record(config(changed(changes)), 1)
+    assert signals(found) == signals(record(config({"name": "again"}), 1))
+    assert found.labels["changed_keys"] == [*changes]
+
+
+def test_no_changes_is_healthy() -> None:
+    empty, without = config({"name": "again", "changes": {}}), config({"name": "again"})
+    assert empty.identity == without.identity
+    assert record_schema(empty) == record_schema(without)
+
+
+def test_a_patch_is_the_set_whose_healthy_gearbox_has_these_numbers() -> None:
+    patch = {"dynamics.mesh_damping_ratio": {"times": 0.5}, "dynamics.pinion.mass_kg": 2, "sensors.bearing.gain": 0.5}
+    found = config(changed(patch), {"name": "last"})
+    half = {"kind": "uniform", "low": 0.025, "high": 0.05}
+    dynamics = {
+        "model": "6dof", "mesh_damping_ratio": half, "mesh": {"law": "linear"}, "friction": {"model": "off"},
+        "pinion": {"mass_kg": 2},
+    }  # fmt: skip
+    sensors = [{"name": "bearing", "gain": 0.5}, {"name": "other"}]
+    same = config({"name": "again"}, {"name": "last"}, dynamics=dynamics, sensors=sensors)
+    for patched in (1, 4):  # both gearboxes
+        assert signals(record(found, patched)) == signals(record(same, patched))
+    # and the healthy states beside it are those of the set without a patch
+    plain = config({"name": "again"}, {"name": "last"})
+    for other in (0, 2, 3, 5):
+        assert signals(record(found, other)) == signals(record(plain, other))
+
+
+def test_factor_and_shift_act_on_what_the_healthy_gearbox_drew() -> None:
+    chosen = config(changed({"dynamics.mesh_damping_ratio": {"times": 2}, "dynamics.backlash_um": {"add": 40}}))
+    for gearbox in range(2):
+        healthy = draw_specimen(chosen, gearbox).dynamics
+        own = draw_specimen(state_config(chosen, gearbox, 1), gearbox).dynamics
+        assert own.mesh_damping_ratio == 2.0 * healthy.mesh_damping_ratio
+        assert own.backlash_um == healthy.backlash_um + 40.0
+
+
+def test_a_drawn_change_belongs_to_gearbox_and_state_and_stays_while_it_grows() -> None:
+    wide = {"dynamics.backlash_um": {"add": {"kind": "uniform", "low": 10, "high": 200}}}
+    worse = {"name": "worse", "fault": "lubrication", "severity": "severe", "grows_from": "hot"}
+    chosen = config(changed(wide), {**worse, "changes": {"dynamics.motor_inertia_kg_m2": {"times": 2}}})
+    drawn = [[draw_specimen(state_config(chosen, g, s), g).dynamics for s in range(3)] for g in range(2)]
+    assert drawn[0][1].backlash_um == drawn[0][2].backlash_um != drawn[1][1].backlash_um
+    assert drawn[0][2].motor_inertia_kg_m2 == 2.0 * drawn[0][0].motor_inertia_kg_m2
+    assert [one.path for _, one in chosen.changes_of(2)] == ["dynamics.backlash_um", "dynamics.motor_inertia_kg_m2"]
+
+
+def test_a_sensors_fault_is_in_its_channel_alone() -> None:
+    found = record(config(changed({"sensors.bearing.gain": {"times": 0.5}}, fault="sensor")), 1)
+    same = record(config({"name": "again"}), 1)
+    assert [name for name in found.channels if found.channels[name].tobytes() != same.channels[name].tobytes()] == [
+        "bearing_vertical"
+    ]
+    assert found.labels["faulty_gear"] == "none"
+    assert found.labels["fault"] == "sensor"
+
+
+def test_a_state_at_the_end_moves_no_other() -> None:
+    alone, more = config(), config(changed({"dynamics.pinion.mass_kg": 2}))
+    for one, other in ((0, 0), (1, 2)):  # the healthy state of both gearboxes
+        assert signals(record(alone, one)) == signals(record(more, other))
+
+
+@pytest.mark.parametrize(
+    ("path", "change", "said"),
+    [
+        ("fs_hz", 10000, "same in all states"),
+        ("gears.module_mm", 4, "same in all states"),
+        ("operating_points.0.speed_hz", {"times": 2}, "same in all states"),
+        ("sensors.bearing.name", "x", "keys with numbers"),
+        ("sensors.bearing.axes", 2, "keys with numbers"),
+        ("dynamics.model", "8dof", "keys with numbers"),
+        ("dynamics.mesh_dampin_ratio", 0.1, "did you mean 'mesh_damping_ratio'"),
+        ("dynamic.backlash_um", 0.1, "did you mean 'dynamics"),
+        ("sensors.bering.gain", 0.1, "did you mean 'bearing'"),
+        ("dynamics.backlash_um", {"add": -500}, "at least 0"),
+        ("dynamics.backlash_um", -5, "at least 0"),
+        ("dynamics.mesh_damping_ratio", {"times": 20}, "below 1"),
+        ("dynamics.backlash_um", {"times": 2, "add": 1}, "{add: x}"),
+        ("dynamics.backlash_um", None, "{add: x}"),
+        ("variation.speed.random_rms", 0.001, "leaves the columns"),
+        ("manufacture.accuracy_class", 5, "this one is null"),
+    ],
+)
+def test_what_may_not_change_is_refused_by_its_key(path: str, change: object, said: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        config(changed({path: change}))
+    text = str(refused.value)
+    assert f"states.1.changes{'' if 'columns' in said else f'.{path}'}" in text
+    assert said in text

@@ -1,0 +1,104 @@
+"""Several damages at once: each is there as if it were alone, whatever their order in the file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, record_schema
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.record.simulation import damage_rows, simulate
+from tests.config.minimal import minimal
+
+SIZE = {"face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.3}
+PITS = {
+    "kind": "list",
+    "pits": [{"tooth": 3, "face_mm": 8.0, "semi_axis_face_mm": 1.5, "semi_axis_profile_mm": 0.5, "depth_mm": 0.3}],
+}
+SPALL = {"kind": "spall", "gear": "gear", "teeth": [20], **SIZE}
+
+
+def config(*states: dict[str, Any]) -> Config:
+    dynamics = {"model": "6dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
+    small = {"specimens": 1, "duration_s": 0.2, "fs_hz": 20480.0, "mesh_harmonics": 3, "dynamics": dynamics}
+    sensors = [{"name": "bearing", "noise": None, "bits": None}]
+    return load_config(minimal(**small, sensors=sensors, states=[{"name": "healthy"}, *states]))
+
+
+def state(*damage: dict[str, Any], **more: Any) -> dict[str, Any]:
+    return {"name": "severe", "damage": [*damage], **more}
+
+
+def record(chosen: Config, record_id: int = 1) -> Record:
+    result = simulate(chosen, [record_id])[0]
+    assert isinstance(result, Record), result
+    return result
+
+
+def test_two_faults_on_different_teeth_superpose() -> None:
+    healthy, pitted, spalled, both = (
+        record(config(one)) for one in ({"name": "again"}, state(PITS), state(SPALL), state(PITS, SPALL))
+    )
+    name = next(iter(healthy.channels))
+    base, first, second, found = (one.channels[name].astype(np.float64) for one in (healthy, pitted, spalled, both))
+    assert both.labels["contact_loss_share"] == 0.0
+    assert min(np.std(first - base), np.std(second - base)) > 1e-3 * np.std(base)
+    # 5 %: a parametric mesh is linear in a small loss of stiffness only
+    apart = np.std(found - (first + second - base))
+    assert apart < 0.05 * np.std(found - base)
+
+
+def test_their_order_does_not_matter() -> None:
+    one, other = config(state(PITS, SPALL)), config(state(SPALL, PITS))
+    first, second = record(one), record(other)
+    assert all(first.channels[name].tobytes() == second.channels[name].tobytes() for name in first.channels)
+    assert first.labels == second.labels
+    assert damage_rows(one, 1) == damage_rows(other, 1)
+
+
+def test_each_is_the_one_that_it_is_alone() -> None:
+    rows = damage_rows(config(state(PITS, SPALL)), 1)
+    alone = [row for one in (PITS, SPALL) for row in damage_rows(config(state(one)), 1)]
+    assert sorted(map(str, rows)) == sorted(map(str, alone))
+    found, listed = record(config(state(SPALL))), record(config({"name": "severe", "damage": SPALL}))
+    name = next(iter(found.channels))
+    assert found.channels[name].tobytes() == listed.channels[name].tobytes()
+
+
+def test_labels_say_each_kind() -> None:
+    chosen = config(
+        {"name": "slight", "damage": PITS}, state(SPALL, {**PITS, "pits": [{**PITS["pits"][0], "tooth": 5}]})
+    )
+    labels = record(chosen, 2).labels
+    assert (labels["fault"], labels["faulty_gear"]) == ("combined", "both")
+    assert (labels["has_pitting"], labels["has_spalling"]) == (True, True)
+    assert labels["faulty_teeth_pinion"] == [3, 5]  # the milder state's too
+    slight = record(chosen, 1).labels
+    assert (slight["fault"], slight["has_pitting"], slight["has_spalling"]) == ("pitting", True, False)
+    assert not [name for name in record_schema(config(state(PITS))).names if name.startswith("has_")]
+
+
+def test_a_sham_may_have_several() -> None:
+    sham = record(config({"name": "sham", "sham": True, "damage": [PITS, SPALL]}))
+    healthy = record(config({"name": "again"}))
+    assert all(sham.channels[name].tobytes() == healthy.channels[name].tobytes() for name in healthy.channels)
+
+
+@pytest.mark.parametrize(
+    ("damage", "path"),
+    [
+        ([], "states.1.damage"),
+        ([3], "states.1.damage.0"),
+        ([PITS, {"kind": "spal"}], "states.1.damage.1.kind"),
+        ([PITS, {**SPALL, "depth_mm": 90.0}], "states.1.damage.1.depth_mm"),
+        ([PITS, {**SPALL, "teeth": [90]}], "states.1.damage.1.teeth"),
+    ],
+)
+def test_a_mistake_in_one_is_told_with_its_place(damage: list[Any], path: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        config({"name": "severe", "damage": damage})
+    assert f"{path}:" in str(refused.value)
