@@ -1,5 +1,6 @@
 """The kinds of damage that a state may have: a new one is a line here."""
 
+from siggen.faults.chip import ChippedTeeth
 from siggen.faults.clustered import ClusteredPits
 from siggen.faults.fault import Fault
 from siggen.faults.irregular import IrregularSpalls
@@ -8,4 +9,4 @@ from siggen.faults.listed import ListedPits
 from siggen.faults.spalls import Spalls
 from siggen.faults.wear import FlankWear
 
-KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, FlankWear]
+KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, FlankWear, ChippedTeeth]
