@@ -8,6 +8,7 @@ from siggen.config import Config, by_reference
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
 from siggen.keys.drawing import corners
 from siggen.planning.gearbox import pair_configs
@@ -47,12 +48,14 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     """
     possible = ((own, gear_pair(corner)) for own in pair_configs(config) for corner in corners(own.gears))
     own, pair = max(possible, key=lambda one: _contact_ratio(one[1]))
+    reaches = (one.reach_pitches(pair) for state in own.states for one in state.damages)
+    reach = max(reaches, default=CORNER_REACH_PITCHES)
     specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
     mesh = SpecimenMesh(
         pair,
         structure(own, specimen),
         mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=TABLE_POINTS),
-        WavyTeeth(teeth_missing(specimen.dynamics, pair, TABLE_POINTS), pair),
+        WavyTeeth(teeth_missing(specimen.dynamics, pair, TABLE_POINTS, reach), pair),
     )
     step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
     dynamics = specimen.dynamics

@@ -15,6 +15,7 @@ from siggen.faults.growth import Growth
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.keys.column import Column
 from siggen.keys.number import Number
 from siggen.keys.problems import BRANCHES
@@ -102,6 +103,10 @@ class Fault(Section):
     def own_edge_radius(self) -> tuple[str, Number] | None:
         """Key and number of the radius [mm] if each damage draws one; else all have that of the section dynamics."""
         return None
+
+    def reach_pitches(self, pair: GearPair) -> float:  # noqa: ARG002
+        """Return how far beside the path of contact corners may carry at most [base pitches]."""
+        return CORNER_REACH_PITCHES
 
     def hit_teeth(self) -> HitTeeth:
         """Yield what names teeth; as it stands, for damage on neighbouring teeth of one gear."""

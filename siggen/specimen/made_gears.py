@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from siggen.config import Config
-from siggen.gears.damage.flank_loss import Losses, from_flanks, with_losses
+from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
@@ -75,5 +75,6 @@ class MadeGears:
 
     def _computed_missing(self, drawn_for: int, losses: Losses) -> WavyTeeth:
         pair = self.pair
-        plain = with_losses(teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS), pair, losses)
+        whole = teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS, reach_pitches(pair, losses))
+        plain = with_losses(whole, pair, losses)
         return WavyTeeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), pair, self._waves(drawn_for))

@@ -23,7 +23,12 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.pair_motion import MeanState, PairMotion
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
+from siggen.gears.geometry.missing_material import (
+    CORNER_REACH_PITCHES,
+    MissingMaterial,
+    TipRelief,
+    missing_material,
+)
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
@@ -75,11 +80,13 @@ class SpecimenMesh:
         return back, OperatingPoint(point.speed_hz / ratio, -point.torque_nm * ratio)
 
 
-def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
-    """Return the missing material of the teeth of a drawn `dynamics` section."""
+def teeth_missing(
+    dynamics: Dynamics, pair: GearPair, points: int, reach_pitches: float = CORNER_REACH_PITCHES
+) -> MissingMaterial:
+    """Return the missing material of the teeth of a drawn `dynamics` section; corners are followed for a reach."""
     mesh = dynamics.mesh
     relief = TipRelief(1e-6 * constant(mesh.tip_relief_um), RELIEF_LENGTH * pair.base_pitch_m)
-    return missing_material(pair, relief, points=points)
+    return missing_material(pair, relief, points=points, reach_pitches=reach_pitches)
 
 
 def specimen_motion(

@@ -23,6 +23,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "list": {"pits": [{"face_mm": 8.0, **PIT}]},
     "irregular": {"face_share": 1.0, "profile_length_mm": 1.5, "depth_mm": 0.4},
     "crack": {"depth_share": 0.25},
+    "chip": {"height_mm": "whole"},
     "wear": {"depth_um": 20.0},
     "bearing_spall": {"element": "inner", "length_mm": 2.0, "depth_mm": 0.1},
 }  # fmt: skip

@@ -7,24 +7,36 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Protocol, TypeGuard
+from typing import Protocol, TypeAlias, TypeGuard
 
 import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.part import NO_TOOTH, Part
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, MissingMaterial, ToothTables
 
 
 class FlankLoss(Part, Protocol):
-    """A part that takes material from the drive flanks over the whole face; `tooth` -1 for all teeth of its gear."""
+    """A part that takes material from drive flanks over the whole face; `tooth` -1 for all teeth of its gear.
+
+    Attributes
+    ----------
+    whole_tooth : bool
+        Whether nothing of its tooth is left, the back flank neither.
+    """
+
+    @property
+    def whole_tooth(self) -> bool: ...  # noqa: D102 - see the class
 
     def missing_m(self, pair: GearPair, position_m: FloatArray) -> FloatArray:
         """Return what it takes at positions s (k,) of a pair, outside of the path of contact too, (k,) [m]."""
 
+    def reach_pitches(self, pair: GearPair) -> float:
+        """Return how far beside the path of contact corners may carry [base pitches]."""
 
-Losses = tuple[FlankLoss, ...]
+
+Losses: TypeAlias = tuple[FlankLoss, ...]
 
 
 def from_flanks(parts: Iterable[Part]) -> Losses:
@@ -37,10 +49,16 @@ def takes_from_flanks(part: Part) -> TypeGuard[FlankLoss]:
     return hasattr(part, "missing_m")
 
 
+def reach_pitches(pair: GearPair, losses: Losses) -> float:
+    """Return how far beside the path of contact the corners of such teeth are followed [base pitches]."""
+    return max([CORNER_REACH_PITCHES, *(one.reach_pitches(pair) for one in losses)])
+
+
 def with_losses(missing: MissingMaterial, pair: GearPair, losses: Losses) -> MissingMaterial:
     """Return the missing material of the same teeth without what `losses` take; the same object without any.
 
-    Several that take from the same flank leave what the one leaves that takes most: the order has no effect.
+    Of several that take from all teeth that counts which takes most, and of those of one tooth too: the order has no
+    effect. What one tooth misses comes to what all miss.
     """
     if not losses:
         return missing
@@ -53,10 +71,23 @@ def with_losses(missing: MissingMaterial, pair: GearPair, losses: Losses) -> Mis
 
 
 def _without(teeth: ToothTables, pair: GearPair, position_m: FloatArray, losses: list[FlankLoss]) -> ToothTables:
-    profile = teeth.profile_m
+    everywhere = _most(pair, position_m, [one for one in losses if one.tooth == NO_TOOTH])
+    profiles, kind, offset = [*(teeth.profile_m + everywhere)], teeth.kind_of_tooth.copy(), teeth.offset_m.copy()
+    for tooth in sorted({one.tooth for one in losses} - {NO_TOOTH}):
+        own = [one for one in losses if one.tooth == tooth]
+        profile = profiles[kind[tooth]] + _most(pair, position_m, own)
+        if any(one.whole_tooth for one in own):
+            # Out of reach on either side: its place is behind all others', and its flank as far in front of that.
+            offset[tooth] -= pair.base_pitch_m
+            profile = profile + 2.0 * pair.base_pitch_m
+        kind[tooth] = len(profiles)
+        profiles.append(profile)
+    return ToothTables(np.stack(profiles), kind, offset)
+
+
+def _most(pair: GearPair, position_m: FloatArray, losses: list[FlankLoss]) -> FloatArray:
+    """Return the most that any of them takes at positions (k,) [m]; 0 without any."""
+    most = np.zeros(position_m.size)
     for one in losses:
-        if one.tooth != NO_TOOTH:
-            raise ValueError(f"tooth: received {one.tooth}; allowed: {NO_TOOTH}, all teeth")
-    if losses:
-        profile = profile + np.max([one.missing_m(pair, position_m) for one in losses], axis=0)
-    return replace(teeth, profile_m=profile)
+        most = np.maximum(most, one.missing_m(pair, position_m))
+    return most

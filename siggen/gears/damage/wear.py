@@ -22,6 +22,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.damage.part import NO_TOOTH, Part, Refusal
 from siggen.gears.damage.sham import SHAM
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 
 POINTS = 513
 """Of a worn profile from s_A to s_E: 30 µm of a usual path, where pairs change the depth has a step of this width."""
@@ -61,6 +62,11 @@ class Wear:
     kind: str = "wear"
 
     @property
+    def whole_tooth(self) -> bool:
+        """Return False: wear leaves every tooth its flanks."""
+        return False
+
+    @property
     def depth_m(self) -> float:
         """Largest depth [m]."""
         return max(self.depths_m)
@@ -69,6 +75,10 @@ class Wear:
         """Return what is worn at positions s (k,) [m]."""
         places = np.linspace(pair.contact_start_m, pair.contact_end_m, len(self.depths_m))
         return np.interp(position_m, places, self.depths_m)
+
+    def reach_pitches(self, pair: GearPair) -> float:  # noqa: ARG002
+        """Return what holds for whole tips."""
+        return CORNER_REACH_PITCHES
 
     def hides(self, other: Part) -> bool:
         """Return whether it is nowhere less deep than milder wear of the same gear."""

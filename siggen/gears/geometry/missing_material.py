@@ -7,13 +7,14 @@ relief, the corner of the tip outside the path of contact, and one constant per 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.gears.geometry.corner_contact import tip_gap_m
+from siggen.gears.geometry.corner_contact import tip_gap_m, touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 
 CORNER_REACH_PITCHES = 0.15
@@ -52,11 +53,17 @@ class MissingMaterial:
 
 
 def missing_material(
-    pair: GearPair, relief: TipRelief | None = None, *, corner_contact: bool = True, points: int = 2049
+    pair: GearPair,
+    relief: TipRelief | None = None,
+    *,
+    corner_contact: bool = True,
+    points: int = 2049,
+    reach_pitches: float = CORNER_REACH_PITCHES,
 ) -> MissingMaterial:
     """Return the missing material of gears whose teeth are all alike.
 
-    Without corner contact the tables end with the path of contact: a pair that enters is loaded at once.
+    Without corner contact the tables end with the path of contact: a pair that enters is loaded at once. With it they
+    reach `reach_pitches` base pitches further at both ends.
 
     Raises
     ------
@@ -68,17 +75,25 @@ def missing_material(
     if relief is not None and not (relief.amount_m >= 0.0 and 0.0 < relief.length_m <= pair.base_pitch_m):
         allowed = f"allowed are amounts from 0 and lengths above 0 up to a base pitch, {pair.base_pitch_m:.6g} m"
         raise ValueError(f"tip relief: received {relief.amount_m} m over {relief.length_m} m; {allowed}")
-    reach_m = CORNER_REACH_PITCHES * pair.base_pitch_m if corner_contact else 0.0
+    reach_m = reach_pitches * pair.base_pitch_m if corner_contact else 0.0
     start_m, end_m = pair.contact_start_m - reach_m, pair.contact_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)
-    return MissingMaterial(
-        start_m, end_m, _teeth(pair, "pinion", relief, position_m), _teeth(pair, "gear", relief, position_m)
-    )
+    # Where corners carry far beside the path, their gap counts at the place where they touch. Within the usual reach
+    # that moves less than 3 % of a deflection, and records stay what they were.
+    gap = tip_gap_m if reach_pitches <= CORNER_REACH_PITCHES else touching_gap_m
+    pinion, gear = (_teeth(pair, which, relief, position_m, gap) for which in ("pinion", "gear"))
+    return MissingMaterial(start_m, end_m, pinion, gear)
 
 
-def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:
+def _teeth(
+    pair: GearPair,
+    which: str,
+    relief: TipRelief | None,
+    position_m: FloatArray,
+    gap: Callable[[GearPair, str, FloatArray], FloatArray],
+) -> ToothTables:
     to_tip_m = pair.contact_end_m - position_m if which == "pinion" else position_m - pair.contact_start_m
-    profile = tip_gap_m(pair, which, position_m)
+    profile = gap(pair, which, position_m)
     if relief is not None:
         share = np.clip(1.0 - np.maximum(to_tip_m, 0.0) / relief.length_m, 0.0, None)
         profile = profile + relief.amount_m * share**2

@@ -1,0 +1,110 @@
+"""Chipped and broken teeth of a state: from the configuration to records, labels, growth and messages."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.checks.quantity_names import available_quantities
+from siggen.columns.record import Record
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.record.damage_rows import damage_rows
+from siggen.record.simulation import simulate
+from tests.faults.test_damage import config_with, damage_of
+
+CHIP: dict[str, Any] = {"kind": "chip", "height_mm": 1.5}
+BROKEN: dict[str, Any] = {"kind": "chip", "height_mm": "whole"}
+
+
+def quick(*damages: dict[str, Any], torque_nm: float = 60.0, speed_hz: float = 30.0) -> Config:
+    config = config_with(*damages)
+    (point,) = config.operating_points
+    points = (point.model_copy(update={"torque_nm": torque_nm, "speed_hz": speed_hz}),)
+    return config.model_copy(update={"fs_hz": 27000.0, "duration_s": 0.3, "operating_points": points})
+
+
+def records(config: Config, ids: list[int]) -> list[Record]:
+    found = simulate(config, ids)
+    assert all(isinstance(one, Record) for one in found), found
+    return [one for one in found if isinstance(one, Record)]
+
+
+def test_a_missing_tooth_is_simulated_and_strikes_once_per_turn() -> None:
+    config = quick(BROKEN)
+    healthy, broken = records(config, [0, 1])
+    assert (broken.labels["fault"], broken.labels["faulty_gear"]) == ("broken_tooth", "pinion")
+    (tooth,) = broken.labels["faulty_teeth_pinion"]  # type: ignore[misc]
+    assert 0 <= tooth < 18
+    signals = [one.channels["bearing_vertical"].astype(float) for one in (healthy, broken)]
+    turns = [signal.reshape(9, 900) for signal in signals]
+    # Perfect gears: every turn like the others, but one of the broken gear's is no mesh period like the others.
+    np.testing.assert_allclose(turns[1][3], turns[1][6], atol=0.02 * np.abs(turns[1]).max())
+    levels = [np.sqrt(np.mean(turn[4].reshape(18, 50) ** 2, axis=1)) for turn in turns]
+    assert levels[1].max() > 10.0 * levels[0].max()
+
+
+def test_under_little_torque_flanks_part_where_the_tooth_is_missing() -> None:
+    """400 N do not push a gear over a gap of 0.36 base pitches and 100 µm in 0.7 ms; it flies, and strikes."""
+    healthy, broken = records(quick(BROKEN, torque_nm=10.0), [0, 1])
+    assert healthy.labels["contact_loss_share"] == 0.0
+    assert 0.01 < broken.labels["contact_loss_share"] < 0.2  # type: ignore[operator]
+
+
+def test_a_small_chip_shows_where_its_pair_leaves_and_no_teeth_part() -> None:
+    healthy, chipped = records(quick(CHIP), [0, 1])
+    assert chipped.labels["fault"] == "chip"
+    assert chipped.labels["contact_loss_share"] == 0.0
+    first, second = (one.channels["bearing_vertical"].astype(float) for one in (healthy, chipped))
+    assert np.std(second - first) > 0.05 * np.std(first)
+
+
+def test_other_states_keep_their_bytes_beside_a_missing_tooth() -> None:
+    pits = {"kind": "clustered", "count": 3, "spread_profile_mm": 0.3, "semi_axis_face_mm": 0.3}
+    pits |= {"semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
+    alone, beside = quick(pits), quick(pits, BROKEN)
+    for one, two in zip(records(alone, [0, 1]), records(beside, [0, 1]), strict=True):
+        np.testing.assert_array_equal(one.channels["bearing_vertical"], two.channels["bearing_vertical"])
+
+
+def test_quantities_of_pairs_are_as_many_as_a_missing_tooth_has_in_reach() -> None:
+    names = [available_quantities(config_with(*damages)) for damages in ((CHIP,), (BROKEN,))]
+    pairs = [len({name.split("_")[1] for name in found if name.startswith("pair_")}) for found in names]
+    assert pairs == [2, 3]
+
+
+def test_rows_tell_what_is_lost_and_a_broken_tooth_takes_the_place_of_its_chip() -> None:
+    config = config_with({**CHIP, "teeth": [4, 9]}, {**BROKEN, "teeth": [4, 9]})
+    assert [(one.tooth, one.height_m) for one in damage_of(config, 1)] == [(4, 1.5e-3), (9, 1.5e-3)]
+    assert [(one.tooth, one.whole_tooth) for one in damage_of(config, 2)] == [(4, True), (9, True)]
+    rows = damage_rows(config, 1), damage_rows(config, 2)
+    assert [(row["kind"], row["tooth"], row["chip_height_mm"]) for row in rows[0]] == [
+        ("chip", 4, 1.5),
+        ("chip", 9, 1.5),
+    ]
+    assert [(row["kind"], row["chip_height_mm"]) for row in rows[1]] == [("broken_tooth", 0.0)] * 2
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"height_mm": 0.0}, r"states\.1\.damage\.height_mm: received 0\.0; allowed: a number above 0"),
+        ({"height_mm": 6.8}, r"states\.1\.damage\.height_mm: received 6\.8; allowed: up to 6\.75, the height of the"),
+        ({"height_mm": "half"}, r"states\.1\.damage\.height_mm: received the text 'half'; .* or whole"),
+        ({"height_mm": "whole", "teeth": 2}, r"states\.1\.damage\.teeth: received 2; allowed: teeth that are no neigh"),
+        ({"height_mm": "whole", "teeth": [0, 17]}, r"states\.1\.damage\.teeth: .* no neighbours"),
+        ({"teeth": [18]}, r"states\.1\.damage\.teeth: received tooth 18"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name(change: dict[str, Any], said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        config_with({**CHIP, **change})
+
+
+def test_a_chip_needs_flanks_with_a_shape_and_a_state_more_of_it_than_its_milder_one() -> None:
+    with pytest.raises(ConfigError, match=r"states\.1\.damage\.kind: received 'chip'; allowed: another kind with"):
+        config_with(CHIP, law="linear")
+    with pytest.raises(ConfigError, match=r"states\.2\.damage\.height_mm"):
+        config_with(CHIP, {**CHIP, "height_mm": 1.0})

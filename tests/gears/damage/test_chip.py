@@ -1,0 +1,116 @@
+"""Chipped and missing teeth: the pair of a lower addendum, and the way of rigid gears over a gap."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+from math import inf
+
+import numpy as np
+import pytest
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.mesh.pair_columns import NORMAL
+from siggen.dynamics.mesh.pair_columns import PAIR as NUMBER
+from siggen.dynamics.mesh.pair_forces import pair_forces
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
+from siggen.dynamics.mesh.pair_places import pair_table
+from siggen.dynamics.mesh.static_stiffness import static_approaches_m
+from siggen.gears.damage.chip import MARGIN_PITCHES, Chip, corner_reach_pitches, keeps_contact
+from siggen.gears.damage.flank_loss import reach_pitches, with_losses
+from siggen.gears.damage.pit import Pit
+from siggen.gears.geometry.corner_contact import touching_gap_m
+from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, missing_material
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, MeshTables, mesh_tables
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from tests.gears.builders import pair_18_47
+from tests.gears.damage.rigid_gears import RigidGears
+
+PAIR = pair_18_47()
+GAP = 2.0 - PAIR.contact_ratio
+BACKLASH_M, NEXT_TO_NOTHING_N = 80e-6, 0.01
+GONE = Chip("pinion", 5, inf)
+
+
+@cache
+def tables() -> MeshTables:
+    return mesh_tables(PAIR, (), StiffnessOptions(), points=TABLE_POINTS)
+
+
+def law(*chips: Chip) -> PairLaw:
+    whole = missing_material(PAIR, points=TABLE_POINTS, reach_pitches=reach_pitches(PAIR, chips))
+    mesh = MeshConstants(PAIR.line_of_action_m, 1.0, BACKLASH_M)
+    return pair_law(tables(), with_losses(whole, PAIR, chips), mesh, damping_ratio=0.0)
+
+
+def unloaded_m(chosen: PairLaw, pitches: FloatArray) -> FloatArray:
+    return static_approaches_m(chosen, NEXT_TO_NOTHING_N, pitches)
+
+
+@pytest.mark.parametrize("which", ["pinion", "gear"])
+def test_teeth_that_are_all_chipped_alike_are_those_of_a_lower_addendum(which: str) -> None:
+    height_m = 0.2 * PAIR.pinion.module_m
+    teeth = PAIR.member(which)
+    lower = replace(PAIR, **{which: replace(teeth, addendum_coefficient=0.8)})
+    whole = missing_material(PAIR, points=2001, reach_pitches=0.2)
+    chipped = with_losses(whole, PAIR, tuple(Chip(which, tooth, height_m) for tooth in range(teeth.teeth)))
+    position = np.linspace(whole.start_m, whole.end_m, 2001)
+    rows = getattr(chipped, which)
+    # The corner's gap is a difference of angles of 0.1 rad: rounding of 1e-17 rad times the base radius.
+    expected = np.tile(touching_gap_m(lower, which, position), (teeth.teeth, 1))
+    np.testing.assert_allclose(rows.profile_m[rows.kind_of_tooth], expected, rtol=1e-9, atol=1e-15)
+    assert lower.contact_ratio < PAIR.contact_ratio
+
+
+def test_the_less_is_lost_the_less_is_missing_and_nothing_takes_nothing() -> None:
+    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 501)
+    heights = [1e-9, 0.2e-3, 0.8e-3, 2e-3]
+    found = [Chip("pinion", 0, height).missing_m(PAIR, position) for height in heights]
+    assert found[0].max() < 1e-15
+    assert all(np.all(more >= less) for less, more in pairwise(found))
+    assert all(Chip("pinion", 0, more).hides(Chip("pinion", 0, less)) for less, more in pairwise(heights))
+    assert not GONE.hides(Chip("pinion", 4, 1e-3))
+    assert GONE.hides(Pit("pinion", 5, 1.9e-3, 10e-3, 0.3e-3, 0.2e-3, 0.4e-3, "flat"))
+
+
+def test_corners_are_followed_as_far_as_they_carry() -> None:
+    """Both corners touch somewhere in the gap, whose length is what whole pairs leave."""
+    reach = corner_reach_pitches(PAIR, "pinion", inf) - MARGIN_PITCHES
+    ends = PAIR.contact_end_m + reach * PAIR.base_pitch_m, PAIR.contact_start_m - (GAP - reach) * PAIR.base_pitch_m
+    gaps = [touching_gap_m(PAIR, which, np.array([s]))[0] for which, s in zip(("pinion", "gear"), ends, strict=True)]
+    assert gaps[0] == pytest.approx(gaps[1], rel=0.02)  # places 1e-3 of a base pitch apart, 5e-3 of this way
+    assert corner_reach_pitches(PAIR, "pinion", 0.1e-3) == CORNER_REACH_PITCHES
+    assert reach_pitches(PAIR, ()) == CORNER_REACH_PITCHES
+    assert keeps_contact(PAIR, "pinion", 2e-3)
+    assert not keeps_contact(PAIR, "pinion", 6.9e-3)
+
+
+@pytest.mark.parametrize(("height_m", "share"), [(3.5e-3, 0.04), (inf, 0.01)])
+def test_the_unloaded_gear_lags_as_a_rigid_one_over_the_gap(height_m: float, share: float) -> None:
+    """Number 5 of either gear's teeth meets at angle 5; its neighbours carry where it does not."""
+    pitches = np.linspace(4.5, 7.0, 601)
+    found = unloaded_m(law(replace(GONE, height_m=height_m)), pitches)
+    rigid = RigidGears(PAIR)
+    gone, tips = ((0,), {}) if height_m == inf else ((), {0: rigid.tip[0] - height_m})
+    expected = rigid.lag_m(pitches - 5.0, tips, gone)
+    # Tables of 2049 points, and 0.02 nm of deflection under next to nothing. Where corners stay within the usual reach,
+    # a gap counts at its nominal place, as between whole teeth: 3 % of 8 µm.
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=share * expected.max())
+    if height_m == inf:
+        assert expected.max() > 100e-6  # more than the backlash
+        lagging = np.count_nonzero(found > 5e-9) * (pitches[1] - pitches[0])
+        assert lagging == pytest.approx(GAP, abs=0.02)  # the first nanometres of a parabola
+
+
+def test_a_missing_tooth_has_no_back_flank() -> None:
+    """Pushed back by as much as the backlash, neighbours carry; the pair that is gone never does."""
+    chosen = law(GONE)
+    pairs = pair_table(chosen)
+    for approach in (-BACKLASH_M - 20e-6, 200e-6):
+        carried = set()
+        for pitches in np.linspace(4.0, 7.5, 71):
+            pair_forces(chosen, approach, 0.0, float(pitches), 0.0, 0.0, pairs)
+            carried |= {int(number) for number in pairs[pairs[:, NORMAL] != 0.0, NUMBER]}
+        assert {4, 6} <= carried
+        assert 5 not in carried
