@@ -11,6 +11,7 @@ from siggen.gears.contact.exponential_matrix import add_row_products, products
 from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import SolverRoom
+from siggen.gears.contact.own_width import mean_width, own_width
 
 ENERGY_NODES = 6
 """Of the Gauss sums over the loads: 3e-9 J of 5e-3 J (tested against 32)."""
@@ -48,6 +49,7 @@ def stored_energy(
     strengths(kernel, width, room.strength, room.strength_slope)
     products(kernel.decay, room.strength, room.strength_slope, loads_m, room.product, room.growth)
     add_row_products(slices.teeth.strength, slices.teeth.decay, loads_m, room.product)
+    shared = mean_width(slices, square)
     work = 0.0
     for i in range(loads_m.size):
         if loads_m[i] == 0.0:
@@ -58,7 +60,9 @@ def stored_energy(
                 x = nodes[0, k]
                 sunk += 2.0 * x * nodes[1, k] * slice_sink(slices, i, loads_m[i] * x * x).sink_m
         reached = approach_m + tilt_rad * slices.face_m[i] - slices.lead_m[i]
-        work += loads_m[i] * (reached - 0.5 * ((own + slices.teeth.diagonal[i]) * loads_m[i] + room.product[i]) - sunk)
+        wider = own_width(loads_m[i], shared.scale_per_m, shared.coupled).logarithm - shared.mean.logarithm
+        local = own + slices.teeth.diagonal[i] - wider
+        work += loads_m[i] * (reached - 0.5 * (local * loads_m[i] + room.product[i]) - sunk)
     per_load = kernel.cell_m / slices.kappa_per_pa
     force = per_load * total
     return per_load * work - 0.5 * slices.compliance_m_per_n * force * force

@@ -63,11 +63,11 @@ def solve(slices, approach, tilt=0.0, guess=None) -> tuple[FaceForce, np.ndarray
     return answer, loads
 
 
-def approach_under(slices, force: float) -> float:
-    """Approach of the pair at a force, by Newton's method [m]."""
+def approach_under(slices, force: float, tilt: float = 0.0) -> float:
+    """Approach of the pair at a force and a tilt, by Newton's method [m]."""
     approach = force * (slices.compliance_m_per_n + 1.2e-9)
     for _ in range(40):
-        answer, _ = solve(slices, approach)
+        answer, _ = solve(slices, approach, tilt)
         if abs(answer.force_n / force - 1.0) < 1e-10:
             break
         approach += (force - answer.force_n) / answer.stiffness_n_per_m if answer.force_n else 5e-6
