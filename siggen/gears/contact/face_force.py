@@ -26,11 +26,10 @@ from typing import NamedTuple
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.gears.contact.exponential_matrix import add_row_products, products
-from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
+from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, part_sink, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import Answers, SolverRoom, add_low_rank, solve_local
 from siggen.gears.contact.own_width import MeanWidth, mean_width, own_law
-from siggen.gears.contact.two_edges import gap_sink
 
 TOLERANCE = 1e-5
 """Of the last Newton step over the largest load. Steps are squared from pass to pass (measured 1e-3, 1e-7), so loads
@@ -164,10 +163,12 @@ def _assemble(
     chosen, settled = 0, True
     # One by one: to hand over the tuple costs more than the sink.
     left, right, notch, floor = slices.left_m, slices.right_m, slices.notch_m, slices.floor_m
-    radius, rounding = slices.radius_m, slices.rounding_m
+    covered, tips, spread = slices.covered, slices.tips_m, slices.spread
+    radii = slices.radius_m, slices.rounding_m
     for i in range(loads.size):
         own = room.diagonal[i]
-        gap = gap_sink(left[i], right[i], notch[i], floor[i], radius, rounding, loads[i])
+        around = left[i], right[i], notch[i], floor[i]
+        gap = part_sink(around, tips, covered[i], spread, radii, loads[i])
         wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
         if loads[i] == 0.0:
             if wanted <= gap.sink_m:
@@ -175,7 +176,7 @@ def _assemble(
             settled = False
             # small beside the neighbours but not 0, where sinks are infinitely soft
             loads[i] = min((wanted - gap.sink_m) / (own + 4.0), 0.05 * total / loads.size + 1e-15)
-            gap = gap_sink(left[i], right[i], notch[i], floor[i], radius, rounding, loads[i])
+            gap = part_sink(around, tips, covered[i], spread, radii, loads[i])
             wanted -= own * loads[i]
         factor, slope = own_law(loads[i], laws.width)
         residual = wanted - (laws.beta + factor) * loads[i] - gap.sink_m

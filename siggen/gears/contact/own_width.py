@@ -1,14 +1,14 @@
 r"""Half width of a slice under its own load, where the kernel across the face reckons with one for all slices.
 
-Derived. `line_kernel` holds ½ u·K(a) u with the half width a of the mean square of the loads. A load that changes slowly
-across the face makes each place as wide as it is loaded: the energy lacks
+Derived. `line_kernel` holds ½ u·K(a) u with the half width a of the mean square of the loads. A load that changes
+slowly across the face makes each place as wide as it is loaded: the energy lacks
 
     -½ Σ u_j² [λ(u_j) - λ(u_m)],   λ = ln ρ(√(2 R u)),   u_m² = w Σ u²/L,
 
-which is 0 for an even load, takes ½ from the compliance of long waves, and no more. Exact for waves that are long beside
-a (a strip that sinks with the wave sin ky has ln(4/ka) - γ, K alone ½ more). Without it a face gives way to a tilt by
-10 % more than in three dimensions. ρ is a up to `EXACT` cells and stops at `WIDEST`, with two continuous derivatives: there the
-short waves of K are too soft to bear it (their eigenvalue falls to ½ at one cell).
+which is 0 for an even load and takes ½ from the compliance of waves. It is exact where they are long beside a: a strip
+that sinks with the wave sin ky has ln(4/ka) - γ, K alone ½ more. Without it a face gives way to a tilt by 10 % more
+than in three dimensions. ρ is a up to `EXACT` cells and stops at `WIDEST`, with two continuous derivatives: the short
+waves of K, whose eigenvalue falls to ½ at one cell, could not bear more.
 """
 
 from __future__ import annotations

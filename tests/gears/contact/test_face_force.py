@@ -19,13 +19,13 @@ from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.contact.stored_energy import energy_nodes, stored_energy
 from siggen.gears.stiffness.hertz import weber_banaschek_compliance
 from tests.gears.builders import pair_18_47
-from tests.gears.contact.faces import BENDING, REST, WIDTH, approach_under, face, solve, spall
+from tests.gears.contact.faces import BENDING, REST, WIDTH, approach_under, face, part_spall, solve, spall
 
 
 def land(pair, slices=50) -> FaceGaps:
     """No gap anywhere, at five positions."""
     edge, nothing = np.full((5, slices), -NO_EDGE), np.zeros((5, slices))
-    return FaceGaps(edge, edge, nothing, nothing, nothing)
+    return FaceGaps(edge, edge, nothing, nothing, nothing, nothing, np.full((5, 2), -NO_EDGE))
 
 
 @pytest.mark.parametrize("force", [50.0, 1200.0, 4000.0])
@@ -137,6 +137,7 @@ FACES = {
     "skewed spall through the face": partial(spall, 0.01e-3, half=WIDTH, skew=0.02),
     "rounded edges and a lead": partial(spall, 0.4e-3, half=3e-3, rounding=0.1e-3, lead=np.linspace(0.0, 4e-6, 200)),
     "floor that carries": partial(spall, 0.0, half=WIDTH, depth=8e-6),
+    "ends within slices": partial(part_spall, 0.45e-3, place=2e-3, teeth=BENDING, rest=0.25 * REST),
     "teeth that bend across the face": partial(spall, 0.3e-3, skew=0.03, teeth=BENDING, rest=0.25 * REST),
 }
 
