@@ -9,12 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.shipped import ROOT
+from siggen.gears.contact.covered_slice import spread_of_cells
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_force import face_force
+from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import carrying_length
+from siggen.gears.contact.table_options import CELL_WIDTHS
 from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -43,33 +46,47 @@ RIGID, BENDING = Teeth(), Teeth(4.92e-3, 2.83e-9)
 """The finite-element teeth of 18/47: all but the torsion of the bodies bends, over 1.64 modules."""
 
 
-def face_of(left_m: np.ndarray, right_m: np.ndarray, depth_m: np.ndarray, teeth: Teeth = RIGID) -> FaceSlices:
-    """Return the library's face of slices with edges at these distances (n,) and gaps of this depth (n,)."""
+def face_of(
+    left_m: np.ndarray,
+    right_m: np.ndarray,
+    depth_m: np.ndarray,
+    teeth: Teeth = RIGID,
+    covered: np.ndarray | None = None,
+) -> FaceSlices:
+    """Return the library's face of slices with edges at these distances (n,) and gaps of this depth (n,).
+
+    `covered` (n,): the part of a slice that has them.
+    """
     count = left_m.size
+    covered = np.where(left_m > -NO_EDGE, 1.0, 0.0) if covered is None else covered
     cell = FACE_M / count
     none = np.zeros(count)
+    gaps = FaceGaps(left_m, right_m, depth_m, depth_m, none, covered, np.full(2, -NO_EDGE))
     return FaceSlices(
         left_m=left_m,
         right_m=right_m,
         notch_m=depth_m,
         floor_m=depth_m,
         on_damage=((left_m > 0.0) & (right_m > 0.0)).astype(np.float64),
+        covered=covered,
         lead_m=none,
         face_m=cell * (np.arange(count) + 0.5) - 0.5 * FACE_M,
+        tips_m=(-NO_EDGE, -NO_EDGE),
+        spread=spread_of_cells(CELL_WIDTHS),
         kernel=line_kernel(kernel_family(count, cell, DEPTH_M), DEPTH_M, POISSON),
         teeth=tooth_kernel(unit_tooth(count, FACE_M, teeth.length_m), teeth.compliance_m_per_n, FACE_M, KAPPA),
         radius_m=RADIUS_M,
         rounding_m=0.0,
         kappa_per_pa=KAPPA,
         compliance_m_per_n=REST_M_PER_N - teeth.compliance_m_per_n,
-        carrying_m=carrying_length(left_m, right_m, depth_m, none, cell, RADIUS_M, KAPPA * 60e3),
+        carrying_m=carrying_length(gaps, none, cell, RADIUS_M, KAPPA * 60e3),
     )
 
 
 def face_of_land(land: np.ndarray, teeth: Teeth = RIGID) -> FaceSlices:
-    """Return the face that carries only where `land` (n,) says so: elsewhere the edges are 1 m away."""
-    away = np.where(land, -NO_EDGE, 1.0)
-    return face_of(away, away, np.zeros(land.size), teeth)
+    """Return the face of which the part `land` (n,) of every slice carries: elsewhere the edges are 1 m away."""
+    away = np.where(land == 1.0, -NO_EDGE, 1.0)
+    return face_of(away, away, np.zeros(land.size), teeth, 1.0 - land)
 
 
 def spalled_face(

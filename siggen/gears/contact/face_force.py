@@ -26,9 +26,10 @@ from typing import NamedTuple
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.gears.contact.exponential_matrix import add_row_products, products
-from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
+from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, part_sink, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import Answers, SolverRoom, add_low_rank, solve_local
+from siggen.gears.contact.own_width import MeanWidth, mean_width, own_law
 
 TOLERANCE = 1e-5
 """Of the last Newton step over the largest load. Steps are squared from pass to pass (measured 1e-3, 1e-7), so loads
@@ -56,6 +57,14 @@ class FaceForce(NamedTuple):
     carrying_m: float
     on_damage: float
     passes: int
+
+
+class _Laws(NamedTuple):
+    """What slices share within a pass: β, widths, and what is added to the diagonal."""
+
+    beta: float
+    width: MeanWidth
+    damping: float
 
 
 @njit(cache=True)
@@ -93,11 +102,13 @@ def face_force(
         if square == 0.0:
             return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, passes)
         work, bend = _prepare(slices, loads_m, square, room)
-        chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, damping, room)
+        laws = _Laws(0.25 * work / square, mean_width(slices, square), damping)
+        chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, laws, room)
         if not solve_local(slices, room, chosen):
             damping = max(2.0 * damping, DAMPING)
             continue
-        answers = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
+        slope = work / square - laws.width.mean.growth - 0.25 * laws.width.mean.bend
+        answers = add_low_rank(slices, room, chosen, loads_m, square, slope, bend / square)
         largest, kept = _move(loads_m, room, chosen)
         if settled and kept and answers.step_m <= tolerance * largest:
             return _answer(slices, loads_m, answers, passes)
@@ -140,8 +151,7 @@ def _assemble(
     approach: float,
     tilt: float,
     loads: FloatArray,
-    beta: float,
-    damping: float,
+    laws: _Laws,
     room: SolverRoom,
 ) -> tuple[int, bool]:
     """Fill matrix and right sides; return how many slices carry, and whether none of them is new."""
@@ -151,22 +161,28 @@ def _assemble(
         total += loads[i]
     rest = slices.compliance_m_per_n * per_load * total
     chosen, settled = 0, True
+    # One by one: to hand over the tuple costs more than the sink.
+    left, right, notch, floor = slices.left_m, slices.right_m, slices.notch_m, slices.floor_m
+    covered, tips, spread = slices.covered, slices.tips_m, slices.spread
+    radii = slices.radius_m, slices.rounding_m
     for i in range(loads.size):
         own = room.diagonal[i]
-        gap = slice_sink(slices, i, loads[i])
+        around = left[i], right[i], notch[i], floor[i]
+        gap = part_sink(around, tips, covered[i], spread, radii, loads[i])
         wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
-        residual = wanted - beta * loads[i] - gap.sink_m
         if loads[i] == 0.0:
-            if residual <= 0.0:
+            if wanted <= gap.sink_m:
                 continue
             settled = False
             # small beside the neighbours but not 0, where sinks are infinitely soft
-            loads[i] = min(residual / (own + 4.0), 0.05 * total / loads.size + 1e-15)
-            gap = slice_sink(slices, i, loads[i])
-            residual = wanted - (own + beta) * loads[i] - gap.sink_m
+            loads[i] = min((wanted - gap.sink_m) / (own + 4.0), 0.05 * total / loads.size + 1e-15)
+            gap = part_sink(around, tips, covered[i], spread, radii, loads[i])
+            wanted -= own * loads[i]
+        factor, slope = own_law(loads[i], laws.width)
+        residual = wanted - (laws.beta + factor) * loads[i] - gap.sink_m
         room.rows[chosen] = i
         chosen += 1
-        room.diagonal[i] = own + beta + gap.slope + damping
+        room.diagonal[i] = own + laws.beta + slope + gap.slope + laws.damping
         room.right[i, 0] = residual
         room.right[i, 1] = 1.0
         room.right[i, 2] = loads[i]

@@ -25,8 +25,9 @@ SAME_M = 1e-12
 class FaceGaps(NamedTuple):
     """What slices meet at positions, (positions, slices) each, in the terms of `two_edges.gap_sink` [m].
 
-    `notch_m` is the depth in the middle of the gap, 0 at a tip; `floor_m` that below the normal, 0 on land;
-    `on_damage`: 1 where the normal lies in damage, else 0.
+    `notch_m` is the depth in the middle of the gap, 0 at a tip; `floor_m` that below the normal, 0 on land; `covered`:
+    the part of a slice that has the gap, 0 where there is none but those of the tips; `on_damage`: that part where the
+    normal lies in damage, else 0; `tips_m` (positions, 2): left and right of a slice without damage.
     """
 
     left_m: FloatArray
@@ -34,6 +35,8 @@ class FaceGaps(NamedTuple):
     notch_m: FloatArray
     floor_m: FloatArray
     on_damage: FloatArray
+    covered: FloatArray
+    tips_m: FloatArray
 
 
 def face_gaps(pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m: FloatArray) -> FaceGaps:
@@ -56,7 +59,7 @@ def face_gaps(pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m
             f"flanks of {pinion.intervals.size} and {gear.intervals.size} slices; allowed: as many on both"
         )
     shape = (position_m.size, pinion.intervals.size)
-    gaps = FaceGaps(*(np.zeros(shape) for _ in range(5)))
+    gaps = FaceGaps(*(np.zeros(shape) for shape in (*(6 * [shape]), (position_m.size, 2))))
     tips = tuple(0.5 * g.base_radius_m * g.tip_roll_rad**2 for g in (pair.pinion, pair.gear))
     room = np.empty((2, pinion.low.shape[1] + gear.low.shape[1] + 2))
     _fill(pair.line_of_action_m, pinion, gear, tips[0], tips[1], np.ascontiguousarray(position_m), room, gaps)
@@ -82,7 +85,8 @@ def _fill(
     count_2, from_2, to_2, face_2, pits_2 = gear.intervals, gear.low, gear.high, gear.face_m, gear.pits
     crossing_1, row_1, low_1, high_1 = pinion.lines
     crossing_2, row_2, low_2, high_2 = gear.lines
-    left_m, right_m, notch_m, floor_m, on_damage = gaps
+    part_1, part_2 = pinion.covered, gear.covered
+    left_m, right_m, notch_m, floor_m, on_damage, covered, tips_m = gaps
     for i in range(position.size):
         roll_1, roll_2 = position[i] / base_1, (line - position[i]) / base_2
         arc_1, arc_2 = 0.5 * base_1 * roll_1**2, 0.5 * base_2 * roll_2**2
@@ -90,10 +94,13 @@ def _fill(
         room[0, 0], room[1, 0] = tip_1 - arc_1, NO_EDGE
         room[0, 1], room[1, 1] = -NO_EDGE, arc_2 - tip_2
         behind, ahead = _nearest(room, 2)
+        tips_m[i, 0], tips_m[i, 1] = -behind, ahead
         for j in range(count_1.size):
             if count_1[j] == 0 and count_2[j] == 0:
                 left_m[i, j], right_m[i, j] = -behind, ahead
                 continue
+            part = max(part_1[j] if count_1[j] else 0.0, part_2[j] if count_2[j] else 0.0)
+            covered[i, j] = part
             filled = 0
             for k in range(count_1[j]):
                 room[0, filled], room[1, filled] = from_1[j, k] - arc_1, to_1[j, k] - arc_1
@@ -116,7 +123,7 @@ def _fill(
                 notch_m[i, j] = known[j]
             for k in range(damaged):
                 if room[0, k] < 0.0 < room[1, k]:
-                    on_damage[i, j] = 1.0
+                    on_damage[i, j] = part
                     floor_m[i, j] = depth_on_line(j, height_1, face_1, pits_1, crossing_1, row_1, low_1, high_1)
                     if count_2[j] > 0:
                         floor_m[i, j] += depth_on_line(j, height_2, face_2, pits_2, crossing_2, row_2, low_2, high_2)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
+from siggen.gears.contact.covered_slice import covered_sink
 from siggen.gears.contact.line_kernel import LineKernel, reckoned_width
 from siggen.gears.contact.tooth_kernel import ToothKernel
 from siggen.gears.contact.two_edges import GapSink, gap_sink
@@ -16,9 +17,11 @@ class FaceSlices(NamedTuple):
     """The slices at one position (a named tuple, since compiled code takes no dataclass); arrays are (n,).
 
     `left_m`, `right_m`, `notch_m`, `floor_m`: the gap that each slice meets, as for `two_edges.gap_sink`; `on_damage`:
-    1 where the normal lies in a gap of the damage, 0 elsewhere; `lead_m`: missing material across the face, of any
-    sign; `face_m`: y from the middle of the face; `kernel`: K; `teeth`: T; `radius_m`: R; `rounding_m`: radius of the
-    edges; `kappa_per_pa`: κ; `compliance_m_per_n`: C, of what is rigid across the face; `carrying_m`: L.
+    part of a slice whose normal lies in a gap of the damage; `covered`: part of a slice that has this gap, the rest has
+    only the edges `tips_m` (left, right) of the teeth; `spread`: k of `covered_slice`; `lead_m`: missing material
+    across the face, of any sign; `face_m`: y from the middle of the face; `kernel`: K; `teeth`: T; `radius_m`: R;
+    `rounding_m`: radius of the edges; `kappa_per_pa`: κ; `compliance_m_per_n`: C, of what is rigid across the face;
+    `carrying_m`: L.
     """
 
     left_m: FloatArray
@@ -26,8 +29,11 @@ class FaceSlices(NamedTuple):
     notch_m: FloatArray
     floor_m: FloatArray
     on_damage: FloatArray
+    covered: FloatArray
     lead_m: FloatArray
     face_m: FloatArray
+    tips_m: tuple[float, float]
+    spread: float
     kernel: LineKernel
     teeth: ToothKernel
     radius_m: float
@@ -40,15 +46,24 @@ class FaceSlices(NamedTuple):
 @njit(cache=True)
 def slice_sink(slices: FaceSlices, i: int, load: float) -> GapSink:
     """Return the sink of slice i under a load κq [m]."""
-    return gap_sink(
-        slices.left_m[i],
-        slices.right_m[i],
-        slices.notch_m[i],
-        slices.floor_m[i],
-        slices.radius_m,
-        slices.rounding_m,
-        load,
-    )
+    gap = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
+    radii = slices.radius_m, slices.rounding_m
+    return part_sink(gap, slices.tips_m, slices.covered[i], slices.spread, radii, load)
+
+
+@njit(cache=True)
+def part_sink(
+    gap: tuple[float, float, float, float],
+    tips: tuple[float, float],
+    covered: float,
+    spread: float,
+    radii: tuple[float, float],
+    load: float,
+) -> GapSink:
+    """Return the sink of a slice from its numbers one by one, as for `covered_sink`."""
+    if 0.0 < covered < 1.0:
+        return covered_sink(gap, tips, covered, spread, radii, load)
+    return gap_sink(gap[0], gap[1], gap[2], gap[3], radii[0], radii[1], load)
 
 
 @njit(cache=True)

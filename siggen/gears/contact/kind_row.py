@@ -137,4 +137,6 @@ def _least_sink(
     near = np.maximum(np.minimum(gaps.left_m, gaps.right_m), 0.0)
     floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
     sunk = np.minimum(near**2 / (2.0 * radius[:, None]), floor)
+    tip = np.maximum(gaps.tips_m.min(axis=1), 0.0) ** 2 / (2.0 * radius)
+    sunk = np.where(gaps.covered < 1.0, np.minimum(sunk, tip[:, None]), sunk)
     return np.asarray((sunk + lead_m).min(axis=1))

@@ -9,10 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.gears.contact.covered_slice import spread_of_cells
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.pair_rest import PairRest
+from siggen.gears.contact.table_options import half_width, reference_force_n
 from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import centre_line_depth
@@ -80,6 +82,7 @@ def pair_faces(
     radius = position_m * (pair.line_of_action_m - position_m) / pair.line_of_action_m
     kappa = contact_kappa(pair)
     unit = unit_tooth(count, pair.face_width_m, rest.length_m)
+    spread = spread_of_cells(cell / _reference_width(pair))
     family = kernel_family(count, cell, _typical_depth(pair))
     out = []
     for i in range(position_m.size):
@@ -91,18 +94,28 @@ def pair_faces(
             notch_m=here.notch_m,
             floor_m=here.floor_m,
             on_damage=here.on_damage,
+            covered=here.covered,
             lead_m=lead,
             face_m=face,
+            tips_m=(float(here.tips_m[0]), float(here.tips_m[1])),
+            spread=spread,
             kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
             teeth=tooth_kernel(unit, float(rest.tooth_m_per_n[i]), pair.face_width_m, kappa),
             radius_m=float(radius[i]),
             rounding_m=options.edge_radius_m,
             kappa_per_pa=kappa,
             compliance_m_per_n=float(rest.rigid_m_per_n[i]),
-            carrying_m=carrying_length(here.left_m, here.right_m, here.floor_m, lead, cell, float(radius[i]), load),
+            carrying_m=carrying_length(here, lead, cell, float(radius[i]), load),
         )
         out.append(slices)
     return out
+
+
+@lru_cache(maxsize=8)
+def _reference_width(pair: GearPair) -> float:
+    """Return Hertz's half width of the reference force in the middle of the path [m]."""
+    middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
+    return float(half_width(pair, middle, reference_force_n(pair))[0])
 
 
 @lru_cache(maxsize=8)
@@ -116,21 +129,21 @@ def _typical_depth(pair: GearPair) -> float:
     return float(np.sqrt(np.prod([centre_line_depth(pair, which, np.array([roll])) for which, roll in rolls.items()])))
 
 
-def carrying_length(
-    left_m: FloatArray,
-    right_m: FloatArray,
-    floor_m: FloatArray,
-    lead_m: FloatArray,
-    cell_m: float,
-    radius_m: float,
-    load_m: float,
-) -> float:
-    """Return L [m] of slices (n,): each weighted by how little it lies below the least sunk one.
+def carrying_length(gaps: FaceGaps, lead_m: FloatArray, cell_m: float, radius_m: float, load_m: float) -> float:
+    """Return L [m] of slices (n,) at one position: each weighted by how little it lies below the least sunk one.
 
     Derived: a slice that lies lower by several κq [m] (`load_m`, of a typical load) does not carry; one that sinks with
-    all others does. The weight is smooth, so that L is continuous over the position.
+    all others does. The weight is smooth, so that L is continuous over the position. A slice that a gap
+    covers in part counts by its parts.
     """
-    near = np.maximum(np.minimum(left_m, right_m), 0.0)
-    sunk = np.minimum(near**2 / (2.0 * radius_m), np.where(floor_m > 0.0, floor_m, np.inf)) + lead_m
-    over = (sunk - sunk.min()) / (4.0 * load_m)
-    return float(cell_m * np.sum(1.0 / (1.0 + over**2)))
+    near = np.maximum(np.minimum(gaps.left_m, gaps.right_m), 0.0)
+    floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
+    sunk = np.minimum(near**2 / (2.0 * radius_m), floor) + lead_m
+    partly = (gaps.covered > 0.0) & (gaps.covered < 1.0)
+    if not partly.any():
+        over = (sunk - sunk.min()) / (4.0 * load_m)
+        return float(cell_m * np.sum(1.0 / (1.0 + over**2)))
+    land = lead_m + max(float(gaps.tips_m.min()), 0.0) ** 2 / (2.0 * radius_m)
+    least = min(sunk.min(), land[partly].min())
+    weight, beside = (1.0 / (1.0 + ((depth - least) / (4.0 * load_m)) ** 2) for depth in (sunk, land))
+    return float(cell_m * np.sum(np.where(partly, gaps.covered * weight + (1.0 - gaps.covered) * beside, weight)))

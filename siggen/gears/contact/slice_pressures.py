@@ -13,6 +13,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
+from siggen.gears.contact.covered_slice import load_apart
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.edge_pressure import largest_edge_pressure
 from siggen.gears.contact.face_slices import FaceSlices, slice_sink
@@ -46,11 +47,17 @@ def _pressures(slices: FaceSlices, loads: FloatArray) -> tuple[FloatArray, Float
         load = loads[i]
         if load <= 0.0:
             continue
-        pressure[i] = np.sqrt(2.0 * load / radius) / (np.pi * kappa)
-        left, right = slices.left_m[i], slices.right_m[i]
         gap = slice_sink(slices, i, load)
+        land = load
+        if 0.0 < slices.covered[i] < 1.0:
+            around = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
+            radii = radius, rounding
+            apart = load_apart(around, slices.tips_m, slices.covered[i], slices.spread, radii, load)
+            land, load = load + slices.covered[i] * apart, load - (1.0 - slices.covered[i]) * apart
+        pressure[i] = np.sqrt(2.0 * max(land, load) / radius) / (np.pi * kappa)
+        left, right = slices.left_m[i], slices.right_m[i]
         on_floor = slices.floor_m[i] > 0.0 and gap.sink_m >= slices.floor_m[i]
-        if slices.notch_m[i] <= 0.0 or on_floor or max(left, right) < -0.5 * NO_EDGE:
+        if load <= 0.0 or slices.notch_m[i] <= 0.0 or on_floor or max(left, right) < -0.5 * NO_EDGE:
             continue
         for ahead, share in ((-left, gap.left_share), (-right, 1.0 - gap.left_share)):
             if share <= 1e-6 or ahead >= np.sqrt(2.0 * radius * load * share):

@@ -6,11 +6,14 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
+from siggen.gears.contact.covered_slice import load_apart
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.exponential_matrix import add_row_products, products
-from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
+from siggen.gears.contact.face_slices import FaceSlices, contact_half_width
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import SolverRoom
+from siggen.gears.contact.own_width import mean_width, own_width
+from siggen.gears.contact.two_edges import gap_sink
 
 ENERGY_NODES = 6
 """Of the Gauss sums over the loads: 3e-9 J of 5e-3 J (tested against 32)."""
@@ -48,17 +51,47 @@ def stored_energy(
     strengths(kernel, width, room.strength, room.strength_slope)
     products(kernel.decay, room.strength, room.strength_slope, loads_m, room.product, room.growth)
     add_row_products(slices.teeth.strength, slices.teeth.decay, loads_m, room.product)
+    shared = mean_width(slices, square)
     work = 0.0
     for i in range(loads_m.size):
         if loads_m[i] == 0.0:
             continue
         sunk = 0.0
         if slices.left_m[i] > -0.5 * NO_EDGE or slices.right_m[i] > -0.5 * NO_EDGE:
-            for k in range(nodes.shape[1]):
-                x = nodes[0, k]
-                sunk += 2.0 * x * nodes[1, k] * slice_sink(slices, i, loads_m[i] * x * x).sink_m
+            sunk = _sink_energy(slices, i, loads_m[i], nodes) / loads_m[i]
         reached = approach_m + tilt_rad * slices.face_m[i] - slices.lead_m[i]
-        work += loads_m[i] * (reached - 0.5 * ((own + slices.teeth.diagonal[i]) * loads_m[i] + room.product[i]) - sunk)
+        wider = own_width(loads_m[i], shared.scale_per_m, shared.coupled).logarithm - shared.mean.logarithm
+        local = own + slices.teeth.diagonal[i] - wider
+        work += loads_m[i] * (reached - 0.5 * (local * loads_m[i] + room.product[i]) - sunk)
     per_load = kernel.cell_m / slices.kappa_per_pa
     force = per_load * total
     return per_load * work - 0.5 * slices.compliance_m_per_n * force * force
+
+
+@njit(cache=True)
+def _sink_energy(slices: FaceSlices, i: int, load: float, nodes: FloatArray) -> float:
+    """Return ∫ e du of slice i: of gap and land one by one, since a gap comes to carry with a bend of the sink."""
+    gap = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
+    covered, radii = slices.covered[i], (slices.radius_m, slices.rounding_m)
+    if not 0.0 < covered < 1.0:
+        return _gap_energy(gap, radii, load, nodes)
+    apart = load_apart(gap, slices.tips_m, covered, slices.spread, radii, load)
+    land = slices.tips_m[0], slices.tips_m[1], 0.0, 0.0
+    on_land = _gap_energy(land, radii, load + covered * apart, nodes)
+    on_gap = _gap_energy(gap, radii, max(load - (1.0 - covered) * apart, 0.0), nodes)
+    passing: float = 0.5 * slices.spread * covered * (1.0 - covered) * apart * apart
+    passing += (1.0 - covered) * on_land + covered * on_gap
+    return passing
+
+
+@njit(cache=True)
+def _gap_energy(
+    gap: tuple[float, float, float, float], radii: tuple[float, float], load: float, nodes: FloatArray
+) -> float:
+    """Return ∫ e du of a gap up to a load."""
+    total = 0.0
+    for k in range(nodes.shape[1]):
+        x = nodes[0, k]
+        sunk = gap_sink(gap[0], gap[1], gap[2], gap[3], radii[0], radii[1], load * x * x).sink_m
+        total += 2.0 * x * nodes[1, k] * sunk
+    return total * load

@@ -11,6 +11,8 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import contact_half_width
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 
+CELL_WIDTHS = 1.28
+"""Width of a slice in Hertz half widths of the reference force."""
 FEWEST_SLICES, MOST_SLICES = 40, 100
 
 
@@ -32,7 +34,7 @@ class TableOptions(NamedTuple):
 
     largest_force_n: float = 0.0
     edge_radius_m: float = 0.1e-3
-    cell_widths: float = 1.28
+    cell_widths: float = CELL_WIDTHS
     nodes: int = 19
     healthy_columns: int = 129
     finest: int = 2

@@ -1,6 +1,7 @@
 """Chords of the damage along the profile, on lines across the face: where a contact finds land, where it finds a pit.
 
-Derived. The face is cut into slices of equal width, each seen on its middle line. On a line the damage of a flank is
+Derived. The face is cut into slices of equal width, each seen on its middle line, or where damage ends within it on
+the middle of what damage covers. On a line the damage of a flank is
 the exact union of its outlines (the rows of `pit_rows`), as intervals of the arc R_b ψ²/2 along the involute: the
 length in which the mating flank sees a pit, unlike the height x and unlike the path s, in which 1 mm of arc near the
 base circle is several. At a contact the intervals of both flanks lie on one tangent, whose coordinate grows with the
@@ -26,6 +27,8 @@ from siggen.gears.damage.row_columns import (
     LEFT_HIGH,
     LEFT_LOW,
     LOWEST,
+    RIGHT_HIGH,
+    RIGHT_LOW,
     SEMI_FACE,
     SEMI_HEIGHT,
     TRAPEZOID,
@@ -38,9 +41,12 @@ from siggen.gears.geometry.spur_gear import SpurGear
 BEYOND_TIP = 1.5
 """Pits are followed up to this multiple of the tip's roll angle: a pit open at the tip has no edge there."""
 
+WHOLE = 1e-6
+"""Part of a slice that does not count: far more than rounding, far less than is felt."""
+
 
 class LineRows(NamedTuple):
-    """Rows that cross the middle line of every slice.
+    """Rows that cross the line of every slice.
 
     `crossing` (slices,): how many; (slices, rows) each: their numbers `row`, and the heights `low_m`, `high_m` [m]
     between which they cover the line.
@@ -53,12 +59,12 @@ class LineRows(NamedTuple):
 
 
 class FlankChords(NamedTuple):
-    """Pits of one flank on the middle line of every slice (a named tuple, since compiled code takes no dataclass).
+    """Pits of one flank on the line of every slice (a named tuple, since compiled code takes no dataclass).
 
     `low`, `high` (slices, most): merged intervals along the arc [m], ascending; `low_radius_m`, `high_radius_m`: radii
     of their edges [m], negative where the damage states none; `intervals` (slices,): how many; `face_m` (slices,): the
-    lines; `pits` (n, COLUMNS): rows of `pit_rows`; `lines`: those that cross each line; `base_radius_m`,
-    `half_angle_rad`: the involute.
+    lines; `covered` (slices,): part of a slice's width over which damage extends; `pits` (n, COLUMNS): rows of
+    `pit_rows`; `lines`: those that cross each line; `base_radius_m`, `half_angle_rad`: the involute.
     """
 
     low: FloatArray
@@ -67,6 +73,7 @@ class FlankChords(NamedTuple):
     high_radius_m: FloatArray
     intervals: IntArray
     face_m: FloatArray
+    covered: FloatArray
     pits: FloatArray
     lines: LineRows
     base_radius_m: float
@@ -93,7 +100,7 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
     if slices < 1:
         raise ValueError(f"slices: received {slices}; allowed are whole numbers from 1")
     rows = pit_rows(one for one in pits if has_extent(one))
-    face = face_width_m * (np.arange(slices) + 0.5) / slices
+    face, covered = _covered(face_width_m, slices, rows)
     highest = float(gear.height_m(min(BEYOND_TIP * gear.tip_roll_rad, 0.5 * pi)))
     lines = _line_rows(face, rows)
     found, count = _line_unions(lines, rows, highest)
@@ -105,11 +112,51 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
         high_radius_m=high_radius,
         intervals=count,
         face_m=face,
+        covered=covered,
         pits=rows,
         lines=lines,
         base_radius_m=gear.base_radius_m,
         half_angle_rad=gear.base_half_angle_rad,
     )
+
+
+@njit(cache=True)
+def _covered(width: float, slices: int, pits: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the lines of the slices, and the parts of their widths over which damage extends at any height."""
+    room, merged = np.zeros((4, pits.shape[0])), np.zeros((4, pits.shape[0]))
+    face, covered = width * (np.arange(slices) + 0.5) / slices, np.zeros(slices)
+    for j in range(slices):
+        first, last = width * j / slices, width * (j + 1) / slices
+        filled = 0
+        for i in range(pits.shape[0]):
+            low, high = max(_end(pits, i, -1.0), first), min(_end(pits, i, 1.0), last)
+            if low < high:
+                filled = _insert(low, high, 0.0, 0.0, room, filled)
+        longest = 0.0
+        for k in range(_merge(room, filled, merged)):
+            length = merged[1, k] - merged[0, k]
+            covered[j] += length * slices / width
+            if length > longest:
+                longest, middle = length, 0.5 * (merged[0, k] + merged[1, k])
+        if covered[j] > 1.0 - WHOLE:
+            covered[j] = 1.0
+        elif covered[j] < WHOLE:
+            covered[j] = 0.0
+        else:
+            face[j] = middle
+    return face, covered
+
+
+@njit(cache=True)
+def _end(pits: FloatArray, i: int, side: float) -> float:
+    """Return how far row i reaches across the face, to the left (`side` -1) or to the right (1)."""
+    if pits[i, TRAPEZOID] == 0.0:
+        end: float = pits[i, FACE] + side * pits[i, SEMI_FACE]
+    elif side < 0.0:
+        end = min(pits[i, LEFT_LOW], pits[i, LEFT_HIGH])
+    else:
+        end = max(pits[i, RIGHT_LOW], pits[i, RIGHT_HIGH])
+    return end
 
 
 @njit(cache=True)

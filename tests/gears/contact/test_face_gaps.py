@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_gaps import face_gaps
+from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
 from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
 from siggen.gears.contact.pair_rest import rigid_rest
 from siggen.gears.damage.flank_chords import flank_chords
@@ -66,10 +66,15 @@ def test_the_carrying_length_is_the_land_or_the_whole_face():
     gap = np.where(np.arange(100) < 40, 0.6e-3, -NO_EDGE)
     none = np.zeros(100)
     sizes = 0.2e-3, 6.7e-3, 0.34e-6
-    assert carrying_length(land, land, none, none, *sizes) == pytest.approx(20e-3)
-    assert carrying_length(gap, gap, none, none, *sizes) == pytest.approx(12e-3, rel=0.02)
-    sunk = np.full(100, 0.6e-3)
-    assert carrying_length(sunk, sunk, none, none, *sizes) == pytest.approx(20e-3)
+    tips, whole = np.full(2, -NO_EDGE), np.ones(100)
+
+    def length(edge_m, covered) -> float:
+        return carrying_length(FaceGaps(edge_m, edge_m, none, none, none, covered, tips), none, *sizes)
+
+    assert length(land, none) == pytest.approx(20e-3)
+    assert length(gap, np.where(gap > 0.0, whole, 0.0)) == pytest.approx(12e-3, rel=0.02)
+    assert length(gap, np.where(gap > 0.0, 0.5 * whole, 0.0)) == pytest.approx(16e-3, rel=0.02)
+    assert length(np.full(100, 0.6e-3), whole) == pytest.approx(20e-3)
 
 
 def test_arrays_that_do_not_fit_are_refused():

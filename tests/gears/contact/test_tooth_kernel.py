@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from siggen.gears.contact.own_width import mean_width, own_law
 from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
 from tests.gears.contact.faces import BENDING, KAPPA, REST, WIDTH, face, solve, spall
 
@@ -64,7 +65,7 @@ def test_the_pair_carries_as_a_full_matrix_of_line_and_teeth_does() -> None:
 
 
 def _line(slices, loads: np.ndarray) -> np.ndarray:
-    """(K + β) u from the exponentials one by one."""
+    """(K + β) u from the exponentials one by one, and what slices get by their own width."""
     from siggen.gears.contact.face_slices import contact_half_width
     from siggen.gears.contact.line_kernel import diagonal, strengths
 
@@ -77,7 +78,9 @@ def _line(slices, loads: np.ndarray) -> np.ndarray:
     np.fill_diagonal(matrix, own)
     np.fill_diagonal(change, own_slope)
     beta = 0.25 * growth * (loads @ change @ loads) / (loads @ loads)
-    return np.asarray(matrix @ loads + beta * loads)
+    shared = mean_width(slices, float(loads @ loads))
+    own_terms = [own_law(load, shared)[0] * load if load > 0.0 else 0.0 for load in loads.tolist()]
+    return np.asarray(matrix @ loads + beta * loads + own_terms)
 
 
 def test_teeth_that_bend_give_way_to_a_tilt_and_shed_less_under_a_short_gap() -> None:

@@ -9,11 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.mesh.pair_forces import static_force
-from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
-from siggen.dynamics.mesh.pair_places import pair_table
+from siggen.gears.contact import table_options
 from siggen.gears.contact.contact_table import contact_table
-from siggen.gears.contact.table_options import TableOptions
+from siggen.gears.contact.face_force import face_force
+from siggen.gears.contact.kind_row import kind_row, pits_of_kind
+from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.table_columns import row_faces, table_solver
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
@@ -28,10 +30,9 @@ from siggen.gears.damage.irregular import (
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.sections import contact_length_loss, union_area_m2
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.specimen.contact import whole_face
 from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47()
@@ -176,28 +177,34 @@ def test_the_sink_rests_on_the_radius_of_its_own_edge() -> None:
 
 
 @pytest.mark.parametrize("skew_mm", [0.2, 0.8])
-def test_the_slices_of_a_table_are_enough_for_skewed_edges(skew_mm: float) -> None:
-    """The 96 of a table against 100: below 5e-4 of the healthy force. Against 192 they err by 7e-4 to 1.1e-3."""
+def test_the_slices_of_a_table_are_enough_for_skewed_edges(skew_mm: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The 83 of a table against 166: what the spall leaves of the healthy force errs by less than 5e-4 of it.
+
+    Sound faces differ as well, by 8e-4: cells are part of the kernel, and the contact in three dimensions lies between.
+    """
+    monkeypatch.setattr(table_options, "MOST_SLICES", 200)
     rng = np.random.default_rng(0)
     slope = 1e-3 * skew_mm / WIDTH
     one = spall(1e-3, 0.0, WIDTH, (drawn_waves(rng), drawn_waves(rng)), (slope, slope))
-    force = {cells: forces((one,), cells) for cells in (2.56, 1.28, 0.7)}
-    error = {cells: np.max(np.abs(force[cells] - force[0.7]) / forces((), 1.28)) for cells in (2.56, 1.28)}
-    assert error[1.28] < min(5e-4, 0.3 * error[2.56])
+    left = {cells: forces((one,), cells) / forces((), cells) for cells in (1.28, 0.64)}
+    assert left[0.64].min() < 0.7
+    assert np.max(np.abs(left[1.28] - left[0.64])) < 5e-4
 
 
 def forces(damage: Damage, cell_widths: float) -> np.ndarray:
-    """Return the mesh force (k,) at rest, 8 µm deep, over the engagement of tooth 0 [N]."""
-    teeth = StiffnessOptions()
-    law = pair_law(
-        whole_face(PAIR, damage, teeth, 257),
-        missing_material(PAIR, None, corner_contact=False, points=2),
-        MeshConstants(PAIR.line_of_action_m, 1.0, 1e-3),
-        damping_ratio=0.0,
-        contact=contact_table(PAIR, damage, teeth, TableOptions(4e3, cell_widths=cell_widths), 257),
-    )
-    pairs = pair_table(law)
-    return np.array([static_force(law, 8e-6, angle, pairs) for angle in np.linspace(0.02, 1.6, 1024)])
+    """Return the forces (k,) of a pair 8 µm deep, solved along the path [N]."""
+    teeth, options = StiffnessOptions(), TableOptions(4e3, cell_widths=cell_widths)
+    row, points = kind_row(PAIR, teeth, options, 257), np.arange(2, 255, 2)
+    if damage:
+        row = kind_row(PAIR, teeth, options, 257, pits_of_kind(damage, pair_kinds(PAIR, damage)[1]), row)
+    slices = face_slices(PAIR, options)
+    faces = row_faces(table_solver(PAIR, teeth, options, np.zeros(slices)), row, points)
+    found = []
+    for face in faces:
+        answer = face_force(face, 8e-6, 0.0, np.zeros(slices), solver_room(slices))
+        assert answer.passes > 0
+        found.append(answer.force_n)
+    return np.array(found)
 
 
 def test_a_spall_begins_between_the_lowest_point_of_single_contact_and_the_pitch_line() -> None:
