@@ -149,8 +149,9 @@ class PairLaw:
             pair.penetration = state.approach - pair.missing
             ahead = abs(state.tilt) * law["contact.half_face_m"]  # of one end of the face
             pair.side = 1 if pair.penetration + ahead > 0.0 else 0
-            if pair.penetration <= 0.0 and state.approach - offset < -law["backlash_m"]:
-                pair.side, pair.penetration = -1, state.approach - offset + law["backlash_m"]
+            behind = state.approach - 2.0 * offset + pair.missing + law["backlash_m"]
+            if pair.penetration <= 0.0 and behind < 0.0:
+                pair.side, pair.penetration = -1, behind
             found.append(pair)
             number -= 1
         return found
@@ -258,18 +259,15 @@ class PairLaw:
         """Add the forces of a pair that touches: spring, damper, moment, friction."""
         damping = self.root(pair, spring) * shared
         normal = spring.force + damping * (spring.slope * state.rate + spring.cross * state.tilt_rate)
-        if pair.side < 0:
-            sums.normal += min(0.0, normal)
-            return
-        if normal <= 0.0:
+        if pair.side * normal <= 0.0:
             return
         moment = spring.moment + damping * (spring.cross * state.rate + spring.turning * state.tilt_rate)
         sums.normal += normal
         sums.across += moment
         if self.model["rubs"]:
-            _, coefficient = self.lubricated(pair, spring, normal)
+            _, coefficient = self.lubricated(pair, spring, abs(normal))
             sliding = state.sliding_0 + pair.position * state.sliding_1
-            friction = coefficient * normal * math.tanh(sliding / self.model["friction.slip_speed_m_s"])
+            friction = coefficient * abs(normal) * math.tanh(sliding / self.model["friction.slip_speed_m_s"])
             sums.friction += friction
             sums.friction_moment += pair.position * friction
             sums.friction_across += friction * moment / normal

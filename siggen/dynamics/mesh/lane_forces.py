@@ -107,7 +107,8 @@ def write_lane_forces(
     inside = BOTH if older else BOTH // 3 << slot
     approach = of_pairs(load(node, NODE_APPROACH * LANES))
     depth = place_lanes(law, pitches, approach, table)
-    behind = (depth <= 0.0) & (approach - load(table, OFFSET * LANES) < -scalars[layout.BACKLASH_M])
+    placed = approach - load(table, OFFSET * LANES)
+    behind = (depth <= 0.0) & (2.0 * placed - depth < -scalars[layout.BACKLASH_M])
     if bits(behind) & inside != 0:
         return NOT_HERE
     if law.scalars[layout.CONTACT_HALF_FACE] > 0.0:  # how far one end of the face is ahead

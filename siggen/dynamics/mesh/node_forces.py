@@ -192,9 +192,9 @@ def _rub(law: PairLaw, pairs: FloatArray, slot: int, slots: int, node: FloatArra
     for q in range(pairs.shape[0] // slots):
         i = q * slots + slot
         force, here = pairs[i, NORMAL], pairs[i, POSITION]
-        if pairs[i, FLANK] <= 0.0 or force <= 0.0:
+        if pairs[i, FLANK] * force <= 0.0:
             continue
-        found = rubbed(law, force, here, (pairs[i, CARRYING], pairs[i, ROUGH]), pairs[i, SLIDING])
+        found = rubbed(law, abs(force), here, (pairs[i, CARRYING], pairs[i, ROUGH]), pairs[i, SLIDING])
         pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE] = found
         node[NODE_FRICTION, q] += found.friction
         node[NODE_ARM, q] += here * found.friction

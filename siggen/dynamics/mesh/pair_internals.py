@@ -4,7 +4,7 @@ Values are those of the table of pairs (`pair_places`). Film and film ratio (ref
 of `lubrication`) are computed from them: central film by Masjedi and Khonsari at the line load on what carries; the
 roughness inside damage enters by its mean square over the face (derived). Hertz pressure: line contact. While a pair
 does not touch, its forces, moments, damping and load share are 0, and what only a contact has (`contact_names`) is
-NaN; a back flank that touches has forces, but neither friction, film nor pressure.
+NaN; a back flank that touches has force and friction, but neither film nor pressure.
 """
 
 from __future__ import annotations

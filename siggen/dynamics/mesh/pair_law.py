@@ -4,9 +4,13 @@ Equations (reference: standard literature; load sharing, friction and contact of
 Luo, Baddour, Liang, MSSP 119 (2019) 155-181): with the approach x along the line of action and d_n = x - e_n
 
     drive flank:                   N_n = max(0, f_n(p_n) + c_n ẋ) where f_n(p_n) > 0,   p_n = d_n - Σ_m c_nm N_m
-    back flank, x - e_p < -j:      N_n = min(0, k_n p_n + c_n ẋ),  d_n = x - e_p + j     e_p: place of the teeth alone
+    back flank, d_n < 0:          N_n = min(0, k_n p_n + c_n ẋ),  d_n = x - 2 e_p + e_n + j     e_p: place of the teeth
     c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch, k = f' (Kasuba and Evans 1981: constant ratio)
-    F_n = μ_n N_n tanh(v_n/v_0)    on the drive flank, v_n = sliding of the pinion's flank on the gear's (`friction`)
+    F_n = μ_n |N_n| tanh(v_n/v_0), v_n = sliding of the pinion's flank on the gear's (`friction`)
+
+Of the two flanks of a tooth both miss relief and corners, and where one is behind its place the other is ahead: x - e_p
++ (e_n - e_p). The law belongs to the flanks that carry a torque; those behind them are simple: they push along the same
+line, where these touch, and are sound.
 
 f_n(p) is the force of the contact solved across the face (`contact_spring`), or k_n p without a table of it. c_nm is
 the deflection at one pair per unit force at another, through the gear bodies that they share; 0 without coupling.

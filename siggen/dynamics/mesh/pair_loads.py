@@ -95,7 +95,7 @@ def lubricated(law: PairLaw, position_m: Value, load_n: Value, rough: Value, cho
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def rubbed(law: PairLaw, force_n: Value, position_m: Value, faces: tuple[Value, Value], sliding: Value) -> Rubbed:
-    """Return the friction of a drive flank at a force; of no use where there is none.
+    """Return the friction of a flank at the size of its force; of no use where there is none.
 
     `faces`: carrying share of the face, and share of the load on damage; `sliding`: speed [m/s].
     """

@@ -75,8 +75,9 @@ def write_springs(
         gap = _place_pair(law, pairs, i, pair, pitches - pair)
         pair -= 1
         depth, flank = approach_m - gap, 0.0
-        if depth <= 0.0 and approach_m - pairs[i, OFFSET] < -law.scalars[layout.BACKLASH_M]:
-            depth, flank, back = approach_m - pairs[i, OFFSET] + law.scalars[layout.BACKLASH_M], -1.0, True
+        behind = 2.0 * (approach_m - pairs[i, OFFSET]) - depth + law.scalars[layout.BACKLASH_M]
+        if depth <= 0.0 and behind < 0.0:
+            depth, flank, back = behind, -1.0, True
         pairs[i, PENETRATION], pairs[i, ALONE], pairs[i, FLANK] = depth, depth, flank
         if depth + lift > 0.0 or flank < 0.0:
             near += 1

@@ -46,7 +46,7 @@ GOLDEN = 0.6180339887498949
 
 
 class MeanState(NamedTuple):
-    """Motor torque, pinion speed, mesh stiffness of a mean; errors count against a light contact's force at least."""
+    """Motor torque, pinion speed and mesh stiffness of a mean; errors count against a light force at least."""
 
     torque_nm: float
     speed_hz: float

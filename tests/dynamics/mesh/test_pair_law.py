@@ -173,3 +173,13 @@ def test_impossible_numbers_are_refused(wrong: dict) -> None:
 def test_a_force_that_no_tooth_carries_is_refused() -> None:
     with pytest.raises(ValueError, match="allowed are forces that teeth carry"):
         static_approach_m(law(), 1e9, SINGLE)
+
+
+def test_back_flanks_touch_no_longer_than_drive_flanks_do() -> None:
+    """Corners are missing on either side: at any angle as many pairs carry under a torque as under its opposite."""
+    chosen = law(missing_material(gear_pair()))
+    for pitches in np.linspace(5.0, 6.0, 41):
+        for force_n in (50.0, 1182.4):
+            drive = loaded(chosen, static_approach_m(chosen, force_n, float(pitches)), float(pitches))
+            back = loaded(chosen, static_approach_m(chosen, -force_n, float(pitches)), float(pitches))
+            np.testing.assert_allclose(back[:, NORMAL], -drive[:, NORMAL], atol=1e-6 * force_n)
