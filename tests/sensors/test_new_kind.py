@@ -95,7 +95,7 @@ def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> No
     facts_file(folder)
     command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
     for card in ("set/README.md", "published/README.md"):
-        text = (folder / card).read_text(encoding="utf-8")
+        text = " ".join((folder / card).read_text(encoding="utf-8").split())
         assert "labelled strain records" in text
         assert "Toy gauges show the strain of a bearing's seat" in text
         assert not OTHER_QUANTITY.search(text)
