@@ -52,7 +52,7 @@ class TorqueSensor(Sensor):
     @property
     def noise_floor(self) -> Number | None:
         """Standard deviation of its white noise [N m]."""
-        return self.floor_nm
+        return self.floor_nm or None
 
     def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:  # noqa: ARG002
         """Return the torque of its coupling."""
