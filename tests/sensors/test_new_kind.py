@@ -83,7 +83,7 @@ def test_the_plan_takes_it_and_mistakes_in_it_are_named(folder: Path) -> None:
     assert "range [um/m]" in doubted
     changes = {
         "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
-        "sensors.0.kind=thermometer": "transmission_error, torque, bearing_force, motor_current, toy_strain_gauge",
+        "sensors.0.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
         "dynamics.model=torsional": "allowed: one of pinion_rim, gear_rim",
     }
     for change, allowed in changes.items():
