@@ -37,7 +37,7 @@ SPELLINGS = {
 """Other spellings of known units, as recorders write them."""
 KNOWN = ("m/s2", "mm/s2", "g", "mg", "mV", "V")
 OTHER_QUANTITY = re.compile(
-    r"[kMmcduµn]?(N|Pa|bar|N[ *·]?m|m/s|m|rad|rad/s|A|W|s|Hz|K)|lbf|psi|in|in/s|ips|rpm|1/min|°|deg|(°|deg ?)[CF]",
+    r"[kMmcduµn]?(N|Pa|bar|N[ *·]?m|m/m|m/s|m|rad|rad/s|A|W|s|Hz|K)|lbf|psi|in|in/s|ips|rpm|1/min|°|deg|(°|deg ?)[CF]",
     re.IGNORECASE,
 )
 """Units that are certainly not of an acceleration, nor of an accelerometer's voltage."""

@@ -21,7 +21,7 @@ SENSORS = [
     {**DISC, "name": "first", "place": "pinion"},
     {**DISC, "name": "second", "place": "gear"},
     {"kind": "transmission_error", "name": "error", "pinion_encoder": "first", "gear_encoder": "second"},
-    {"kind": "torque", "name": "flange", "range_nm": 200},
+    {"kind": "coupling_torque", "name": "flange", "range_nm": 200},
     {"kind": "bearing_force", "name": "washer", "range_n": 10_000, "axes": ["vertical"]},
     {"kind": "motor_current", "name": "clamp", "rated_torque_nm": 60, "floor_a": 0.001},
 ]

@@ -89,8 +89,10 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 
-def _sensors_beside(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    sensors = sections.get("sensors", {})
+def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    sensors, written = sections.get("sensors", {}), raw.get("sensors")
+    if isinstance(written, (list, tuple)) and len(written) > len(sensors):  # one may be missing that is wrong itself
+        return
     for index, sensor in sensors.items():
         for problem in sensor.beside_problems({one.name: one for one in sensors.values()}):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)

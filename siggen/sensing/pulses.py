@@ -1,7 +1,7 @@
 """Pulses: when the marks of a disc on a shaft pass, and the speed that a counter makes of their times.
 
 An angle that is known at samples is a polynomial through `NODES` of them between two (Lagrange), so that vibration to a
-sixth of the sampling rate is followed within 0.1 % of its amplitude (derived, tested). A counter knows the number of a
+sixth of the sampling rate is followed within 0.2 % of its amplitude (derived, tested). A counter knows the number of a
 pulse and its time in whole ticks alone: between two pulses it takes the speed as even (reference: standard literature
 on instantaneous angular speed, elapsed time).
 """

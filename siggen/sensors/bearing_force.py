@@ -54,7 +54,7 @@ class ForceWasher(Sensor):
     @property
     def noise_floor(self) -> Number | None:
         """Standard deviation of its white noise [N]."""
-        return self.floor_n
+        return self.floor_n or None
 
     def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:  # noqa: ARG002
         """Return the force along an axis."""

@@ -2,10 +2,10 @@
 
 from siggen.sensors.accelerometer import Accelerometer
 from siggen.sensors.bearing_force import ForceWasher
+from siggen.sensors.coupling_torque import TorqueSensor
 from siggen.sensors.encoder import Encoder
 from siggen.sensors.motor_current import MotorCurrent
 from siggen.sensors.sensor import Sensor
-from siggen.sensors.torque import TorqueSensor
 from siggen.sensors.transmission_error import TransmissionError
 
 KINDS: list[type[Sensor]] = [Accelerometer, Encoder, TransmissionError, TorqueSensor, ForceWasher, MotorCurrent]

@@ -77,7 +77,7 @@ class MotorCurrent(Sensor):
     @property
     def noise_floor(self) -> Number | None:
         """Standard deviation of its white noise [A]."""
-        return self.floor_a
+        return self.floor_a or None
 
     def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:  # noqa: ARG002
         """Return the vibration of the rotor."""

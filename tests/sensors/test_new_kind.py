@@ -83,7 +83,7 @@ def test_the_plan_takes_it_and_mistakes_in_it_are_named(folder: Path) -> None:
     assert "range [um/m]" in doubted
     changes = {
         "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
-        "sensors.0.kind=thermometer": "transmission_error, torque, bearing_force, motor_current, toy_strain_gauge",
+        "sensors.0.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
         "dynamics.model=torsional": "allowed: one of pinion_rim, gear_rim",
     }
     for change, allowed in changes.items():
@@ -95,7 +95,7 @@ def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> No
     facts_file(folder)
     command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
     for card in ("set/README.md", "published/README.md"):
-        text = (folder / card).read_text(encoding="utf-8")
+        text = " ".join((folder / card).read_text(encoding="utf-8").split())
         assert "labelled strain records" in text
         assert "Toy gauges show the strain of a bearing's seat" in text
         assert not OTHER_QUANTITY.search(text)

@@ -56,3 +56,5 @@ def test_encoders_that_are_not_there_or_on_the_other_shaft_are_refused() -> None
     assert found["sensors.2.gear_encoder"] == "'first'; allowed: an encoder at place gear or load: second"
     found = problems(PINION, {**ERROR, "gear_encoder": "third"})
     assert found["sensors.1.gear_encoder"].endswith("gear or load: none there is; add one")
+    found = problems(PINION, {**GEAR, "pulses_per_turn": 0}, ERROR)
+    assert list(found) == ["sensors.1.pulses_per_turn"]

@@ -53,6 +53,21 @@ def test_responses_solve_the_equations_of_motion() -> None:
     assert all((response[:, 0] == 0.0).all() for response in found.acceleration.values())
 
 
+def test_readings_of_shafts_take_what_the_rotors_do_not() -> None:
+    structure, hz = locked_load(make_structure()), np.array([3.0, 120.0, 900.0, 4000.0])
+    omega, place = 2.0 * np.pi * hz, structure.coordinates.index("theta_m")
+    readings = ("angle/motor", "torque/input_coupling")
+    pushed = np.array([structure.mesh_vector, structure.bearing_directions["pinion_bearing/vertical"]])
+    angle, torque = forced_motion(structure, MeanMesh(3e8, 800.0), pushed, (), hz, readings).shaft.values()
+    # nothing else acts on the motor, so its coupling takes what its inertia gives: J ω² θ
+    np.testing.assert_allclose(torque, structure.mass[place, place] * omega**2 * angle, rtol=1e-6)
+
+
+def test_a_model_has_the_readings_of_its_own_shafts() -> None:
+    angles = {"angle/motor", "angle/pinion", "angle/gear", "angle/load"}
+    assert set(make_structure().shaft_readings) == angles | {"torque/input_coupling", "torque/output_coupling"}
+
+
 @pytest.mark.parametrize("name", ["mesh", "gear_bearing/vertical"])
 def test_a_harmonic_force_moves_the_integrated_gearbox_as_the_response_says(
     constant_tables: MeshTables, name: str

@@ -8,7 +8,7 @@ import pytest
 from tests.sensors.runs import loaded, problems, record
 from tests.sensors.test_encoder import OFF, PERFECT
 
-INPUT = {"kind": "torque", "name": "input", "range_nm": 1e4, "bits": None}
+INPUT = {"kind": "coupling_torque", "name": "input", "range_nm": 1e4, "bits": None}
 OUTPUT = {**INPUT, "name": "output", "place": "output_coupling"}
 MOTOR = {**PERFECT, "name": "motor", "place": "motor"}
 INERTIA = 0.02

@@ -23,7 +23,7 @@ class TorqueSensor(Sensor):
     acts: ClassVar[str] = "Torque sensors show what spring and damper of a coupling pass on, mean included."
     plausible: ClassVar[tuple[float, float, str]] = (1.0, 1e7, "is it in N m, not kN m?")
 
-    kind: Literal["torque"] = Field(description="torque that a coupling passes on")
+    kind: Literal["coupling_torque"] = Field(description="torque that a coupling passes on")
     place: Literal["input_coupling", "output_coupling"] = Field(
         default="input_coupling", description="between motor and pinion or gear and load; not with dynamics.model: 6dof"
     )
@@ -52,7 +52,7 @@ class TorqueSensor(Sensor):
     @property
     def noise_floor(self) -> Number | None:
         """Standard deviation of its white noise [N m]."""
-        return self.floor_nm
+        return self.floor_nm or None
 
     def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:  # noqa: ARG002
         """Return the torque of its coupling."""
