@@ -21,7 +21,7 @@ from siggen.gears.geometry.root_chord import root_chord
 from siggen.keys.column import MILLIMETRE, Column
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant, number_text
-from siggen.keys.teeth import DAMAGED_TEETH, Teeth
+from siggen.keys.teeth import DAMAGED_TEETH, Teeth, TeethValue
 
 LEAST_DEG, MOST_DEG = (round(degrees(angle)) for angle in ANGLE_RANGE_RAD)
 LONGEST_RUN = 1e3
@@ -70,7 +70,7 @@ class RootCracks(Fault):
 
     def contradictions(self, milder: Fault) -> Iterator[Problem]:
         """Yield another angle than that of the milder crack on the same gear, less depth or a shorter run."""
-        if not isinstance(milder, RootCracks) or milder.gear != self.gear:
+        if not isinstance(milder, RootCracks) or milder.gear != self.gear or _apart(milder.teeth, self.teeth):
             return
         kept = "as in the milder state, or grows_from: none"
         if milder.angle_deg != self.angle_deg:
@@ -116,6 +116,11 @@ class RootCracks(Fault):
         depth_m = constant(self.depth_share) * root_chord(pair.member(self.gear)).length_m
         run_m = inf if self.face_share is None else constant(self.face_share) * pair.face_width_m
         return RootCrack(self.gear, tooth, depth_m, radians(constant(self.angle_deg)), run_m)
+
+
+def _apart(teeth: TeethValue, others: TeethValue) -> bool:
+    """Whether two lists of teeth share none; counts begin at one tooth and share some."""
+    return isinstance(teeth, tuple) and isinstance(others, tuple) and not set(teeth) & set(others)
 
 
 def _span(values: tuple[float, float]) -> str:

@@ -46,6 +46,13 @@ def test_it_grows_deeper_on_its_teeth_and_stays_one_crack_each() -> None:
             assert new.depth_m > old.depth_m
 
 
+def test_a_crack_in_another_tooth_may_have_another_angle() -> None:
+    config = config_with(
+        cracked(depth_share=0.3, teeth=[2]), cracked(depth_share=0.1, teeth=[7], angle_deg=60.0, face_share=0.5)
+    )
+    assert [one.tooth for one in damage_of(config, 2)] == [2, 7]
+
+
 def test_its_row_has_depth_angle_and_run_and_stands_beside_pits() -> None:
     pits = {"kind": "clustered", "count": 2, "spread_profile_mm": 0.2, "semi_axis_face_mm": 0.3}
     pits |= {"semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
