@@ -117,13 +117,6 @@ def _print_trial(console: Console, tried: Sequence[StateTrial]) -> None:
 
 def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
-    from siggen.checks.contact_notes import contact_notes
-    from siggen.checks.damage_notes import damage_notes
-    from siggen.checks.plausibility import implausible
-    from siggen.checks.shaft_notes import shaft_notes
-    from siggen.checks.state_notes import state_notes
-    from siggen.checks.torque_notes import torque_notes
-    from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import (
         SPLITS,
         estimated_bytes,
@@ -132,8 +125,6 @@ def plan_summary(config: Config) -> dict[str, Any]:
         specimen_count,
         specimens_per_shard,
     )
-    from siggen.specimen.gears import model_notes
-    from siggen.views.table_error import table_error_text
 
     specimens = {split: specimen_count(config, split) for split in SPLITS}
     records = config.specimens * config.records_per_specimen
@@ -157,6 +148,23 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
+        **_notes(config),
+    }
+
+
+def _notes(config: Config) -> dict[str, Any]:
+    """Return how exact its tables are, how it varies, and what a user should know about it, in words."""
+    from siggen.checks.contact_notes import contact_notes
+    from siggen.checks.damage_notes import damage_notes
+    from siggen.checks.plausibility import implausible
+    from siggen.checks.shaft_notes import shaft_notes
+    from siggen.checks.state_notes import state_notes
+    from siggen.checks.torque_notes import torque_notes
+    from siggen.checks.variation_notes import reversal_notes, variation_notes
+    from siggen.specimen.gears import model_notes
+    from siggen.views.table_error import table_error_text
+
+    return {
         "stiffness_tables": table_error_text(config),
         "stiffness_notes": _of_every_pair(config, model_notes),
         "manufacture": _manufacture(config),

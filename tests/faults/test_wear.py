@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from diagnostics.indicators.record import record_values
 from siggen.columns.record import Record
 from siggen.errors import ConfigError
 from siggen.gears.damage.wear import LABEL_POINTS, Wear
@@ -88,6 +89,22 @@ def test_worn_gears_that_are_perfect_otherwise_stay_on_mesh_lines() -> None:
         lines.append(mesh)
     # 20 µm are twice the deflection: mesh lines are others.
     assert np.abs(lines[1][:4] / lines[0][:4] - 1.0).max() > 0.2
+
+
+def test_fm4_of_worn_gears_is_that_of_healthy_ones_in_the_same_noise() -> None:
+    """All that wear adds stands in mesh lines, which the difference signal leaves out."""
+    config = config_with(WEAR).model_copy(update={"fs_hz": 27000.0, "duration_s": 0.6})
+    noise = np.random.default_rng(3).standard_normal(config.samples)
+    found = []
+    for record in simulate(config, [0, 1]):
+        assert isinstance(record, Record)
+        signal = record.channels["bearing_vertical"].astype(float) + noise
+        values = record_values({"a": signal}, record.tacho_s, config.fs_hz, (18, 47)).values
+        found.append((values["fm4_pinion__a"], values["mesh_amplitude_h1__a"]))
+    (healthy, before), (worn, after) = found
+    # 1 %: what interpolation over the turn leaves of lines that are ten times as high.
+    assert worn == pytest.approx(healthy, rel=0.05)
+    assert after > 3.0 * before
 
 
 @pytest.mark.parametrize(
