@@ -67,6 +67,7 @@ class State(Section):
         default=(),
         description="keys of the machine or of its sensors that differ from the healthy gearbox: a number instead, "
         "times or plus a number",
+        json_schema_extra={"default": {}},
     )
 
     @property

@@ -1,4 +1,4 @@
-"""What a change makes impossible is told by the state and the key of the change, not where the healthy gearbox stands."""
+"""What a change makes impossible is told by state and key of the change, not where the healthy gearbox stands."""
 
 from __future__ import annotations
 
