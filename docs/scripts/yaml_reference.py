@@ -112,6 +112,8 @@ def default(key: Key) -> str:
     if "default" not in key.schema:
         return "see meaning"
     value = key.schema["default"]
+    if value == {}:
+        return "`{}`"
     if isinstance(value, dict):
         return f"`{mapping(value)}`" if "kind" in value else "by its keys"
     if value is None:

@@ -67,6 +67,7 @@ class State(Section):
         default=(),
         description="keys of the machine or of its sensors that differ from the healthy gearbox: a number instead, "
         "times or plus a number",
+        json_schema_extra={"default": {}},
     )
 
     @property
@@ -100,7 +101,7 @@ class State(Section):
     @property
     def remarks(self) -> tuple[str, ...]:
         """What fault and severity do not say about it, in words."""
-        sham = ("sham: its damage passes everywhere, with nothing removed",) if self.sham else ()
+        sham = ("a sham: its damage passes everywhere, with nothing removed",) if self.sham else ()
         return (*sham, *(f"changes {one.text}" for one in self.changes))
 
     @model_validator(mode="before")
