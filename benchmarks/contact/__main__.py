@@ -40,7 +40,7 @@ def two_edge_table() -> Iterator[str]:
 
 def loss_table() -> Iterator[str]:
     """Lines of losses of pair stiffness, in per cent."""
-    counts = (200, 100, 50)
+    counts = (100, 97, 80, 67, 50)
     yield "| land | F [N] | three dimensions | " + " | ".join(f"{n} slices" for n in counts) + " |"
     yield "|---" * (3 + len(counts)) + "|"
     for force in (300.0, 1200.0, 4000.0):

@@ -41,6 +41,10 @@ LANDS = {
 }
 
 
+FINE_M, SLIVER = 0.01e-3, 1e-9
+"""Cells from which parts of slices are counted, and the part that does not count."""
+
+
 @dataclass(frozen=True, slots=True)
 class SinkPair:
     """A sink of the library beside that of a solver [m], for a gap and an offset s [m] under a line load [N/m].
@@ -146,15 +150,23 @@ def losses(
     case = face_case(cell_m, teeth)
     rest = REST_M_PER_N - teeth.compliance_m_per_n
     whole = approach_at(case, np.ones(round(case.face_width_m / cell_m), bool), force_n)[0]
-    healthy = {n: approach_under(face_of_land(np.ones(n, bool), teeth), force_n) for n in slices}
+    healthy = {n: approach_under(face_of_land(np.ones(n), teeth), force_n) for n in slices}
     for name, land in LANDS.items():
         damaged = approach_at(case, land(case), force_n, reach=6.0)[0]
         solver = 1.0 - (rest + whole / force_n) / (rest + damaged / force_n)
         library = {}
         for n in slices:
-            face = face_of_land(land(replace(case, cell_m=case.face_width_m / n)), teeth)
+            face = face_of_land(_parts(land(replace(case, cell_m=FINE_M)), n), teeth)
             library[n] = 100.0 * (1.0 - healthy[n] / approach_under(face, force_n))
         yield Loss(name, force_n, 100.0 * solver, library)
+
+
+def _parts(land: np.ndarray, slices: int) -> np.ndarray:
+    """Return which part of every slice (slices,) is land, from cells (k,) that are or are not."""
+    edges = np.linspace(0.0, land.size, slices + 1)
+    below = np.concatenate([[0.0], np.cumsum(land)])
+    parts = np.diff(np.interp(edges, np.arange(land.size + 1), below)) * slices / land.size
+    return np.where(parts > 1.0 - SLIVER, 1.0, np.where(parts < SLIVER, 0.0, parts))
 
 
 def face_case(cell_m: float, teeth: Teeth) -> FaceCase:
@@ -182,5 +194,5 @@ def tilted(force_n: float, slices: int = 100, cell_m: float = 0.1e-3, teeth: Tee
     rest = force_n * (REST_M_PER_N - teeth.compliance_m_per_n)
     for tilt in (2e-5, 1e-4, 2e-4, 4e-4):
         approach, line = approach_at(case, np.ones(count, bool), force_n, 4.0, tilt)
-        answer = answer_under(face_of_land(np.ones(slices, bool), teeth), force_n, tilt)
+        answer = answer_under(face_of_land(np.ones(slices), teeth), force_n, tilt)
         yield Tilted(tilt, force_n, answer[0], answer[1], approach + rest, float(line @ y) * cell_m)
