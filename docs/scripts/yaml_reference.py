@@ -112,12 +112,8 @@ def default(key: Key) -> str:
     if "default" not in key.schema:
         return "see meaning"
     value = key.schema["default"]
-    if value == {}:
-        return "`{}`"
-    if isinstance(value, dict):
+    if isinstance(value, dict) and value:
         return f"`{mapping(value)}`" if "kind" in value else "by its keys"
-    if value is None:
-        return "`null`"
     if isinstance(value, float):
         return f"`{digits(value)}`"
     return f"`{value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)}`"

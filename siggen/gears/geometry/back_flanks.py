@@ -16,6 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
 
@@ -36,19 +37,22 @@ def back_flanks(missing: MissingMaterial, pair: GearPair) -> MissingMaterial:
 
     A tooth whose drive flank lies behind its place has a back flank that lies ahead by as much: places change sign.
     Forms are those of the drive flanks of the mirrored gear, whose teeth count the other way (assumed: both flanks of a
-    tooth are made alike).
+    tooth are made alike). Corners of tips touch where they do with the gear at its place.
     """
     line = pair.line_of_action_m
-    return MissingMaterial(
-        line - missing.end_m, line - missing.start_m, _mirrored(missing.pinion, 0), _mirrored(missing.gear, 1)
-    )
+    mirrored = (_mirrored(missing, pair, which) for which in ("pinion", "gear"))
+    return MissingMaterial(line - missing.end_m, line - missing.start_m, *mirrored)
 
 
-def _mirrored(teeth: ToothTables, later: int) -> ToothTables:
-    """Return the tables of a gear whose tooth k + `later` takes part in the pair of tooth k."""
+def _mirrored(missing: MissingMaterial, pair: GearPair, which: str) -> ToothTables:
+    """Return the tables of a gear; tooth k + 1 of the gear takes part in the pair of tooth k."""
+    teeth, later, role = (missing.pinion, 0, "gear") if which == "pinion" else (missing.gear, 1, "pinion")
+    place = np.linspace(missing.start_m, missing.end_m, teeth.profile_m.shape[1])
+    form = teeth.profile_m - touching_gap_m(pair, which, place)
+    corner = touching_gap_m(driven_pair(pair), role, pair.line_of_action_m - place[::-1])
     number = np.arange(teeth.kind_of_tooth.size) + later
     return ToothTables(
-        profile_m=np.ascontiguousarray(teeth.profile_m[:, ::-1]),
+        profile_m=form[:, ::-1] + corner,
         kind_of_tooth=teeth.kind_of_tooth[-number % number.size],
         offset_m=0.0 - teeth.offset_m[number % number.size],
     )

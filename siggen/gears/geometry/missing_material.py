@@ -7,14 +7,13 @@ relief, the corner of the tip outside the path of contact, and one constant per 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.gears.geometry.corner_contact import tip_gap_m, touching_gap_m
+from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 
 CORNER_REACH_PITCHES = 0.15
@@ -78,22 +77,13 @@ def missing_material(
     reach_m = reach_pitches * pair.base_pitch_m if corner_contact else 0.0
     start_m, end_m = pair.contact_start_m - reach_m, pair.contact_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)
-    # Where corners carry far beside the path, their gap counts at the place where they touch. Within the usual reach
-    # that moves less than 3 % of a deflection, and records stay what they were.
-    gap = tip_gap_m if reach_pitches <= CORNER_REACH_PITCHES else touching_gap_m
-    pinion, gear = (_teeth(pair, which, relief, position_m, gap) for which in ("pinion", "gear"))
+    pinion, gear = (_teeth(pair, which, relief, position_m) for which in ("pinion", "gear"))
     return MissingMaterial(start_m, end_m, pinion, gear)
 
 
-def _teeth(
-    pair: GearPair,
-    which: str,
-    relief: TipRelief | None,
-    position_m: FloatArray,
-    gap: Callable[[GearPair, str, FloatArray], FloatArray],
-) -> ToothTables:
+def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:
     to_tip_m = pair.contact_end_m - position_m if which == "pinion" else position_m - pair.contact_start_m
-    profile = gap(pair, which, position_m)
+    profile = touching_gap_m(pair, which, position_m)
     if relief is not None:
         share = np.clip(1.0 - np.maximum(to_tip_m, 0.0) / relief.length_m, 0.0, None)
         profile = profile + relief.amount_m * share**2
