@@ -192,7 +192,7 @@ def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLeng
     target : float
         AUC.
     """
-    judged = [entry for entry in entries if math.isfinite(entry.auc.value) and SIZES[2] in entry.sizes]
+    judged = [entry for entry in entries if math.isfinite(entry.auc.value) and entry.sizes.get(SIZES[2], 0.0) > 0.0]
     ladders = {fault: [entry for entry in judged if entry.fault == fault] for fault in (e.fault for e in entries)}
     return {fault: _first_reaching(found, target) for fault, found in ladders.items() if differ_in_length(found)}
 

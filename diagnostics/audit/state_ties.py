@@ -34,6 +34,9 @@ MOST_SPECIMENS = 24
 
 MEND = "Draw the manufacturing errors anew for every specimen."
 
+CHANGED = "changed_keys"
+"""Label of what a state changes on purpose."""
+
 BINS = 8
 PERMUTATIONS = 200
 LARGEST_DEVIATIONS = 5.0
@@ -145,21 +148,28 @@ def state_ties(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
 
 
 def tied_columns(measured: MeasuredSet, seed: int = 0) -> dict[ColumnGroup, list[Tie]]:
-    """Return the columns that tell the state, by group."""
-    state = _codes(measured.labels["state"])
-    if state.max() == 0:
+    """Return the columns that tell the state, by group; states that change keys of the machine tell by design."""
+    kept = unchanged(measured)
+    state = _codes(measured.labels["state"][kept])
+    if state.max(initial=0) == 0:
         return {}
-    specimen = _codes(measured.labels["specimen_id"])
+    specimen = _codes(measured.labels["specimen_id"][kept])
     permuted = permuted_states(state, specimen, seed)
     found: dict[ColumnGroup, list[Tie]] = {}
     for name, values in _columns(measured).items():
         group = column_group(name)
         if group is None:
             continue
-        tie = strongest_tie(name, values, state, specimen, permuted)
+        tie = strongest_tie(name, values[kept], state, specimen, permuted)
         if tie is not None and tie.is_found:
             found.setdefault(group, []).append(tie)
     return found
+
+
+def unchanged(measured: MeasuredSet) -> np.ndarray:
+    """Return which records are of states that change no key of the machine, (records,) bool."""
+    changed = measured.labels.get(CHANGED)
+    return np.ones(len(measured.healthy), dtype=bool) if changed is None else np.array([not one for one in changed])
 
 
 def _columns(measured: MeasuredSet) -> dict[str, np.ndarray]:
