@@ -131,7 +131,11 @@ def _draw_sizes(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str])
                 row = group + 0.8 * ((place + 0.5) / len(families) - 0.5)
                 _draw_size(axis, detectors[family].sizes[kind], row, family)
         if not any(kind in detectors[family].sizes for family in families):
-            axis.text(0.03, group, "too few sizes", transform=axis.get_yaxis_transform(), va="center", fontsize=8)
+            areas = [
+                state.area_mm2 for one in detectors.values() for state in one.states.values() if state.kind == kind
+            ]
+            said = "too few sizes" if any(areas) else "no area on a flank"
+            axis.text(0.03, group, said, transform=axis.get_yaxis_transform(), va="center", fontsize=8)
     axis.set_ylim(len(kinds) - 0.5, -0.5)
     if len(kinds) == 1:
         axis.set_yticks([0.0], ["nine of\nten found"])
@@ -244,7 +248,8 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
     largest = max(states, key=lambda state: states[state].area_mm2)
     if size is None:
         found = states[largest]
-        return f"{capitalised(name)} of {_area(found.area_mm2)} is found in {_share(found)}."
+        size = f" of {_area(found.area_mm2)}" if found.area_mm2 > 0.0 else ""  # what shows on no flank has no area
+        return f"{capitalised(name)}{size} is found in {_share(found)}."
     if size.is_bound:
         return (
             f"{capitalised(name)} is found in nine of ten records from {_area(size.smallest_mm2)} on, the smallest of "
