@@ -248,8 +248,8 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
     largest = max(states, key=lambda state: states[state].area_mm2)
     if size is None:
         found = states[largest]
-        size = f" of {_area(found.area_mm2)}" if found.area_mm2 > 0.0 else ""  # what shows on no flank has no area
-        return f"{capitalised(name)}{size} is found in {_share(found)}."
+        of = f" of {_area(found.area_mm2)}" if found.area_mm2 > 0.0 else ""  # what shows on no flank has no area
+        return f"{capitalised(name)}{of} is found in {_share(found)}."
     if size.is_bound:
         return (
             f"{capitalised(name)} is found in nine of ten records from {_area(size.smallest_mm2)} on, the smallest of "

@@ -20,7 +20,7 @@ from siggen.record.quantities import quantity_column
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL = CONFIGS / "industrial.yaml"
-BARE = ("manufacture=null", "variation={}", "background=null", "sensors.0.position_mm=[0, 0]")
+BARE = ("manufacture=null", "variation={}", "background=null", "sensors.0.position_mm=[0, 0]", "states.19={name: last}")
 """Without what the preset has of the sections that are added one by one; with a place that grows with the gears."""
 MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
 PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"

@@ -16,12 +16,12 @@ def torque_notes(config: Config) -> tuple[str, ...]:
 
 def _notes(config: Config) -> Iterator[str]:
     torques = [bounds(point.torque_nm) for point in config.operating_points]
-    damaged = any(state.damage is not None for state in config.states)
+    damaged = any(state.damaged for state in config.states)
     if any(low <= 0.0 <= high for low, high in torques):
         behind = "springs without tilt, on the line of action of the drive flanks"
         also = f"; back flanks they meet are {behind}" if solves_across_the_face(config.dynamics) else ""
         idle = "a torque of 0 N m is idle: flanks rattle within the backlash, and no two integrators agree for long"
         yield f"{idle}{also}"
     if any(low < 0.0 for low, _ in torques):
-        harmless = ", so damage, which is on drive flanks, changes nothing" if damaged else ""
+        harmless = ", so damage of drive flanks changes nothing, and a missing tooth counts as whole" if damaged else ""
         yield f"torques below 0 N m load the back flanks: the gear drives the pinion{harmless}"

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.faults.registry import default_word
 from siggen.keys.column import Column, list_of
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ def combined_words(config: Config) -> tuple[str, ...]:
     """Return what damage a set has by its words, where a state has several sections at once; else nothing."""
     if not any(len(state.damages) > 1 for state in config.states):
         return ()
-    return tuple(sorted({default_word(one) for state in config.states if state.damaged for one in state.damages}))
+    return tuple(sorted({one.word for state in config.states if state.damaged for one in state.damages}))
 
 
 def shown_words(config: Config, state_id: int) -> set[str]:
@@ -39,7 +38,7 @@ def shown_words(config: Config, state_id: int) -> set[str]:
     index: int | None = state_id
     while index is not None:
         state = config.states[index]
-        found |= {default_word(one) for one in state.damages if state.damaged}
+        found |= {one.word for one in state.damages if state.damaged}
         index = config.grown_from(index)
     return found
 

@@ -159,9 +159,12 @@ def _flank_shapes(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
     if "dynamics" not in sections or sections["dynamics"].mesh.law != "linear":
         return
     for index, state in sections.get("states", {}).items():
-        if state.damage is not None and state.damage.needs_pairs:
-            allowed = "allowed: another kind with dynamics.mesh.law: linear, whose flanks have no shape; or law: pairs"
-            yield Problem(f"states.{index}.damage.kind", f"'{state.damage.kind_word()}'", allowed)
+        for where, one in state.placed(f"states.{index}"):
+            if one.needs_pairs:
+                allowed = (
+                    "allowed: another kind with dynamics.mesh.law: linear, whose flanks have no shape; or law: pairs"
+                )
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
 
 
 def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -180,8 +183,9 @@ def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) ->
     if bounds(grade)[1] > 0.0:
         yield Problem("dynamics.unbalance.grade_mm_s", str(grade), f"allowed: 0, or {model}")
     for index, state in sections.get("states", {}).items():
-        if state.damage is not None and state.damage.needs_bearings:
-            yield Problem(f"states.{index}.damage.kind", f"'{state.damage.kind_word()}'", f"allowed: {model}")
+        for where, one in state.placed(f"states.{index}"):
+            if one.needs_bearings:
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", f"allowed: {model}")
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

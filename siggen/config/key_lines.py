@@ -32,11 +32,12 @@ class KeyLine(NamedTuple):
 def key_line(node: yaml.Node | None, path: str) -> KeyLine | None:
     """Return where a key such as `states.1.damage.teeth` stands; None if not even its first part is there.
 
-    A key that an anchor brings stands where it is written.
+    A key that an anchor brings stands where it is written. A key may hold dots itself, as those of `changes` do.
     """
-    found, own = None, False
-    for depth, part in enumerate(path.split("."), start=1):
-        child = _child(node, part)
+    found, own, parts, depth = None, False, path.split("."), 0
+    while depth < len(parts):
+        named = ((end, _child(node, ".".join(parts[depth:end]))) for end in range(depth + 1, len(parts) + 1))
+        depth, child = next(((end, child) for end, child in named if child is not None), (len(parts), None))
         if child is None:
             break
         line, node = child

@@ -113,6 +113,11 @@ class Fault(Section):
         yield "teeth", getattr(self, "gear"), getattr(self, "teeth")  # noqa: B009 - keys of most kinds, not of all
 
     @property
+    def word(self) -> str:
+        """What a state with it is called by default."""
+        return self.default_word(lambda key: getattr(self, key, None))
+
+    @property
     def position(self) -> str:
         """Where it is, in a word."""
         return str(getattr(self, "gear", "as listed"))

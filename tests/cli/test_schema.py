@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import app
 from siggen.config import Config, read_yaml
+from siggen.faults.registry import BY_WORD
 
 
 @pytest.fixture(scope="module")
@@ -64,8 +65,21 @@ def test_words_beside_numbers_are_shown(schema):
 
 
 def test_damage_is_chosen_by_its_kind(schema):
-    (kinds,) = [c for c in schema["$defs"]["State"]["properties"]["damage"]["anyOf"] if "discriminator" in c]
-    assert set(kinds["discriminator"]["mapping"]) == {"layered", "clustered", "spall", "list", "irregular"}
+    damage = schema["$defs"]["State"]["properties"]["damage"]
+    found = [set(mapping) for mapping in _mappings(damage)]
+    assert found
+    assert all(kinds == set(BY_WORD) for kinds in found)
+
+
+def _mappings(part):
+    """Yield the kinds that a part of the schema chooses from, of one section and of a list of them."""
+    if isinstance(part, dict):
+        if "discriminator" in part:
+            yield part["discriminator"]["mapping"]
+        for inner in part.values():
+            yield from _mappings(inner)
+    for inner in part if isinstance(part, list) else ():
+        yield from _mappings(inner)
 
 
 @pytest.mark.parametrize("name", ["linear_pits", "quickstart", "paper_a"])

@@ -110,6 +110,7 @@ class Standstill:
         self.motions = tuple(motion for channel in instrument.channels for motion in channel.motions)
 
     places: tuple[str, ...] = ()
+    readings: tuple[str, ...] = ()
     before = 0
 
     def pieces(self) -> Iterator[Piece]:

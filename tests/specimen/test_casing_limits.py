@@ -31,7 +31,6 @@ DAMPED = "dynamics.pinion.bearing_damping_x_n_s_per_m"
         ("housing.bolts.positions_mm=[[9, 0], [9, 0]]", "about a single one the casing would turn freely"),
         ("dynamics.friction.coefficient=-0.1", "allowed: a number from 0 to 0.5"),
         ("operating_points.0.speed_hz=0", "allowed: a number above 0"),
-        ("operating_points.0.torque_nm=-30", "allowed: a number above 0"),
         ("variation.speed.end_ratio=0.02", "allowed: a mean torque above 0 at the mesh"),
     ],
 )

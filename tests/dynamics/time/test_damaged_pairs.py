@@ -99,7 +99,8 @@ def test_what_carries_is_the_land_or_the_edges() -> None:
     half = contact_law((chord_pit(PAIR, 1.5e-3, PITCH_POINT, semi_face_m=5e-3),))
     # A pit's end lies within one of 65 slices.
     assert loaded(half, 5e-6, ALONE)[0, CARRYING] == pytest.approx(0.5, abs=0.016)
-    assert loaded(HEALTHY, 5e-6, ALONE)[0, CARRYING] == pytest.approx(1.0, abs=0.003)
+    # The whole face; its ends bear more, so that loads of slices differ by 6 % rms: 1/(1 + 0.06²).
+    assert loaded(HEALTHY, 5e-6, ALONE)[0, CARRYING] == pytest.approx(1.0, abs=0.005)
     assert loaded(WIDE_LAW, 60e-6, ALONE)[0, CARRYING] == pytest.approx(1.0, abs=0.003)
     assert loaded(WIDE_LAW, 5e-6, ALONE)[0, NORMAL] == 0.0
 

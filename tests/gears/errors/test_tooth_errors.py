@@ -57,7 +57,8 @@ def test_the_gears_profile_runs_against_the_position() -> None:
     # Most is missing at the tip, which is in contact first, and the corner beyond it misses the same.
     assert own[3, 0] == pytest.approx(3e-6, rel=1e-6)
     assert own[3, -1] == pytest.approx(-3e-6, rel=1e-6)
-    assert (np.diff(own[3]) <= 1e-20).all()
+    # a difference of profiles of up to 0.1 mm: rounding leaves 1e-20 m of each
+    assert (np.diff(own[3]) <= 2e-20).all()
 
 
 def loop(missing: MissingMaterial, pitches: float) -> float:
