@@ -19,7 +19,8 @@ from siggen.dynamics.time.equations import Equations, state_rate
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.pair_equations import PairEquations
-from siggen.dynamics.time.pair_motion import PairMotion, pair_rate
+from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.dynamics.time.pair_rate import at_speed, pair_rate
 
 Rate = Callable[[float, FloatArray], FloatArray]
 
@@ -27,11 +28,12 @@ Rate = Callable[[float, FloatArray], FloatArray]
 def driven_rate(motion: Motion, speed_input: int, pitches: FloatArray, inputs: FloatArray, rate_hz: float) -> Rate:
     """Return ż (2n,) of time [s] and state (2n,); `pitches` (k,) and `inputs` (k, m) at `rate_hz` from time 0 on."""
     if isinstance(motion, PairMotion):
-        equations, law, pairs = motion.pair_equations, motion.law, pair_table(motion.law)
+        equations, laws = motion.pair_equations, motion.laws
+        pairs = tuple(pair_table(law) for law in laws)
 
         def of_pairs(t: float, state: FloatArray) -> FloatArray:
             found = np.empty_like(state)
-            _pair_rate(equations, law, pairs, speed_input, pitches, inputs, t * rate_hz, state, found)
+            _pair_rate(equations, laws, pairs, speed_input, pitches, inputs, t * rate_hz, state, found)
             return found
 
         return of_pairs
@@ -58,8 +60,8 @@ def stiffness_along(law: MeshLaw, pitches: FloatArray) -> FloatArray:
 @njit(cache=True)
 def _pair_rate(
     equations: PairEquations,
-    law: PairLaw,
-    pairs: FloatArray,
+    laws: tuple[PairLaw, ...],
+    pairs: tuple[FloatArray, ...],
     speed_input: int,
     pitches: FloatArray,
     inputs: FloatArray,
@@ -72,16 +74,12 @@ def _pair_rate(
     deviation = 0.0
     if speed_input >= 0:
         deviation = inputs[first, speed_input] * (1.0 - share) + inputs[first + 1, speed_input] * share
-    here = PairEquations(
-        equations.rows,
-        equations.static_force,
-        equations.static_approach,
-        equations.rigid_sliding_0 * (1.0 + deviation),
-        equations.rigid_sliding_1 * (1.0 + deviation),
-        equations.external_input,
-        equations.static_tilt,
+    pair_rate(
+        (at_speed(equations, deviation), laws, pairs),
+        state,
+        pitches[first] * (1.0 - share) + pitches[first + 1] * share,
+        rate,
     )
-    pair_rate((here, law, pairs), state, pitches[first] * (1.0 - share) + pitches[first + 1] * share, rate)
     for k in range(inputs.shape[1]):
         value = inputs[first, k] * (1.0 - share) + inputs[first + 1, k] * share
         for i in range(half):

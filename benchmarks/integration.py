@@ -68,9 +68,11 @@ class _Case:
         dynamics, structure = self.specimen.dynamics, self.state.mesh.structure
         stiffness = mean_mesh_stiffness(self.state.mesh.tables)
         ratio = constant(dynamics.mesh_damping_ratio)
-        damping = 2.0 * ratio * float(np.sqrt(stiffness * structure.equivalent_mesh_mass_kg))
+        damping = 2.0 * ratio * float(np.sqrt(stiffness * structure.mesh.mass_kg))
         law = mesh_law(self.state.mesh.tables, damping, 1e-6 * constant(dynamics.backlash_um))
-        return transient_s(structure, equations_of_motion(structure, law, self.point.torque_nm, stiffness), damping)
+        return transient_s(
+            structure, equations_of_motion(structure, law, self.point.torque_nm, stiffness), np.array([damping])
+        )
 
 
 def rows(*, quick: bool) -> Iterator[Row]:

@@ -32,17 +32,17 @@ def newmark(
     Where a damper switches within a step the iteration may turn in circles; then the last of ITERATIONS is kept.
     """
     n = path.shape[1] // 2
-    linear = -state_matrix(equations, equations.reference_stiffness, damping_n_s_per_m)[n:]
+    linear = -state_matrix(equations, equations.reference_stiffness, np.array([damping_n_s_per_m]))[n:]
     half, quarter = 0.5 * step_s, 0.25 * step_s**2
     inverse = np.linalg.inv(np.eye(n) + half * linear[:, n:] + quarter * linear[:, :n])
-    push, p = inverse @ equations.mesh_input, equations.mesh_vector
-    enough = RESIDUAL * abs(equations.static_force) * float(np.linalg.norm(equations.mesh_input))
+    push, p = inverse @ equations.mesh_input[0], equations.mesh_vector[0]
+    enough = RESIDUAL * abs(equations.static_force[0]) * float(np.linalg.norm(equations.mesh_input[0]))
     acceleration = rate(0.0, path[0])[n:]
     for i in range(1, len(path)):
         place, speed = path[i - 1, :n], path[i - 1, n:]
         place = place + step_s * speed + quarter * acceleration
         speed = speed + half * acceleration
-        softer = 0.0 if mesh_stiffness is None else quarter * (mesh_stiffness[i] - equations.reference_stiffness)
+        softer = 0.0 if mesh_stiffness is None else quarter * (mesh_stiffness[i] - equations.reference_stiffness[0])
         for _ in range(ITERATIONS):
             state = np.concatenate([place + quarter * acceleration, speed + half * acceleration])
             residual = rate(i * step_s, state)[n:] - acceleration

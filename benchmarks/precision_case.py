@@ -66,9 +66,8 @@ class Case:
         """Return the angles in base pitches and the inputs at so many steps per sample from sample 0 on."""
         rate_hz = self.config.fs_hz * per_sample
         times = np.arange(round(duration_s * rate_hz) + 1) / rate_hz
-        pitches = (
-            self.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi) + motion.structure.flanks.ahead_pitches
-        )
+        turned = self.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
+        pitches = turned + motion.structure.mesh.flanks.ahead_pitches
         excitation = self.driven.excitation
         inputs = no_inputs(pitches) if excitation is None else excitation.inputs(times, self.driven.rotation)
         return pitches, inputs

@@ -23,14 +23,14 @@ Matrices = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 def ross_linear(motion: LinearMotion, mesh_stiffness: FloatArray, step_s: float, path: FloatArray) -> None:
     """Fill `path` (steps + 1, 2n) after row 0, which must be at rest; the mesh stiffness (steps + 1,) is in N/m."""
     structure, equations, law = motion.structure, motion.equations, motion.law
-    p, start = structure.mesh_vector, path[0, : structure.mass.shape[0]].copy()
+    p, start = structure.mesh.vector, path[0, : structure.mass.shape[0]].copy()
     mesh = np.outer(p, p)
     damping = structure.damping + law.damping_n_s_per_m * mesh
-    penetration = equations.static_force / equations.reference_stiffness
+    penetration = equations.static_force[0] / equations.reference_stiffness[0]
     # it begins at zero, so displacements count from the start
     stiffness = [structure.stiffness + k * mesh for k in mesh_stiffness.tolist()]
     force = [
-        -p * ((k - equations.reference_stiffness) * penetration) - matrix @ start
+        -p * ((k - equations.reference_stiffness[0]) * penetration) - matrix @ start
         for k, matrix in zip(mesh_stiffness.tolist(), stiffness, strict=True)
     ]
 
@@ -43,8 +43,8 @@ def ross_linear(motion: LinearMotion, mesh_stiffness: FloatArray, step_s: float,
 def ross_pairs(motion: PairMotion, rate: Rate, step_s: float, path: FloatArray) -> None:
     """Fill displacements of `path` (steps + 1, 2n) after row 0, which must be at rest; `rate` gives ż."""
     structure, start = motion.structure, path[0, : motion.structure.mass.shape[0]].copy()
-    reference = motion.equations.reference_stiffness
-    mesh = np.outer(structure.mesh_vector, structure.mesh_vector)
+    reference = float(motion.equations.reference_stiffness[0])
+    mesh = np.outer(structure.mesh.vector, structure.mesh.vector)
     damping = structure.damping + motion.law.damping_root_kg * float(np.sqrt(reference)) * mesh
     mass, stiffness = structure.mass, structure.stiffness + reference * mesh
 

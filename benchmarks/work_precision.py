@@ -131,7 +131,7 @@ def _newmark_solver(case: Case, steps: int) -> Solver:
                 newmark(motion.equations, damping, rate, step_s, path, stiffness_along(motion.law, pitches))
             else:
                 assert isinstance(motion, PairMotion)
-                damping = motion.law.damping_root_kg * float(np.sqrt(motion.equations.reference_stiffness))
+                damping = motion.law.damping_root_kg * float(np.sqrt(motion.equations.reference_stiffness[0]))
                 newmark(motion.equations, damping, rate, step_s, path)
             return path[::steps]
 

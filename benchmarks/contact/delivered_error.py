@@ -89,7 +89,7 @@ def delivered_error(case: RecordCase, gearbox: int) -> DeliveredError:
     states[0] = motion.start(pitches[0])
     motion.advance(pitches, inputs, states)
     seen = times >= -BEFORE_S
-    pairs = motion.pairs(states[seen], pitches[seen], inputs[seen])
+    pairs = motion.pairs(states[seen], pitches[seen], inputs[seen])[0]
     solver, rows = _solver(case, gearbox)
     missed, force = np.zeros((len(pairs), 2)), np.zeros(len(pairs))
     room = solver_room(solver.lead_m.size)
@@ -101,8 +101,8 @@ def delivered_error(case: RecordCase, gearbox: int) -> DeliveredError:
         missed[k] += found.force_n[0] - read[0], found.moment_n_m[0] - read[1]
         force[k] += found.force_n[0]
     structure = motion.structure
-    turn = np.zeros_like(structure.mesh_vector) if structure.tilt_vector is None else structure.tilt_vector
-    given = Given(times[seen], missed, -np.stack([structure.mesh_vector, turn]))
+    turn = np.zeros_like(structure.mesh.vector) if structure.mesh.tilt is None else structure.mesh.tilt
+    given = Given(times[seen], missed, -np.stack([structure.mesh.vector, turn]))
     here, there = case.response(), case.response((given,))
     assert here.status == there.status == "ok", (here.reason, there.reason)
     errors = [

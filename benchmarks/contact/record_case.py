@@ -75,9 +75,8 @@ class RecordCase:
         """Return times, pinion angles in base pitches and inputs of the steps from one time to another."""
         count = round((last_s - first_s) * self.config.fs_hz * steps)
         times = first_s + np.arange(count + 1) / (self.config.fs_hz * steps)
-        pitches = (
-            self.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi) + motion.structure.flanks.ahead_pitches
-        )
+        turned = self.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
+        pitches = turned + motion.structure.mesh.flanks.ahead_pitches
         excitation = self.driven.excitation
         inputs = np.empty((times.size, 0)) if excitation is None else excitation.inputs(times, self.driven.rotation)
         return times, pitches, inputs

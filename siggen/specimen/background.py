@@ -130,7 +130,7 @@ def specimen_background(
         return SpecimenBackground(section, shafts, bearings, (), {})
     ways = {name: _in_model(way, assembled) for name, way in channels.items()}
     seen, readings = (_named(ways.values(), kind) for kind in (MOTION, SHAFT))
-    mesh = mean_mesh(specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
+    mesh = mean_mesh(specimen.dynamics, pair, assembled.mesh.mass_kg)
     names, rows = tuple(directions), np.array(list(directions.values()))
     turn_rad = _angle(uniform, "auxiliary_drive")
     responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
@@ -208,7 +208,7 @@ def _directions(
     """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
     found: dict[str, FloatArray] = {}
     if section.rubbing is not None:
-        found["mesh"] = assembled.mesh_vector
+        found["mesh"] = assembled.mesh.vector
     if section.bearings is not None:
         found |= {name: bearing_direction(assembled, *name.split("/")) for name in INPUTS}
     if section.machines is not None:

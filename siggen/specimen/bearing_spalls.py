@@ -72,7 +72,7 @@ def spall_sources(
 
 def mean_force_n(specimen: Specimen, structure: Structure, point: OperatingPoint, place: str) -> FloatArray:
     """Return the mean force (2,) of a shaft on its seats, horizontal and vertical: that of the teeth."""
-    along = structure.mesh_vector * (point.torque_nm / gear_pair(specimen.gears).pinion.base_radius_m)
+    along = structure.mesh.vector * (point.torque_nm / gear_pair(specimen.gears).pinion.base_radius_m)
     return np.asarray(-shaft_directions(structure, place) @ along)
 
 

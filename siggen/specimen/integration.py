@@ -95,7 +95,7 @@ def _stopping_per_s(dynamics: Dynamics, structure: Structure, pair: GearPair, po
     if turn is None:
         return 0.0
     force_n = abs(point.torque_nm) / pair.pinion.base_radius_m
-    r_0, r_1 = structure.sliding_vectors
+    r_0, r_1 = structure.mesh.sliding
     sliding = r_0 + pair.pitch_point_m * r_1
     by_mass = float(sliding @ np.linalg.solve(structure.mass, sliding))
     return float(turn.coefficient * force_n / turn.slip_speed_m_s * by_mass)

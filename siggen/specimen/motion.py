@@ -20,7 +20,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.pair_motion import MeanState, PairMotion
+from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import (
@@ -123,13 +123,22 @@ def specimen_motion(
     more: dict[str, Any] = {"stride": stride} if kind is ExponentialMotion else {}
     return kind(
         locked_load(mesh.structure) if rubbing else mesh.structure,
-        _law(dynamics, mesh, front),
-        mean=MeanState(point.torque_nm, point.speed_hz, mean_mesh_stiffness(mesh.tables), light_force_n(mesh.pair)),
+        (_pair_mesh(dynamics, mesh, front),),
+        mean=MeanState(point.torque_nm, point.speed_hz),
         step_s=step_s,
         input_vectors=vectors,
         speed_input=-1 if driven is None else driven.speed_input,
-        contact=_contact(dynamics, mesh.pair, front),
         **more,
+    )
+
+
+def _pair_mesh(dynamics: Dynamics, mesh: SpecimenMesh, front: OperatingPoint) -> PairMesh:
+    """Return the law of a mesh at an operating point as the gear in front has it."""
+    return PairMesh(
+        _law(dynamics, mesh, front),
+        mean_mesh_stiffness(mesh.tables),
+        light_force_n(mesh.pair),
+        _contact(dynamics, mesh.pair, front),
     )
 
 
@@ -147,9 +156,7 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairL
     return pair_law(
         mesh.tables,
         mesh.missing.under(point.torque_nm),
-        MeshConstants(
-            mesh.pair.line_of_action_m, mesh.structure.equivalent_mesh_mass_kg, 1e-6 * constant(dynamics.backlash_um)
-        ),
+        MeshConstants(mesh.pair.line_of_action_m, mesh.structure.mesh.mass_kg, 1e-6 * constant(dynamics.backlash_um)),
         damping_ratio=_damping_ratio(dynamics),
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
         film=film if section.squeeze_film == "on" else None,

@@ -18,7 +18,8 @@ from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.structure.structure import Structure, friction_tilt_vector
+from siggen.dynamics.structure.mesh_vectors import friction_tilt
+from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.motion import Motion
@@ -128,10 +129,10 @@ def _structure(structure: Structure) -> dict[str, Any]:
         "mass": structure.mass,
         "damping": structure.damping,
         "stiffness": structure.stiffness,
-        "mesh_vector": structure.mesh_vector,
-        "sliding_vectors": structure.sliding_vectors,
+        "mesh_vector": structure.mesh.vector,
+        "sliding_vectors": structure.mesh.sliding,
         "torque_vector": structure.torque_vector,
-        "equivalent_mesh_mass_kg": structure.equivalent_mesh_mass_kg,
+        "equivalent_mesh_mass_kg": structure.mesh.mass_kg,
         "motion_names": np.array(list(structure.motions), dtype=np.str_),
         "motion_rows": np.array(list(structure.motions.values())) if structure.motions else empty,
         "bearing_force_names": np.array(list(structure.bearing_forces), dtype=np.str_),
@@ -142,21 +143,21 @@ def _structure(structure: Structure) -> dict[str, Any]:
 
 def _tilt(structure: Structure, equations: Equations) -> dict[str, Any]:
     """Return how gears tilt, where they do."""
-    if structure.tilt_vector is None:
+    if structure.mesh.tilt is None:
         return {}
     return {
-        "tilt_vector": structure.tilt_vector,
-        "tilt_friction_vector": friction_tilt_vector(structure),
-        "static_tilt_rad": float(structure.tilt_vector @ equations.static_deflection),
+        "tilt_vector": structure.mesh.tilt,
+        "tilt_friction_vector": friction_tilt(structure.coordinates, structure.mesh),
+        "static_tilt_rad": float(structure.mesh.tilt @ equations.static_deflection),
     }
 
 
 def _static_part(equations: Equations) -> dict[str, Any]:
     return {
         "static_deflection": equations.static_deflection,
-        "static_force_n": equations.static_force,
-        "static_approach_m": equations.static_approach,
-        "reference_stiffness_n_per_m": equations.reference_stiffness,
+        "static_force_n": float(equations.static_force[0]),
+        "static_approach_m": float(equations.static_approach[0]),
+        "reference_stiffness_n_per_m": float(equations.reference_stiffness[0]),
     }
 
 
@@ -173,9 +174,9 @@ def _time_grid(config: Config, specimen: Specimen, motion: Motion, rotation: Rot
         "step_s": step_s,
         "start_s": start_s,
         "start_pitches": float(rotation.angle_rad(np.array([start_s]))[0]) * per_radian
-        + motion.structure.flanks.ahead_pitches,
+        + motion.structure.mesh.flanks.ahead_pitches,
         "pitches_per_rad": per_radian,
-        "ahead_pitches": motion.structure.flanks.ahead_pitches,
+        "ahead_pitches": motion.structure.mesh.flanks.ahead_pitches,
     }
 
 
@@ -187,7 +188,7 @@ def _inputs(driven: RecordDrive, grid: Mapping[str, Any], structure: Structure) 
     time_s = grid["start_s"] + np.arange(count + half_length(grid["steps_per_sample"]) + 1) * grid["step_s"]
     rows = driven.excitation.seat_force_rows(tuple(structure.bearing_forces))
     return {
-        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"] + structure.flanks.ahead_pitches,
+        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"] + structure.mesh.flanks.ahead_pitches,
         "inputs": driven.excitation.inputs(time_s, driven.rotation),
         "input_vectors": driven.excitation.vectors,
         "speed_input": driven.speed_input,

@@ -75,7 +75,7 @@ def test_the_tilt_of_plan_is_that_of_the_motion() -> None:
     motion = specimen_motion(specimen.dynamics, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
     found = sum(static_tilts_rad(specimen.dynamics, which, state.pair, 45.0)[1] for which in ("pinion", "gear"))
     assert abs(found) > 1e-6
-    assert found == pytest.approx(motion.pair_equations.static_tilt, rel=1e-9)
+    assert found == pytest.approx(motion.pair_equations.static[0, 2], rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -136,8 +136,8 @@ def test_a_tilt_in_motion_at_which_an_end_of_the_face_meets_the_other_flank_is_r
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, 0)
     motion = specimen_motion(specimen.dynamics, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
-    turn = motion.structure.tilt_vector
-    room_m = motion.law.backlash_m + motion.pair_equations.static_approach
+    turn = motion.structure.mesh.tilt
+    room_m = motion.law.backlash_m + motion.pair_equations.static[0, 1]
     for share, refused in ((0.99, False), (1.01, True)):
         states = np.zeros((2, 2 * turn.size))
         states[1, : turn.size] = share * room_m / motion.law.half_face_m * turn / (turn @ turn)

@@ -13,7 +13,7 @@ from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
-from siggen.dynamics.time.pair_motion import MeanState, PairMotion
+from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.tooth_damage import Damage
@@ -115,7 +115,7 @@ def motion(
     stiffness: float | None = None,
 ) -> PairMotion:
     mean = mean_mesh_stiffness(tables()) if stiffness is None else stiffness
-    return PairMotion(structure, chosen, mean=MeanState(torque_nm, speed_hz, mean), step_s=step_s)
+    return PairMotion(structure, [PairMesh(chosen, mean)], mean=MeanState(torque_nm, speed_hz), step_s=step_s)
 
 
 def settled(run: PairMotion, speed_hz: float, step_s: float, steps: int, settle_s: float = 0.4):

@@ -103,7 +103,7 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
     table = internals_table(config, 0)
     pair = gear_pair(specimen.gears)
     assembled = structure(config, specimen)
-    lengths = dict(zip(assembled.coordinates, assembled.mesh_vector, strict=True))
+    lengths = dict(zip(assembled.coordinates, assembled.mesh.vector, strict=True))
     assert lengths["theta_1"] == pytest.approx(pair.pinion.base_radius_m)
     assert lengths["theta_2"] == pytest.approx(-pair.gear.base_radius_m)
     columns = {name: next(c for c in table.column_names if c.startswith(f"{name}_")) for name in lengths}

@@ -35,7 +35,7 @@ def test_a_casing_without_end_to_its_mass_stands_still_and_passes_the_force_to_r
     moved, pressed = [], []
     for mass_kg in (1e5, 1e6, 1e7):
         stage = assembled(mass_kg)
-        found = forced_motion(stage, MESH, stage.mesh_vector[None, :], ("casing_lid/vertical",), hz)
+        found = forced_motion(stage, MESH, stage.mesh.vector[None, :], ("casing_lid/vertical",), hz)
         moved.append(np.abs(found.acceleration["casing_lid/vertical"][0]))
         pressed.append(found.bearing_force["pinion_bearing/vertical"][0])
     # what is left of the motion is force over mass: the next order is mass of the gears (4 kg) over that of the casing
@@ -44,7 +44,7 @@ def test_a_casing_without_end_to_its_mass_stands_still_and_passes_the_force_to_r
     # seats at rest: the gears on their bearings alone, solved for with the casing's rows struck out
     stage = assembled(1e7)
     kept = [i for i, name in enumerate(stage.coordinates) if name not in {"x_c", "y_c", "phi_c"}]
-    p = stage.mesh_vector
+    p = stage.mesh.vector
     for k, omega in enumerate(2.0 * np.pi * hz):
         dynamic = stage.stiffness + MESH.stiffness_n_per_m * np.outer(p, p) - omega**2 * stage.mass
         dynamic = dynamic + 1j * omega * (stage.damping + MESH.damping_n_s_per_m * np.outer(p, p))
@@ -57,7 +57,7 @@ def test_a_casing_without_end_to_its_mass_stands_still_and_passes_the_force_to_r
 @pytest.mark.parametrize("mass_kg", [8.0, 55.0])
 def test_what_a_force_puts_in_is_what_the_dampers_take(mass_kg: float) -> None:
     stage = assembled(mass_kg)
-    p, omegas = stage.mesh_vector, 2.0 * np.pi * np.array([300.0, 640.0, 2500.0])
+    p, omegas = stage.mesh.vector, 2.0 * np.pi * np.array([300.0, 640.0, 2500.0])
     names = tuple(stage.motions)
     found = forced_motion(stage, MESH, p[None, :], names, omegas / (2.0 * np.pi))
     damping = stage.damping + MESH.damping_n_s_per_m * np.outer(p, p)

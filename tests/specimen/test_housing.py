@@ -39,7 +39,7 @@ def housed(specimen_id: int) -> SpecimenHousing:
 
 def in_mesh(stage: Structure, hz: np.ndarray, motions: tuple[str, ...] = ()) -> ForcedMotion:
     """Return what a force along the line of action does."""
-    return forced_motion(stage, MESH, stage.mesh_vector[None, :], motions, hz)
+    return forced_motion(stage, MESH, stage.mesh.vector[None, :], motions, hz)
 
 
 @pytest.fixture
@@ -75,7 +75,7 @@ def test_a_base_that_moves_slowly_takes_the_box_along_without_force() -> None:
     specimen = draw_specimen(CONFIG, 0)
     free = locked_load(structure(CONFIG, specimen))
     stage = on_base(free, specimen_body(CONFIG, specimen), Base(300.0, 20.0, (20.0, 20.0, 20.0), 0.1))
-    p, names = stage.mesh_vector, stage.coordinates
+    p, names = stage.mesh.vector, stage.coordinates
     stiffness = stage.stiffness + MESH.stiffness_n_per_m * np.outer(p, p)
     moving = [i for i, name in enumerate(names) if not name.endswith("_b")]
     angle, half_m = gear_pair(specimen.gears).working_pressure_angle_rad, 0.04875

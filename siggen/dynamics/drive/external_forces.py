@@ -77,7 +77,7 @@ def turning_sense(structure: Structure, place: str) -> float:
     sense of the pinion. The gear turns the other way.
     """
     rows = [structure.coordinates.index(name) for name in _translations(place)]
-    along, across = structure.mesh_vector[rows], structure.sliding_vectors[0][rows]
+    along, across = structure.mesh.vector[rows], structure.mesh.sliding[0][rows]
     horizontal, vertical = shaft_directions(structure, place)[:, rows]
     pinion = np.sign(_cross(along, across)) * np.sign(_cross(horizontal, vertical))
     return float(pinion if place.startswith("pinion") else -pinion)

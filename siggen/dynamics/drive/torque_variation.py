@@ -20,10 +20,8 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.slow_variation import SlowVariation
+from siggen.dynamics.structure.shaft_lines import rigid_rotation
 from siggen.dynamics.structure.structure import Structure, vector
-
-TURNING_WITH_PINION = ("theta_m", "theta_1")
-TURNING_WITH_GEAR = ("theta_2", "theta_l")
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,14 +90,6 @@ def driven_and_loaded(structure: Structure) -> tuple[str, str]:
     """Return the coordinates at which motor and load act."""
     torques = dict(zip(structure.coordinates, structure.torque_vector, strict=True))
     return max(torques, key=lambda name: torques[name]), min(torques, key=lambda name: torques[name])
-
-
-def rigid_rotation(structure: Structure) -> FloatArray:
-    """Return r (n,): how far each coordinate turns per turn of the pinion when nothing deforms."""
-    p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
-    gear = -p["theta_1"] / p["theta_2"]
-    turns = {**dict.fromkeys(TURNING_WITH_PINION, 1.0), **dict.fromkeys(TURNING_WITH_GEAR, gear)}
-    return vector(structure.coordinates, {n: t for n, t in turns.items() if n in structure.coordinates})
 
 
 def without_drift(structure: Structure, coordinate: str) -> FloatArray:

@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.structure import Flanks, Structure
+from siggen.dynamics.structure.mesh_vectors import Flanks
+from siggen.dynamics.structure.structure import Structure
 
 MOVED = ("", "phi_")
 """How names of shifts and of tilts begin, before the axis and the number of the gear."""
@@ -29,16 +30,17 @@ def on_back_flanks(structure: Structure, line_m: float, ahead_pitches: float) ->
     ahead_pitches : float
         See `Flanks`.
     """
-    still, turning = (_reflected(structure, vector) for vector in structure.sliding_vectors)
+    mesh = structure.mesh
+    still, turning = (_reflected(structure, vector) for vector in mesh.sliding)
     sliding = np.stack([still + line_m * turning, -turning])
-    tilt = structure.tilt_vector
-    return replace(
-        structure,
-        mesh_vector=_fixed(_reflected(structure, structure.mesh_vector)),
-        sliding_vectors=_fixed(sliding),
-        tilt_vector=None if tilt is None else _fixed(_reflected(structure, tilt)),
+    mirrored = replace(
+        mesh,
+        vector=_fixed(_reflected(structure, mesh.vector)),
+        sliding=_fixed(sliding),
+        tilt=None if mesh.tilt is None else _fixed(_reflected(structure, mesh.tilt)),
         flanks=Flanks(-1.0, ahead_pitches),
     )
+    return replace(structure, meshes=(mirrored,))
 
 
 def _fixed(vector: FloatArray) -> FloatArray:
@@ -50,7 +52,7 @@ def _reflected(structure: Structure, vector: FloatArray) -> FloatArray:
     """Return a row of the gears' motions for the motions in the mirror."""
     row = dict(zip(structure.coordinates, vector.tolist(), strict=True))
     found = {name: -value if name.startswith("theta") else value for name, value in row.items()}
-    h_x, h_y = structure.centre_line
+    h_x, h_y = structure.mesh.centre_line
     for kind in MOVED:
         for gear in "12":
             x, y = f"{kind}x_{gear}", f"{kind}y_{gear}"

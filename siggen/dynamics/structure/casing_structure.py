@@ -19,6 +19,7 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.housing.ordered_sums import squares
 from siggen.dynamics.housing.stiff_pencil import solve_lower, solve_upper, upper_root
 from siggen.dynamics.structure.body import Body, Casing, axis_vector, rigid_body
+from siggen.dynamics.structure.mesh_vectors import MeshVectors
 from siggen.dynamics.structure.structure import (
     Element,
     Rotor,
@@ -27,6 +28,7 @@ from siggen.dynamics.structure.structure import (
     assemble,
     shafts,
     sliding_vectors,
+    stage_lines,
     vector,
 )
 from siggen.dynamics.structure.tilting_shaft import Shaft, tilting_ends
@@ -100,9 +102,9 @@ def carried_structure(stage: SpurStage, body: Body, shafts_of_gears: tuple[Shaft
         stage, inertias, stiffness + springs.stiffness, damping + springs.damping, line_of_action, motions, across
     )
     tilt = None if shafts_of_gears is None else vector(coordinates, {"phi_y_1": 1.0, "phi_y_2": -1.0})
+    mesh = replace(structure.mesh, tilt=tilt, centre_line=axis_vector("horizontal", angle))
     return replace(
-        structure, bearing_forces=springs.forces, bearing_directions=springs.directions, tilt_vector=tilt,
-        centre_line=axis_vector("horizontal", angle),
+        structure, meshes=(mesh,), bearing_forces=springs.forces, bearing_directions=springs.directions
     )  # fmt: skip
 
 
@@ -232,10 +234,15 @@ def _structure(
         mass=mass,
         damping=damping,
         stiffness=stiffness,
-        mesh_vector=vector(coordinates, {**rolling, **line_of_action}),
-        sliding_vectors=sliding_vectors(coordinates, stage, across),
+        meshes=(
+            MeshVectors(
+                vector(coordinates, {**rolling, **line_of_action}),
+                sliding_vectors(coordinates, stage, across),
+                stage.equivalent_mesh_mass_kg,
+            ),
+        ),
+        shaft_lines=stage_lines(coordinates),
         torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -stage.ratio}),
-        equivalent_mesh_mass_kg=stage.equivalent_mesh_mass_kg,
         motions=motions,
         bearing_forces={},
         bearing_directions={},

@@ -57,7 +57,7 @@ def forced_motion(
     frequency_hz : (k,)
     readings : names of `structure.shaft_readings` that are wanted
     """
-    p = structure.mesh_vector
+    p = structure.mesh.vector
     stiffness = structure.stiffness + mesh.stiffness_n_per_m * p[:, None] * p[None, :]
     damping = structure.damping + mesh.damping_n_s_per_m * p[:, None] * p[None, :]
     bearings = structure.bearing_forces

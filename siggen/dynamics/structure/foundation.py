@@ -13,6 +13,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.body import BASE, Body
+from siggen.dynamics.structure.mesh_vectors import MeshVectors
 from siggen.dynamics.structure.structure import Element, Structure, assemble
 
 
@@ -60,8 +61,7 @@ def on_base(structure: Structure, body: Body, base: Base) -> Structure:
         mass=mass,
         stiffness=stiffness + of_mounts[0] + moving[0] - fixed[0],
         damping=damping + of_mounts[1] + moving[1] - fixed[1],
-        mesh_vector=_longer(structure.mesh_vector),
-        sliding_vectors=np.pad(structure.sliding_vectors, ((0, 0), (0, len(BASE)))),
+        meshes=tuple(_longer_mesh(mesh) for mesh in structure.meshes),
         torque_vector=_longer(structure.torque_vector),
         motions={name: _longer(row) for name, row in structure.motions.items()},
         bearing_forces={name: (_longer(k), _longer(c)) for name, (k, c) in structure.bearing_forces.items()},
@@ -84,3 +84,9 @@ def _padded(matrix: FloatArray) -> FloatArray:
 
 def _longer(row: FloatArray) -> FloatArray:
     return np.pad(row, (0, len(BASE)))
+
+
+def _longer_mesh(mesh: MeshVectors) -> MeshVectors:
+    tilt = None if mesh.tilt is None else _longer(mesh.tilt)
+    sliding = np.pad(mesh.sliding, ((0, 0), (0, len(BASE))))
+    return replace(mesh, vector=_longer(mesh.vector), sliding=sliding, tilt=tilt)

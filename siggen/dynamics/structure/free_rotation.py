@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.structure.shaft_lines import turning_lines
 from siggen.dynamics.structure.structure import Structure
 
 FREE_SHARE = 1e-13
@@ -21,8 +22,11 @@ UNBALANCED_SHARE = 1e-9
 
 
 def free_rotations(structure: Structure, stiffness: FloatArray) -> FloatArray:
-    """Return the free rotations (n, r), r = 0 to 2, of the structure with a stiffness matrix (n, n), mesh included."""
-    lines = _shaft_lines(structure)
+    """Return the free rotations (n, r), r from 0 to the number of shaft lines, of a structure.
+
+    `stiffness` (n, n) is that of the structure with its mesh.
+    """
+    lines = np.ascontiguousarray(turning_lines(structure).T)
     energy = lines.T @ stiffness @ lines
     scale = np.abs(lines).T @ np.abs(stiffness) @ np.abs(lines)
     values, vectors = np.linalg.eigh(energy / max(scale.max(), np.finfo(float).tiny))
@@ -65,11 +69,3 @@ def elastic_basis(structure: Structure, stiffness: FloatArray) -> FloatArray:
     free = root.T @ free_rotations(structure, stiffness)
     complete, _ = np.linalg.qr(free, mode="complete")
     return np.linalg.solve(root.T, complete[:, free.shape[1] :])
-
-
-def _shaft_lines(structure: Structure) -> FloatArray:
-    """Return (n, 2): motor and pinion together, gear and load together, scaled to the same approach at the mesh."""
-    p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
-    first, second = 1.0, -p["theta_1"] / p["theta_2"]
-    turns = {"theta_m": (first, 0.0), "theta_1": (first, 0.0), "theta_2": (0.0, second), "theta_l": (0.0, second)}
-    return np.array([turns.get(name, (0.0, 0.0)) for name in structure.coordinates])

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from siggen.dynamics.structure.shaft_lines import turning_per_load
 from siggen.dynamics.structure.structure import Element, Structure, assemble
 
 LOCK_HZ = 1.0
@@ -22,9 +23,7 @@ def locked_load(structure: Structure) -> Structure:
     """Return the structure with spring and damper on the rotation at which the load acts."""
     torques = dict(zip(structure.coordinates, structure.torque_vector, strict=True))
     load = min(torques, key=lambda name: torques[name])
-    ratio = -torques[load]
-    turns = {"theta_m": ratio, "theta_1": ratio, "theta_2": 1.0, "theta_l": 1.0}
-    rotation = np.array([turns.get(name, 0.0) for name in structure.coordinates])
+    rotation = turning_per_load(structure)
     inertia = float(rotation @ structure.mass @ rotation)
     omega = 2.0 * np.pi * LOCK_HZ
     lock = Element({load: 1.0}, inertia * omega**2, 2.0 * LOCK_DAMPING_RATIO * inertia * omega)

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.structure.mesh_vectors import MeshVectors
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,20 +24,6 @@ class Element:
     direction: Mapping[str, float]
     stiffness: float
     damping: float
-
-
-class Flanks(NamedTuple):
-    """Flanks that a structure meets with its vectors of the mesh: those that carry its torque.
-
-    `side`: 1 for drive flanks, -1 for back flanks; `ahead_pitches`: by how many base pitches a pair of them is farther
-    on its path than drive flanks are on theirs.
-    """
-
-    side: float = 1.0
-    ahead_pitches: float = 0.0
-
-
-DRIVE_FLANKS = Flanks()
 
 
 SHAFTS = {"motor": "theta_m", "pinion": "theta_1", "gear": "theta_2", "load": "theta_l"}
@@ -56,34 +42,29 @@ class Structure:
     ----------
     coordinates : names of the n degrees of freedom
     mass, damping, stiffness : (n, n)
-    mesh_vector : (n,) p, approach along the line of action = pᵀ q; a positive mesh force acts as -p
-    sliding_vectors : (2, n) r_0, r_1: sliding speed of the flanks at s along the line of action = (r_0 + s r_1)ᵀ q̇ plus
-        that of the rigid rotation; a friction force F acts as -(r_0 + s r_1) F
+    meshes : MeshVectors of each mesh, in the order of power
+    shaft_lines : rotations that turn together when nothing deforms, from motor to load; a mesh stands between two
     torque_vector : (n,) generalised force per unit motor torque, the balancing load torque included
-    equivalent_mesh_mass_kg : J_1 J_2 / (J_1 R_b2² + J_2 R_b1²)
     motions : place/axis -> (n,), displacement at that place = vector · q
     bearing_forces : place/axis -> two (n,), force on the housing = first · q + second · q̇
     bearing_directions : place/axis -> (n,), 1 N between a shaft and its seat: on the shaft along the axis, and back
-    tilt_vector : (n,) t, tilt of the pinion's flanks against the gear's in the plane of action = tᵀ q; None where gears
-        stay parallel. A moment of the mesh across the face acts as -t
-    centre_line : (2,) unit vector from gear to gear in x and y
-    flanks : Flanks
     """
 
     coordinates: tuple[str, ...]
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
-    mesh_vector: FloatArray
-    sliding_vectors: FloatArray
+    meshes: tuple[MeshVectors, ...]
+    shaft_lines: tuple[tuple[str, ...], ...]
     torque_vector: FloatArray
-    equivalent_mesh_mass_kg: float
     motions: Mapping[str, FloatArray]
     bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
     bearing_directions: Mapping[str, FloatArray]
-    tilt_vector: FloatArray | None = None
-    centre_line: tuple[float, float] = (1.0, 0.0)
-    flanks: Flanks = DRIVE_FLANKS
+
+    @property
+    def mesh(self) -> MeshVectors:
+        """The first mesh, whose driving gear turns with the motor; the only one of a single stage."""
+        return self.meshes[0]
 
     @property
     def bodies(self) -> list[int]:
@@ -234,6 +215,12 @@ def shafts(stage: SpurStage) -> tuple[Element, Element]:
     )
 
 
+def stage_lines(coordinates: Sequence[str]) -> tuple[tuple[str, ...], ...]:
+    """Return the shaft lines of a single stage: motor and pinion, gear and load."""
+    lines = (("theta_m", "theta_1"), ("theta_2", "theta_l"))
+    return tuple(tuple(name for name in line if name in coordinates) for line in lines)
+
+
 def _numbers(coupling: Coupling) -> tuple[float, float]:
     return coupling.stiffness_nm_per_rad, coupling.damping_nm_s_per_rad
 
@@ -272,10 +259,15 @@ def _spur_structure(
         mass=mass,
         damping=damping,
         stiffness=stiffness,
-        mesh_vector=vector(coordinates, _line_of_action(stage)),
-        sliding_vectors=sliding_vectors(coordinates, stage, _across_line_of_action(stage)),
+        meshes=(
+            MeshVectors(
+                vector(coordinates, _line_of_action(stage)),
+                sliding_vectors(coordinates, stage, _across_line_of_action(stage)),
+                stage.equivalent_mesh_mass_kg,
+            ),
+        ),
+        shaft_lines=stage_lines(coordinates),
         torque_vector=vector(coordinates, {driven_at: 1.0, loaded_at: -stage.ratio}),
-        equivalent_mesh_mass_kg=stage.equivalent_mesh_mass_kg,
         motions=directions,
         bearing_forces={
             place: (directions[place] * element.stiffness, directions[place] * element.damping)
@@ -310,13 +302,3 @@ def sliding_vectors(coordinates: Sequence[str], stage: SpurStage, across: Mappin
     result = np.array([still, vector(coordinates, {"theta_1": 1.0, "theta_2": 1.0})])
     result.setflags(write=False)
     return result
-
-
-def friction_tilt_vector(structure: Structure) -> FloatArray:
-    """Return t_x (n,): a friction force F at the distance ζ from the middle of the face acts as -t_x ζ F too.
-
-    Tilts move the flanks there as shifts do, per distance.
-    """
-    across = dict(zip(structure.coordinates, structure.sliding_vectors[0].tolist(), strict=True))
-    moved = (f"{axis}_{gear}" for gear in "12" for axis in "xy")
-    return vector(structure.coordinates, {f"phi_{name}": across[name] for name in moved})

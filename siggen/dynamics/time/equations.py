@@ -1,9 +1,9 @@
 """Equations of motion about the static equilibrium at the mean mesh stiffness, in the form the integrators take.
 
-With q = q_s + w and K_0 q_s + p F_s = f (derived):  M ẅ + C_0 ẇ + K_0 w = -p (F - F_s) + Σ_k v_k u_k(t),
-F = mesh force at δ_s + pᵀw; inputs u_k act beside the constant torque, along constant vectors v_k.
-The state is z = [w, ẇ]. Small deviations instead of the static twist of the shafts keep double precision over long
-records.
+With q = q_s + w and K_0 q_s + Σ p F_s = f over the meshes (derived):
+M ẅ + C_0 ẇ + K_0 w = -Σ p (F - F_s) + Σ_k v_k u_k(t), F = mesh force at δ_s + pᵀw; inputs u_k act beside the constant
+torque, along constant vectors v_k. The state is z = [w, ẇ]. Small deviations instead of the static twist of the shafts
+keep double precision over long records.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from siggen.dynamics.structure.structure import Structure
 class Equations(NamedTuple):
     """Constant numbers of the equations of motion (a named tuple, since compiled code takes no dataclass).
 
-    `stiffness_by_mass`, `damping_by_mass` (n, n): M⁻¹K_0, M⁻¹C_0; `mesh_input` (n,): M⁻¹p; `mesh_vector` (n,): p;
-    `static_deflection` (n,): q_s; `reference_stiffness`: mean mesh stiffness that q_s belongs to;
-    `static_force`: F_s; `static_approach`: δ_s; `side`: +1 if the mean torque loads the drive flank, else -1;
-    `external_input` (m, n): M⁻¹ v_k.
+    `stiffness_by_mass`, `damping_by_mass` (n, n): M⁻¹K_0, M⁻¹C_0; `external_input` (m, n): M⁻¹ v_k;
+    `static_deflection` (n,): q_s. Of each mesh (meshes, ...): `mesh_input` (n,) M⁻¹p; `mesh_vector` (n,) p;
+    `reference_stiffness`: mean mesh stiffness that q_s belongs to; `static_force`: F_s; `static_approach`: δ_s;
+    `side`: +1 if the mean torque loads the drive flank, else -1.
     """
 
     stiffness_by_mass: FloatArray
@@ -33,10 +33,10 @@ class Equations(NamedTuple):
     mesh_input: FloatArray
     mesh_vector: FloatArray
     static_deflection: FloatArray
-    reference_stiffness: float
-    static_force: float
-    static_approach: float
-    side: float
+    reference_stiffness: FloatArray
+    static_force: FloatArray
+    static_approach: FloatArray
+    side: FloatArray
     external_input: FloatArray
 
 
@@ -57,41 +57,55 @@ def equations_of_motion(
     if not np.isfinite(torque_nm):
         raise ValueError(f"torque_nm: received {torque_nm}; allowed are finite torques")
     half = law.half_backlash_m
-    return equations_about(structure, torque_nm, reference_stiffness, half, -half, input_vectors)
+    touching_m = np.array([[half, -half]])
+    return equations_about(structure, torque_nm, np.array([reference_stiffness]), touching_m, input_vectors)
 
 
 def equations_about(
     structure: Structure,
     torque_nm: float,
-    reference_stiffness: float,
-    drive_gap_m: float,
-    back_gap_m: float,
+    reference_stiffness: FloatArray,
+    touching_m: FloatArray,
     input_vectors: FloatArray | None = None,
 ) -> Equations:
-    """Return the equations for flanks that touch at the approach `drive_gap_m` or, on the other side, `back_gap_m`.
+    """Return the equations about the static state of a torque.
 
-    `input_vectors` (m, n) are the generalised forces per unit of the inputs; None: no inputs.
+    Parameters
+    ----------
+    structure : Structure
+    torque_nm : float
+    reference_stiffness : (meshes,)
+    touching_m : (meshes, 2)
+        Approach at which drive flanks touch, and back flanks.
+    input_vectors : (m, n) or None
+        Generalised forces per unit of the inputs; None: no inputs.
     """
-    p = structure.mesh_vector
-    loaded = structure.stiffness + reference_stiffness * p[:, None] * p[None, :]
+    p = np.array([mesh.vector for mesh in structure.meshes])
+    loaded = structure.stiffness + mesh_springs(structure, reference_stiffness)
     elastic = static_solution(structure, loaded, structure.torque_vector * torque_nm)
-    force = float(reference_stiffness * (p * elastic).sum())
-    side = 1.0 if force >= 0.0 else -1.0
-    touching = drive_gap_m if side > 0.0 else back_gap_m
-    gap = static_solution(structure, loaded, p * (reference_stiffness * touching))
-    vectors = np.empty((0, p.size)) if input_vectors is None else input_vectors
+    force = np.array([float(k * (row * elastic).sum()) for k, row in zip(reference_stiffness, p, strict=True)])
+    touching = np.where(force >= 0.0, touching_m[:, 0], touching_m[:, 1])
+    pushed = p * (reference_stiffness * touching)[:, None]
+    gap = static_solution(structure, loaded, np.add.reduce(pushed))
+    vectors = np.empty((0, p.shape[1])) if input_vectors is None else input_vectors
     return Equations(
         stiffness_by_mass=inverse_times(structure.mass, structure.stiffness),
         damping_by_mass=inverse_times(structure.mass, structure.damping),
-        mesh_input=inverse_times(structure.mass, p),
-        mesh_vector=np.array(p),
+        mesh_input=np.stack([inverse_times(structure.mass, row) for row in p]),
+        mesh_vector=p,
         static_deflection=elastic + gap,
-        reference_stiffness=reference_stiffness,
+        reference_stiffness=np.array(reference_stiffness),
         static_force=force,
         static_approach=force / reference_stiffness + touching,
-        side=side,
+        side=np.where(force >= 0.0, 1.0, -1.0),
         external_input=np.ascontiguousarray(inverse_times(structure.mass, vectors.T).T),
     )
+
+
+def mesh_springs(structure: Structure, stiffness: FloatArray) -> FloatArray:
+    """Return Σ k p pᵀ (n, n) of the meshes with a constant stiffness (meshes,) [N/m] each."""
+    parts = zip(stiffness, structure.meshes, strict=True)
+    return np.asarray(np.add.reduce([k * mesh.vector[:, None] * mesh.vector[None, :] for k, mesh in parts]))
 
 
 def inverse_times(matrix: FloatArray, right: FloatArray) -> FloatArray:
@@ -101,33 +115,35 @@ def inverse_times(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
 def start_state(structure: Structure, law: MeshLaw, equations: Equations, pitches: float) -> FloatArray:
     """Return z (2n,) at rest in the static equilibrium at the actual mesh stiffness, rigid rotation zero."""
-    p = equations.mesh_vector
-    actual = mesh_stiffness(law, pitches)
+    p, actual = equations.mesh_vector[0], mesh_stiffness(law, pitches)
     loaded = structure.stiffness + actual * p[:, None] * p[None, :]
-    penetration = equations.static_force / equations.reference_stiffness
-    deviation = static_solution(structure, loaded, -p * ((actual - equations.reference_stiffness) * penetration))
+    reference = equations.reference_stiffness[0]
+    penetration = equations.static_force[0] / reference
+    deviation = static_solution(structure, loaded, -p * ((actual - reference) * penetration))
     return np.concatenate([deviation, np.zeros_like(deviation)])
 
 
-def state_matrix(equations: Equations, stiffness: float, damping: float) -> FloatArray:
-    """Return A (2n, 2n) of ż = A z with a constant mesh stiffness [N/m] and mesh damping [N s/m]."""
-    n = equations.mesh_vector.size
-    dyad = equations.mesh_input[:, None] * equations.mesh_vector[None, :]
+def state_matrix(equations: Equations, stiffness: FloatArray, damping: FloatArray) -> FloatArray:
+    """Return A (2n, 2n) of ż = A z with a constant stiffness [N/m] and damping [N s/m] (meshes,) of every mesh."""
+    n = equations.mesh_vector.shape[1]
     matrix = np.zeros((2 * n, 2 * n))
     matrix[:n, n:] = np.eye(n)
-    matrix[n:, :n] = -(equations.stiffness_by_mass + stiffness * dyad)
-    matrix[n:, n:] = -(equations.damping_by_mass + damping * dyad)
+    on_place, on_speed = equations.stiffness_by_mass, equations.damping_by_mass
+    for m in range(len(equations.mesh_vector)):
+        dyad = equations.mesh_input[m][:, None] * equations.mesh_vector[m][None, :]
+        on_place, on_speed = on_place + stiffness[m] * dyad, on_speed + damping[m] * dyad
+    matrix[n:, :n], matrix[n:, n:] = -on_place, -on_speed
     return matrix
 
 
 @njit(cache=True)
-def approach_of(equations: Equations, state: FloatArray) -> tuple[float, float]:
-    """Return the approach δ [m] and its rate [m/s] of a state (2n,)."""
-    n = equations.mesh_vector.size
-    approach, rate = equations.static_approach, 0.0
+def approach_of(equations: Equations, mesh: int, state: FloatArray) -> tuple[float, float]:
+    """Return the approach δ [m] of a mesh and its rate [m/s] in a state (2n,)."""
+    n = equations.mesh_vector.shape[1]
+    approach, rate = equations.static_approach[mesh], 0.0
     for i in range(n):
-        approach += equations.mesh_vector[i] * state[i]
-        rate += equations.mesh_vector[i] * state[n + i]
+        approach += equations.mesh_vector[mesh, i] * state[i]
+        rate += equations.mesh_vector[mesh, i] * state[n + i]
     return approach, rate
 
 
@@ -148,12 +164,12 @@ def external_push(external_input: FloatArray, inputs: FloatArray, push: FloatArr
 @njit(cache=True)
 def state_rate(equations: Equations, law: MeshLaw, state: FloatArray, pitches: float, rate: FloatArray) -> None:
     """Write ż (2n,) of the state z (2n,) at the pinion angle `pitches` into `rate`."""
-    n = equations.mesh_vector.size
-    approach, approach_rate = approach_of(equations, state)
-    excess = mesh_force(law, approach, approach_rate, pitches) - equations.static_force
+    n = equations.mesh_vector.shape[1]
+    approach, approach_rate = approach_of(equations, 0, state)
+    excess = mesh_force(law, approach, approach_rate, pitches) - equations.static_force[0]
     for i in range(n):
         rate[i] = state[n + i]
-        total = -equations.mesh_input[i] * excess
+        total = -equations.mesh_input[0, i] * excess
         for j in range(n):
             total -= equations.stiffness_by_mass[i, j] * state[j] + equations.damping_by_mass[i, j] * state[n + j]
         rate[n + i] = total

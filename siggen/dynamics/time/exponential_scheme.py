@@ -20,9 +20,11 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.structure import Structure, friction_tilt_vector
+from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
+from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import Equations, inverse_times, state_matrix
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
+from siggen.dynamics.time.pair_equations import PairEquations
 from siggen.lanes import LANES, aligned
 
 NODES = 3
@@ -37,8 +39,8 @@ class Scheme(NamedTuple):
     """Constants of the method (a named tuple, since compiled code takes no dataclass).
 
     First axis of the first four: lengths of a step, h, h/2, .. h/16. The columns are the 2n numbers of the state at the
-    end, zeros up to a multiple of LANES, then PLACES places each for what the mesh sees at the nodes: two of it are one
-    vector. Arrays begin where a line of the cache does.
+    end, zeros up to a multiple of LANES, then PLACES places each for what every mesh sees at the nodes: two of it are
+    one vector. Channels stand mesh after mesh. Arrays begin where a line of the cache does.
     """
 
     steps_s: FloatArray  # (LEVELS,)
@@ -52,24 +54,23 @@ class Scheme(NamedTuple):
     extrapolation: (
         FloatArray  # (LEVELS, LEVELS, NODES, LANES) of the values at the nodes of the step before, to those of this
     )
-    linear: FloatArray  # (7,) stiffness, damping, static force, approach, tilt; both parts of the rigid sliding
+    linear: FloatArray  # (meshes, 7) stiffness, damping, static force, approach, tilt; both parts of the rigid sliding
+    places: FloatArray  # (meshes, 2) base pitches of a mesh: the first times those of the first mesh, plus the second
 
 
 def exponential_scheme(
     structure: Structure,
     equations: Equations,
-    damping_n_s_per_m: float,
-    rigid_sliding: tuple[float, float],
+    of_pairs: PairEquations,
+    damping_n_s_per_m: FloatArray,
     step_s: float,
 ) -> Scheme:
-    """Return the constants for steps of `step_s` [s] with the mesh damper [N s/m] in the linear part.
+    """Return the constants for steps of `step_s` [s] with the dampers of the meshes [N s/m] in the linear part.
 
     Parameters
     ----------
-    structure, equations
-    damping_n_s_per_m : float
-    rigid_sliding : (v_0, v_1)
-        Sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s].
+    structure, equations, of_pairs
+    damping_n_s_per_m : (meshes,)
     step_s : float
     """
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
@@ -79,9 +80,11 @@ def exponential_scheme(
     forces, observed = _forces(structure), _observed(structure)
     keys = tuple(_key(array) for array in (matrix, forces, equations.external_input, observed))
     transition, response, inputs, middle = _all_levels(keys, step_s)
-    tilt = structure.tilt_vector
-    static_tilt = 0.0 if tilt is None else float((tilt * equations.static_deflection).sum())
-    static = (equations.static_force, equations.static_approach, static_tilt)
+    parts = zip(structure.meshes, equations.reference_stiffness, damping_n_s_per_m, strict=True)
+    linear = [
+        [k, c, *of_pairs.static[m, :2], _static_tilt(mesh, equations), *of_pairs.rigid_sliding[m]]
+        for m, (mesh, k, c) in enumerate(parts)
+    ]
     return Scheme(
         steps_s=steps,
         transition=transition,
@@ -92,8 +95,13 @@ def exponential_scheme(
         weights=weights,
         legendre=np.array([_legendre(nodes, degree) * weights * (2.0 * degree + 1.0) for degree in range(NODES)]),
         extrapolation=_extrapolation(nodes, weights, steps),
-        linear=np.array([equations.reference_stiffness, damping_n_s_per_m, *static, *rigid_sliding]),
+        linear=np.array(linear),
+        places=of_pairs.places,
     )
+
+
+def _static_tilt(mesh: MeshVectors, equations: Equations) -> float:
+    return 0.0 if mesh.tilt is None else float((mesh.tilt * equations.static_deflection).sum())
 
 
 def _key(array: FloatArray) -> tuple[tuple[int, ...], bytes]:
@@ -118,20 +126,24 @@ def _filled(values: FloatArray, multiple: int) -> FloatArray:
 
 
 def _forces(structure: Structure) -> FloatArray:
-    """Return the accelerations (channels, n) by a unit of every channel."""
-    vectors = [structure.mesh_vector, *structure.sliding_vectors]
-    if structure.tilt_vector is not None:
-        vectors += [structure.tilt_vector, friction_tilt_vector(structure)]
+    """Return the accelerations (channels, n) by a unit of every channel, mesh after mesh."""
+    vectors: list[FloatArray] = []
+    for mesh in structure.meshes:
+        vectors += [mesh.vector, *mesh.sliding]
+        if mesh.tilt is not None:
+            vectors += [mesh.tilt, friction_tilt(structure.coordinates, mesh)]
     return -inverse_times(structure.mass, np.array(vectors).T).T
 
 
 def _observed(structure: Structure) -> FloatArray:
-    """Return what the mesh sees of a state, (2n, 4), or (2n, 6) where gears tilt."""
-    still = np.zeros_like(structure.mesh_vector)
-    rows = [(structure.mesh_vector, still), (still, structure.mesh_vector)]
-    rows += [(still, sliding) for sliding in structure.sliding_vectors]
-    if structure.tilt_vector is not None:
-        rows += [(structure.tilt_vector, still), (still, structure.tilt_vector)]
+    """Return what the meshes see of a state, (2n, 4) each, or (2n, 6) where gears tilt, side by side."""
+    rows: list[tuple[FloatArray, FloatArray]] = []
+    for mesh in structure.meshes:
+        still = np.zeros_like(mesh.vector)
+        rows += [(mesh.vector, still), (still, mesh.vector)]
+        rows += [(still, sliding) for sliding in mesh.sliding]
+        if mesh.tilt is not None:
+            rows += [(mesh.tilt, still), (still, mesh.tilt)]
     return np.array([np.concatenate(row) for row in rows]).T
 
 

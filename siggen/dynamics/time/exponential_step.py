@@ -13,6 +13,7 @@ what happens and never by a label.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -59,8 +60,21 @@ CHANNELS = 5
 STIFFNESS, DAMPING, FORCE, APPROACH, TILT, ROLL_0, ROLL_1 = range(7)
 """Places in `Scheme.linear`."""
 LAST_LEVEL, TOUCHING, ATTEMPTS, SHORTENED = range(4)
-"""Places in the row of the memory behind the excess forces."""
-Work = tuple[FloatArray, ...]
+"""Places in the rows of the memory behind the excess forces, one for each mesh; only TOUCHING is that of the mesh."""
+
+
+class Work(NamedTuple):
+    """Working space: see `work_arrays`."""
+
+    nodes: tuple[FloatArray, ...]
+    tables: tuple[FloatArray, ...]
+    excess: FloatArray
+    seen: FloatArray
+    state: FloatArray
+    end: FloatArray
+    between: FloatArray
+    touching: NDArray[np.int64]
+    before: NDArray[np.int64]
 
 
 class Loop(NamedTuple):
@@ -68,26 +82,26 @@ class Loop(NamedTuple):
 
     A step of the scheme takes `stride` of those asked for, 1 or 2; one that is left over at the end is half of it.
     `speed_input`: number of the input that is the deviation of the speed, or -1; `tolerance_n`: how far the force may
-    be bent; `approach_m`: the static approach, or that of a light contact; `events` of `event_places`.
+    be bent; `approach_m`: the static approach, or that of a light contact; `events` of `event_places`; those of meshes.
     """
 
     scheme: Scheme
-    law: PairLaw
+    laws: tuple[PairLaw, ...]
     stride: int
     speed_input: int
-    tolerance_n: float
-    approach_m: float
-    events: NDArray[np.bool_]
+    tolerance_n: FloatArray
+    approach_m: FloatArray
+    events: tuple[NDArray[np.bool_], ...]
 
 
-def fresh_memory() -> FloatArray:
-    """Return what is carried from step to step beside the state, as it is at the start: (CHANNELS + 1, LANES).
+def fresh_memory(meshes: int) -> FloatArray:
+    """Return what is carried from step to step beside the state, as it is at the start: (rows, LANES).
 
-    Excess forces at the nodes of the last step; then its level, which slots touched at its end (`write_springs`; -1:
-    not known), and how many steps were tried and shortened.
+    Excess forces at the nodes of the last step, CHANNELS rows for each mesh; then, for each mesh, the level of that
+    step, which slots touched at its end (`write_springs`; -1: not known), and how many steps were tried and shortened.
     """
-    memory = np.zeros((CHANNELS + 1, LANES))
-    memory[CHANNELS, TOUCHING] = -1.0
+    memory = np.zeros(((CHANNELS + 1) * meshes, LANES))
+    memory[CHANNELS * meshes :, TOUCHING] = -1.0
     return memory
 
 
@@ -97,26 +111,29 @@ _rates = shuffle(4, 5, 6, 7, 4, 5, 6, 7)
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _correct(
-    response: FloatArray, linear: FloatArray, level: int, first: int, node: FloatArray, excess: FloatArray
+    response: FloatArray, linear: FloatArray, level: int, mesh: int, first: int, node: FloatArray, excess: FloatArray
 ) -> float:
-    """Take Newton's step on the excess forces; return the largest change of the approach at the nodes [m].
+    """Take Newton's step on the excess forces of a mesh; return the largest change of its approach at the nodes [m].
 
     The first lanes are the nodes; in `moved` the approach stands before its rate, as in the columns from `first` on.
     """
-    channels, row = response.shape[1], response.shape[3]
-    at, moved = level * channels * NODES * row + first, splat(0.0)  # what approach and rate change by at the nodes
+    channels, row = response.shape[1] // linear.shape[0], response.shape[3]
+    own = mesh * channels
+    # what approach and rate change by at the nodes
+    at, moved = (level * response.shape[1] + own) * NODES * row + first, splat(0.0)
     for channel in range(1, channels):
-        change = load(node, (NODE_FRICTION + channel - 1) * LANES) - load(excess, channel * LANES)
+        change = load(node, (NODE_FRICTION + channel - 1) * LANES) - load(excess, (own + channel) * LANES)
         here = at + channel * NODES * row
         moved = moved + load(response, here) * extract(change, 0)
         moved = moved + load(response, here + row) * extract(change, 1)
         moved = moved + load(response, here + 2 * row) * extract(change, 2)
     slope, slope_rate = load(node, NODE_SLOPE * LANES), load(node, NODE_SLOPE_RATE * LANES)
     force = load(node, NODE_NORMAL * LANES)
-    k, d = slope - linear[STIFFNESS], slope_rate - linear[DAMPING]
-    missing = force - linear[FORCE] - linear[STIFFNESS] * (load(node, NODE_APPROACH * LANES) - linear[APPROACH])
-    missing = missing + (k * moved + d * _rates(moved) - linear[DAMPING] * load(node, NODE_RATE * LANES))
-    missing = missing - load(excess, 0)
+    k, d = slope - linear[mesh, STIFFNESS], slope_rate - linear[mesh, DAMPING]
+    missing = force - linear[mesh, FORCE]
+    missing = missing - linear[mesh, STIFFNESS] * (load(node, NODE_APPROACH * LANES) - linear[mesh, APPROACH])
+    missing = missing + (k * moved + d * _rates(moved) - linear[mesh, DAMPING] * load(node, NODE_RATE * LANES))
+    missing = missing - load(excess, own * LANES)
     to_0, to_1, to_2 = load(response, at), load(response, at + row), load(response, at + 2 * row)
     k = k * -1.0
     c_0, c_1, c_2 = k * to_0 - d * _rates(to_0), k * to_1 - d * _rates(to_1), k * to_2 - d * _rates(to_2)
@@ -133,9 +150,9 @@ def _correct(
     e_2 = (e_2 - f_2 * e_1) / (a_22 - f_2 * a_12)
     e_1 = (e_1 - a_12 * e_2) / a_11
     e_0 = (e_0 - a_01 * e_1 - a_02 * e_2) / a_00
-    excess[0, 0] += e_0
-    excess[0, 1] += e_1
-    excess[0, 2] += e_2
+    excess[own, 0] += e_0
+    excess[own, 1] += e_1
+    excess[own, 2] += e_2
     moved = moved + to_0 * e_0
     moved = moved + to_1 * e_1
     moved = moved + to_2 * e_2
@@ -144,25 +161,35 @@ def _correct(
     grown = select(force != 0.0, rise / force, 0.0) + 1.0
     store(node, NODE_NORMAL * LANES, force + rise)
     for channel in range(1, channels):
-        store(excess, channel * LANES, load(node, (NODE_FRICTION + channel - 1) * LANES) * grown)
+        store(excess, (own + channel) * LANES, load(node, (NODE_FRICTION + channel - 1) * LANES) * grown)
     largest: float = max(abs(extract(moved, 0)), abs(extract(moved, 1)), abs(extract(moved, 2)))
     return largest
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _attempt(
+def _see(linear: FloatArray, mesh: int, seen: FloatArray, first: int, speed_ratio: float, node: FloatArray) -> None:
+    """Write what a mesh sees of a state at the nodes of a step; it stands from the column `first` on."""
+    approach, sliding = load(seen, first), load(seen, first + LANES)
+    store(node, NODE_APPROACH * LANES, approach + linear[mesh, APPROACH])
+    store(node, NODE_RATE * LANES, _rates(approach))
+    store(node, NODE_SLIDING_0 * LANES, sliding + linear[mesh, ROLL_0] * speed_ratio)
+    store(node, NODE_SLIDING_1 * LANES, _rates(sliding) + linear[mesh, ROLL_1] * speed_ratio)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     loop: Loop, level: int, pitches_0: float, pitches_1: float, speed_ratio: float, memory: FloatArray,
-    pairs: FloatArray, work: Work,
+    pairs: tuple[FloatArray, ...], work: Work,
 ) -> bool:  # fmt: skip
     """Write the state at the end of a step; return False, and keep the memory as it is, if the step has an event."""
-    scheme, law = loop.scheme, loop.law
+    scheme, laws = loop.scheme, loop.laws
     response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
-    node, excess, seen, start, end, between, table = work
-    size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
-    tilts = channels > 3
-    first = size + -size % LANES
+    excess, seen, start, end, between = work.excess, work.seen, work.state, work.end, work.between
+    size, channels, columns, meshes = scheme.transition.shape[1], response.shape[1], end.size, len(laws)
+    tilts = channels > 3 * meshes
+    first, sight, kept = size + -size % LANES, (3 if tilts else 2) * LANES, CHANNELS * meshes
     free_motion(scheme.transition, scheme.input_response, level, start, between, end)
-    last = int(memory[CHANNELS, LAST_LEVEL])
+    last = int(memory[kept, LAST_LEVEL])
     at = (last * LEVELS + level) * NODES * LANES
     ahead_0, ahead_1, ahead_2 = (
         load(extrapolation, at),
@@ -173,42 +200,51 @@ def _attempt(
         guess = splat(0.0) + ahead_0 * scalar_at(memory, channel * LANES)
         guess = guess + ahead_1 * scalar_at(memory, channel * LANES + 1)
         store(excess, channel * LANES, guess + ahead_2 * scalar_at(memory, channel * LANES + 2))
-    settled, touching, before = False, 0, -1
+    for mesh in range(meshes):
+        work.touching[mesh], work.before[mesh] = 0, -1
+    settled = False
     for iteration in range(MOST_ITERATIONS):
-        add_response(response, level, excess, first, columns, end, seen)
-        approach, sliding = load(seen, first), load(seen, first + LANES)
-        store(node, NODE_APPROACH * LANES, approach + linear[APPROACH])
-        store(node, NODE_RATE * LANES, _rates(approach))
-        store(node, NODE_SLIDING_0 * LANES, sliding + linear[ROLL_0] * speed_ratio)
-        store(node, NODE_SLIDING_1 * LANES, _rates(sliding) + linear[ROLL_1] * speed_ratio)
-        if tilts:
-            tilt = load(seen, first + 2 * LANES)
-            store(node, NODE_TILT * LANES, tilt + linear[TILT])
-            store(node, NODE_TILT_RATE * LANES, _rates(tilt))
-        touching = write_lane_forces(law, pitches_0, pitches_1, pairs, table, node)
-        if touching == NOT_HERE:
-            touching = write_node_forces(
-                law, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node, SMOOTH_SHARE
-            )
-        change = _correct(response, linear, level, first, node, excess)
-        kinked = touching < 0 or (iteration > 0 and touching != before)
-        before = touching
-        if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * loop.approach_m:
-            settled = True
+        settled = True
+        for mesh in range(meshes):
+            law, node, own = laws[mesh], work.nodes[mesh], first + mesh * sight
+            add_response(response, level, excess, first, columns, end, seen)
+            _see(linear, mesh, seen, own, speed_ratio, node)
+            if tilts:
+                tilt = load(seen, own + 2 * LANES)
+                store(node, NODE_TILT * LANES, tilt + linear[mesh, TILT])
+                store(node, NODE_TILT_RATE * LANES, _rates(tilt))
+            from_0 = pitches_0 * scheme.places[mesh, 0] + scheme.places[mesh, 1]
+            to_1 = pitches_1 * scheme.places[mesh, 0] + scheme.places[mesh, 1]
+            touching = write_lane_forces(law, from_0, to_1, pairs[mesh], work.tables[mesh], node)
+            if touching == NOT_HERE:
+                touching = write_node_forces(
+                    law, scheme.nodes, scheme.weights, from_0, to_1, pairs[mesh], node, SMOOTH_SHARE
+                )
+            change = _correct(response, linear, level, mesh, own, node, excess)
+            kinked = touching < 0 or (iteration > 0 and touching != work.before[mesh])
+            work.touching[mesh], work.before[mesh] = touching, touching
+            if not change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * loop.approach_m[mesh]:
+                settled = False
+        if settled:
             break
     if level < LEVELS - 1:
-        bent, rubbing = 0.0, 0.0
-        for q in range(NODES):
-            bent += legendre[NODES - 1, q] * node[NODE_NORMAL, q]
-            rubbing += legendre[NODES - 1, q] * node[NODE_FRICTION, q]
-        parted = touching < 0 or touching != int(memory[CHANNELS, TOUCHING])
-        if not settled or (level < TOUCHED and parted) or not max(abs(bent), abs(rubbing)) <= loop.tolerance_n:
+        if not settled:
             return False
+        for mesh in range(meshes):
+            node, touching, bent, rubbing = work.nodes[mesh], work.touching[mesh], 0.0, 0.0
+            for q in range(NODES):
+                bent += legendre[NODES - 1, q] * node[NODE_NORMAL, q]
+                rubbing += legendre[NODES - 1, q] * node[NODE_FRICTION, q]
+            parted = touching < 0 or touching != int(memory[kept + mesh, TOUCHING])
+            if (level < TOUCHED and parted) or not max(abs(bent), abs(rubbing)) <= loop.tolerance_n[mesh]:
+                return False
     add_response(response, level, excess, 0, first, end, end)
     for channel in range(channels):
         store(memory, channel * LANES, load(excess, channel * LANES))
-    memory[CHANNELS, LAST_LEVEL] = level
-    memory[CHANNELS, TOUCHING] = touching if touching >= 0 else -1 - touching
+    memory[kept, LAST_LEVEL] = level
+    for mesh in range(meshes):
+        touching = work.touching[mesh]
+        memory[kept + mesh, TOUCHING] = touching if touching >= 0 else -1 - touching
     return True
 
 
@@ -233,33 +269,65 @@ def _has_event(
     return False
 
 
-def work_arrays(scheme: Scheme, law: PairLaw) -> Work:
-    """Return working space for `advance`: node values, excess forces, what is seen, state, end, inputs, pairs in lanes.
+def work_arrays(scheme: Scheme, laws: Sequence[PairLaw]) -> Work:
+    """Return working space for `advance`.
+
+    Of every mesh values at nodes, and pairs in lanes; excess forces, what is seen, state, end, inputs; which slots
+    touch in every mesh, and did before.
 
     Allocated outside: compiled code that allocates nothing need not count references, which costs more than the forces.
     """
     columns, inputs = scheme.transition.shape[2], scheme.input_response.shape[2]
-    shapes = ((NODE_ROWS, LANES), (CHANNELS, LANES), (columns,), (columns,), (columns,), (2, inputs))
-    return *(aligned(np.zeros(shape)) for shape in shapes), lane_table(law, scheme.nodes)
+    return Work(
+        nodes=tuple(aligned(np.zeros((NODE_ROWS, LANES))) for _ in laws),
+        tables=tuple(lane_table(law, scheme.nodes) for law in laws),
+        excess=aligned(np.zeros((CHANNELS * len(laws), LANES))),
+        seen=aligned(np.zeros(columns)),
+        state=aligned(np.zeros(columns)),
+        end=aligned(np.zeros(columns)),
+        between=aligned(np.zeros((2, inputs))),
+        touching=np.zeros(len(laws), dtype=np.int64),
+        before=np.zeros(len(laws), dtype=np.int64),
+    )
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _meets_event(loop: Loop, pairs: tuple[FloatArray, ...], pitches_0: float, pitches_1: float) -> bool:
+    """Return whether a pair of any mesh meets an event between two angles of the first mesh."""
+    scheme = loop.scheme
+    for mesh in range(len(loop.laws)):
+        law = loop.laws[mesh]
+        centre = -scheme.linear[mesh, ROLL_0] / scheme.linear[mesh, ROLL_1]
+        pitch_place = (centre - law.scalars[layout.START_M]) / law.scalars[layout.PITCH_M]
+        reach = ROUND * law.scalars[layout.SLIP_SPEED] / abs(scheme.linear[mesh, ROLL_1] * law.scalars[layout.PITCH_M])
+        reach = reach if law.places[layout.ROUGHNESSES] > 0 else -1.0
+        rate, begins = scheme.places[mesh, 0], scheme.places[mesh, 1]
+        from_0, to_1 = pitches_0 * rate + begins, pitches_1 * rate + begins
+        if _has_event(law, pairs[mesh], loop.events[mesh], pitch_place, reach, from_0, to_1):
+            return True
+    return False
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _mark(memory: FloatArray, meshes: int, step: int, apart: NDArray[np.bool_]) -> None:
+    """Mark the meshes in which no pair touches at the end of a step."""
+    for mesh in range(meshes):
+        apart[mesh, step] = memory[CHANNELS * meshes + mesh, TOUCHING] == 0.0
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
 def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
-    loop: Loop, pitches: FloatArray, inputs: FloatArray, memory: FloatArray, pairs: FloatArray, work: Work,
+    loop: Loop, pitches: FloatArray, inputs: FloatArray, memory: FloatArray, pairs: tuple[FloatArray, ...], work: Work,
     apart: NDArray[np.bool_], trajectory: FloatArray,
 ) -> None:  # fmt: skip
-    """Fill `trajectory` (steps + 1, 2n) after row 0; mark in `apart` (steps,) at which of them no pair touches.
+    """Fill `trajectory` (steps + 1, 2n) after row 0; mark in `apart` (meshes, steps) at which of them no pair touches.
 
-    `pitches` (steps + 1,), `inputs` (steps + 1, m); `memory` of `fresh_memory` and `pairs` (NODES slots, COLUMNS) go on
-    from the steps before.
+    `pitches` (steps + 1,), `inputs` (steps + 1, m); `memory` of `fresh_memory` and of every mesh `pairs` (NODES slots,
+    COLUMNS) go on from the steps before.
     """
-    scheme, law, stride, speed_input = loop.scheme, loop.law, loop.stride, loop.speed_input
-    size, m = scheme.transition.shape[1], inputs.shape[1]
-    state, end, between = work[3], work[4], work[5]
-    centre = -scheme.linear[ROLL_0] / scheme.linear[ROLL_1]
-    pitch_place = (centre - law.scalars[layout.START_M]) / law.scalars[layout.PITCH_M]
-    reach = ROUND * law.scalars[layout.SLIP_SPEED] / abs(scheme.linear[ROLL_1] * law.scalars[layout.PITCH_M])
-    reach = reach if law.places[layout.ROUGHNESSES] > 0 else -1.0
+    scheme, stride, speed_input, meshes = loop.scheme, loop.stride, loop.speed_input, len(loop.laws)
+    size, m, kept = scheme.transition.shape[1], inputs.shape[1], CHANNELS * meshes
+    state, end, between = work.state, work.end, work.between
     for j in range(size):
         state[j] = trajectory[0, j]
     steps, i = pitches.size - 1, 0
@@ -270,7 +338,7 @@ def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
         if speed_input >= 0:
             ratio += 0.5 * (inputs[i, speed_input] + inputs[last, speed_input])
         place, level = 0, 0
-        if until < FINEST or _has_event(law, pairs, loop.events, pitch_place, reach, pitches[i], pitches[last]):
+        if until < FINEST or _meets_event(loop, pairs, pitches[i], pitches[last]):
             level = 1
         while place < until:
             length = FINEST // SPLIT**level
@@ -278,29 +346,29 @@ def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
             for k in range(m):
                 rise = inputs[last, k] - inputs[i, k]
                 between[0, k], between[1, k] = inputs[i, k] + a * rise, inputs[i, k] + b * rise
-            memory[CHANNELS, ATTEMPTS] += 1.0
+            memory[kept, ATTEMPTS] += 1.0
             a, b = place / FINEST, (place + length) / FINEST
             if not _attempt(
                 loop, level, pitches[i] + a * turned, pitches[i] + b * turned, ratio, memory, pairs, work
             ):  # fmt: skip
                 level += 1
-                memory[CHANNELS, SHORTENED] += 1.0
+                memory[kept, SHORTENED] += 1.0
                 continue
             if stride == 2 and level == 0:
-                write_middle(scheme.middle, state, memory, scheme.response.shape[1], between, work[2])
+                write_middle(scheme.middle, state, memory, scheme.response.shape[1], between, work.seen)
                 for j in range(size):
-                    trajectory[i + 1, j] = work[2][j]
-                apart[i] = memory[CHANNELS, TOUCHING] == 0.0
+                    trajectory[i + 1, j] = work.seen[j]
+                _mark(memory, meshes, i, apart)
             for j in range(size):
                 state[j] = end[j]
             place += length
             if stride == 2 and place == FINEST // 2:
-                apart[i] = memory[CHANNELS, TOUCHING] == 0.0
+                _mark(memory, meshes, i, apart)
                 for j in range(size):
                     trajectory[i + 1, j] = state[j]
             while level > 0 and place % (FINEST // SPLIT ** (level - 1)) == 0:
                 level -= 1
-        apart[last - 1] = memory[CHANNELS, TOUCHING] == 0.0
+        _mark(memory, meshes, last - 1, apart)
         for j in range(size):
             trajectory[last, j] = state[j]
         i = last

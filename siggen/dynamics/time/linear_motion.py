@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
@@ -19,6 +20,7 @@ from siggen.dynamics.time.equations import (
     linear_rate,
     start_state,
 )
+from siggen.dynamics.time.motion import APPROACH_LIMIT_PITCHES
 from siggen.dynamics.time.product_integration import ProductIntegration
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
 from siggen.dynamics.time.transient import transient_s
@@ -95,14 +97,13 @@ class LinearMotion:
         if integrator not in INTEGRATORS:
             raise ValueError(f"integrator: received {integrator!r}; allowed are {', '.join(INTEGRATORS)}")
         stiffness = mean_mesh_stiffness(tables)
-        damping = 2.0 * mesh_damping_ratio * float(np.sqrt(stiffness * structure.equivalent_mesh_mass_kg))
+        damping = 2.0 * mesh_damping_ratio * float(np.sqrt(stiffness * structure.mesh.mass_kg))
         self.structure = structure
         self._law = mesh_law(tables, damping, backlash_m)
         self.equations = equations_of_motion(structure, self._law, torque_nm, stiffness, input_vectors)
-        self.transient_s = transient_s(structure, self.equations, damping)
+        self.transient_s = transient_s(structure, self.equations, np.array([damping]))
         self.teeth = self._law.table_of_pair.shape[0]
-        self.largest_approach_m = 0.5 * backlash_m
-        self.base_pitch_m = tables.base_pitch_m
+        self.limits_m = np.array([0.5 * backlash_m + APPROACH_LIMIT_PITCHES * tables.base_pitch_m])
         self._integrator = INTEGRATORS[integrator](self.equations, self._law, step_s)
 
     @property
@@ -121,9 +122,9 @@ class LinearMotion:
     def refuse_outside(self, states: FloatArray) -> None:
         """Accept any state: parallel gears do not tilt."""
 
-    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:  # noqa: ARG002 - as every motion
-        """Return at how many states no teeth touch: the approach is inside the backlash."""
-        return _steps_in_gap(self.equations, self._law.half_backlash_m, states)
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> NDArray[np.int64]:  # noqa: ARG002 - as every motion
+        """Return at how many states no teeth touch (1,): the approach is inside the backlash."""
+        return np.array([_steps_in_gap(self.equations, self._law.half_backlash_m, states)])
 
     def internals(
         self,
@@ -133,7 +134,7 @@ class LinearMotion:
     ) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
         found = _evaluate_inner(self.equations, self._law, states, pitches)
-        side = self.structure.flanks.side
+        side = self.structure.mesh.flanks.side
         return np.asarray(found * np.array([side, 1.0, side, side]))
 
 
@@ -143,7 +144,7 @@ def _steps_in_gap(equations: Equations, half_backlash_m: float, states: FloatArr
         return 0
     count = 0
     for i in range(states.shape[0]):
-        approach, _ = approach_of(equations, states[i])
+        approach, _ = approach_of(equations, 0, states[i])
         if not abs(approach) > half_backlash_m:
             count += 1
     return count
@@ -153,7 +154,7 @@ def _steps_in_gap(equations: Equations, half_backlash_m: float, states: FloatArr
 def _evaluate_inner(equations: Equations, law: MeshLaw, states: FloatArray, pitches: FloatArray) -> FloatArray:
     result = np.empty((states.shape[0], 4))
     for i in range(states.shape[0]):
-        approach, rate = approach_of(equations, states[i])
+        approach, rate = approach_of(equations, 0, states[i])
         result[i, 0] = mesh_force(law, approach, rate, pitches[i])
         result[i, 1] = mesh_stiffness(law, pitches[i])
         result[i, 2] = approach

@@ -12,7 +12,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.free_rotation import elastic_basis, free_rotations
 from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import Equations, state_matrix
+from siggen.dynamics.time.equations import Equations, mesh_springs, state_matrix
 
 EXCITED_SHARE = 1e-9
 """Modes whose residue in the bearing displacement is below this share of the largest are not excited by the mesh."""
@@ -33,7 +33,7 @@ class Modes:
 
 def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float) -> Modes:
     """Return the modes of the structure with a constant mesh stiffness [N/m]."""
-    p = structure.mesh_vector
+    p = structure.mesh.vector
     stiffness = structure.stiffness + mesh_stiffness_n_per_m * p[:, None] * p[None, :]
     basis = elastic_basis(structure, stiffness)
     scaled = basis.T @ stiffness @ basis
@@ -57,7 +57,7 @@ def _orthonormal(vectors: FloatArray, mass: FloatArray) -> FloatArray:
 
 
 def slowest_decay_per_s(
-    structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float, above_hz: float = 0.0
+    structure: Structure, equations: Equations, mesh_damping_n_s_per_m: FloatArray, above_hz: float = 0.0
 ) -> float:
     """Return the smallest decay rate [1/s] of the modes that the mesh excites and a bearing shows; 0 if undamped.
 
@@ -65,21 +65,24 @@ def slowest_decay_per_s(
 
     The residue of mode i in the displacement at a bearing, c · r_i l_i · B, tells whether it takes part.
     """
-    p, k = structure.mesh_vector, equations.reference_stiffness
-    basis = elastic_basis(structure, structure.stiffness + k * p[:, None] * p[None, :])
+    stiffness = equations.reference_stiffness
+    basis = elastic_basis(structure, structure.stiffness + mesh_springs(structure, stiffness))
     n, m = basis.shape
     # In this basis the mass is the identity, and no free rotation is left.
     matrix = np.zeros((2 * m, 2 * m))
-    full = state_matrix(equations, k, mesh_damping_n_s_per_m)[n:]
+    full = state_matrix(equations, stiffness, mesh_damping_n_s_per_m)[n:]
     matrix[:m, m:] = np.eye(m)
     matrix[m:, :m], matrix[m:, m:] = (basis.T @ structure.mass @ full[:, half] @ basis for half in _halves(n))
     values, right = np.linalg.eig(matrix)
     motions = np.array(list(structure.motions.values())) @ basis
-    inputs = np.concatenate([np.zeros(m), basis.T @ p])
-    # Least squares, since equal modes may leave the matrix of eigenvectors without an inverse.
-    participation = np.linalg.lstsq(right, inputs.astype(complex), rcond=None)[0]
-    residue = np.abs(motions @ right[:m]).max(axis=0) * np.abs(participation)
-    excited = (residue > EXCITED_SHARE * residue.max()) & (np.abs(values) >= 2.0 * np.pi * above_hz)
+    excited = np.zeros(len(values), dtype=bool)
+    for mesh in structure.meshes:
+        inputs = np.concatenate([np.zeros(m), basis.T @ mesh.vector])
+        # Least squares, since equal modes may leave the matrix of eigenvectors without an inverse.
+        participation = np.linalg.lstsq(right, inputs.astype(complex), rcond=None)[0]
+        residue = np.abs(motions @ right[:m]).max(axis=0) * np.abs(participation)
+        excited |= residue > EXCITED_SHARE * residue.max()
+    excited &= np.abs(values) >= 2.0 * np.pi * above_hz
     return float(max(0.0, (-values.real[excited]).min()))
 
 

@@ -11,11 +11,16 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import Equations
 
+APPROACH_LIMIT_PITCHES = 0.1
+"""Penetration of the flanks, in base pitches, beyond which no teeth exist: about 1 mm, a hundred times a usual load."""
+
 
 class Motion(Protocol):
     """A structure under some mesh law: what is stepped through time, and what can be asked about its states (2n,).
 
-    `coarse_inputs`: whether inputs may be splines over a coarse grid; motions of older sets keep every bit without.
+    `teeth`: of the first gear, by which angles are counted in base pitches; `limits_m` (meshes,): approaches beyond
+    which a state is refused. `coarse_inputs`: whether inputs may be splines over a coarse grid; motions of older sets
+    keep every bit without.
     `starts_settled`: whether a motion starts near its end, on a whole sample and with its transient before any history.
     """
 
@@ -23,15 +28,14 @@ class Motion(Protocol):
     equations: Equations
     transient_s: float
     teeth: int
-    base_pitch_m: float
-    largest_approach_m: float
+    limits_m: FloatArray
     internal_names: tuple[str, ...]
     coarse_inputs: bool
     starts_settled: bool
 
     @property
     def law(self) -> NamedTuple:
-        """The mesh law: tables and numbers."""
+        """The law of the first mesh: tables and numbers."""
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state at the start, at a pinion angle in base pitches."""
@@ -39,14 +43,15 @@ class Motion(Protocol):
     def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_] | None:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m).
 
-        Returns (steps,) whether no teeth touch at the end of each step, if that is known; else `steps_apart` tells it.
+        Returns (meshes, steps) whether no teeth touch at the end of each step, if that is known; else `steps_apart`
+        tells it.
         """
 
     def refuse_outside(self, states: FloatArray) -> None:
         """Raise ValueError if a state (k, 2n) lies outside what the mesh law was made for."""
 
-    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
-        """Return at how many states no teeth touch."""
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> NDArray[np.int64]:
+        """Return at how many states no teeth of each mesh touch (meshes,)."""
 
     def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
         """Return the values named in `internal_names` (k, names)."""

@@ -7,50 +7,61 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.structure import Structure, friction_tilt_vector, vector
+from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
+from siggen.dynamics.structure.shaft_lines import rigid_rotation
+from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.equations import Equations, inverse_times
+
+FORCE, APPROACH, TILT = range(3)
+"""Columns of `PairEquations.static`."""
+UPRIGHT, TILTING = 6, 9
+"""Rows of a mesh in `PairEquations.rows`, without and with tilt."""
 
 
 class PairEquations(NamedTuple):
     """Constant numbers of the equations of motion and how sliding enters them.
 
-    `rows` (2n + 6, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C, p, r_0, r_1, and
-    M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1; where gears tilt (2n + 9, n) with t, M⁻¹ t and M⁻¹ t_x behind; `static_tilt`: of the state;
-    `static_force`, `static_approach`: state that deviations count from; `rigid_sliding_0`,
-    `rigid_sliding_1`: sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s];
-    `external_input` (m, n): see `Equations`.
+    `rows` (2n + 6 meshes, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C; then of
+    each mesh p, r_0, r_1, M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1, and where gears tilt t, M⁻¹ t and M⁻¹ t_x. `static` (meshes, 3):
+    force, approach and tilt that deviations count from. `rigid_sliding` (meshes, 2): sliding speed at s of the rigid
+    rotation is the first plus s times the second [m/s, 1/s]. `places` (meshes, 2): base pitches that a mesh has turned
+    are the first times those of the first mesh, plus the second. `external_input` (m, n): see `Equations`.
     """
 
     rows: FloatArray
-    static_force: float
-    static_approach: float
-    rigid_sliding_0: float
-    rigid_sliding_1: float
+    static: FloatArray
+    rigid_sliding: FloatArray
+    places: FloatArray
     external_input: FloatArray
-    static_tilt: float
 
 
-def pair_equations(structure: Structure, equations: Equations, speed_hz: float) -> PairEquations:
-    """Return the numbers of a structure about a state, at a mean speed of the pinion."""
+def pair_equations(structure: Structure, equations: Equations, speed_hz: float, places: FloatArray) -> PairEquations:
+    """Return the numbers of a structure about a state, at a mean speed of its first shaft."""
     omega = 2.0 * np.pi * speed_hz
-    p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
-    rolling = {"theta_1": 1.0, "theta_2": -p["theta_1"] / p["theta_2"]}
-    rigid = structure.sliding_vectors @ vector(structure.coordinates, rolling) * omega
-    inputs = inverse_times(structure.mass, structure.sliding_vectors.T).T
-    parts = [-equations.stiffness_by_mass.T, -equations.damping_by_mass.T, equations.mesh_vector[None]]
-    parts += [structure.sliding_vectors, equations.mesh_input[None], inputs]
-    static_tilt = 0.0
-    if structure.tilt_vector is not None:
-        arms = np.stack([structure.tilt_vector, friction_tilt_vector(structure)], axis=1)
-        turned = inverse_times(structure.mass, arms).T
-        parts += [structure.tilt_vector[None], turned]
-        static_tilt = float(structure.tilt_vector @ equations.static_deflection)
+    parts = [-equations.stiffness_by_mass.T, -equations.damping_by_mass.T]
+    static, rigid = [], []
+    for number, mesh in enumerate(structure.meshes):
+        parts += _mesh_rows(structure, equations, number)
+        tilt = 0.0 if mesh.tilt is None else float(mesh.tilt @ equations.static_deflection)
+        static.append([equations.static_force[number], equations.static_approach[number], tilt])
+        rigid.append(mesh.sliding @ _rolling(structure, mesh) * omega)
     return PairEquations(
-        np.ascontiguousarray(np.concatenate(parts)),
-        equations.static_force,
-        equations.static_approach,
-        float(rigid[0]),
-        float(rigid[1]),
+        np.ascontiguousarray(np.concatenate(parts)), np.array(static), np.array(rigid), places,
         equations.external_input,
-        static_tilt,
-    )
+    )  # fmt: skip
+
+
+def _mesh_rows(structure: Structure, equations: Equations, number: int) -> list[FloatArray]:
+    mesh = structure.meshes[number]
+    inputs = inverse_times(structure.mass, mesh.sliding.T).T
+    rows = [mesh.vector[None], mesh.sliding, equations.mesh_input[number][None], inputs]
+    if mesh.tilt is not None:
+        arms = np.stack([mesh.tilt, friction_tilt(structure.coordinates, mesh)], axis=1)
+        rows += [mesh.tilt[None], inverse_times(structure.mass, arms).T]
+    return rows
+
+
+def _rolling(structure: Structure, mesh: MeshVectors) -> FloatArray:
+    """Return how fast the gears of a mesh turn (n,) per speed of the first shaft when nothing deforms."""
+    turning = rigid_rotation(structure)
+    return vector(structure.coordinates, {name: turning[structure.coordinates.index(name)] for name in mesh.turning})

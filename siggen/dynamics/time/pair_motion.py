@@ -1,13 +1,14 @@
 """PairMotion: a structure under the forces of single tooth pairs, as what `response` steps through time.
 
-Equations (derived, signs by power): M ẅ + C w' + K w = -p (ΣN - F_s) - r_0 ΣF - r_1 Σ s F, about the static state at
-the mean mesh stiffness; p and r are the mesh and sliding vectors of the structure. The phase of the mesh is prescribed.
+Equations (derived, signs by power): M ẅ + C w' + K w = -p (ΣN - F_s) - r_0 ΣF - r_1 Σ s F of every mesh, about the
+static state at the mean mesh stiffness; p and r are the vectors of the mesh. The phase of every mesh is prescribed.
 Where gears tilt, - t Σμ - t_x Σ ζ F come to the right side, with the moments μ of the pairs across the face and the
 centre ζ = μ/N at which they rub; what tilting adds to the sliding speed, some 1e-6 of it, is left out.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,7 +19,7 @@ from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_columns as columns
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
+from siggen.dynamics.mesh.pair_forces import static_approach_m
 from siggen.dynamics.mesh.pair_internals import (
     PairContact,
     as_back_flanks,
@@ -30,9 +31,12 @@ from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
 from siggen.dynamics.structure.load_lock import LOCK_HZ
+from siggen.dynamics.structure.shaft_lines import rigid_rotation
 from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import equations_about, external_push
-from siggen.dynamics.time.pair_equations import PairEquations, pair_equations
+from siggen.dynamics.time.equations import equations_about, external_push, mesh_springs
+from siggen.dynamics.time.motion import APPROACH_LIMIT_PITCHES
+from siggen.dynamics.time.pair_equations import APPROACH, TILT, PairEquations, pair_equations
+from siggen.dynamics.time.pair_rate import at_speed, load_pairs, pair_rate
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
 from siggen.dynamics.time.transient import transient_s
 
@@ -46,19 +50,30 @@ GOLDEN = 0.6180339887498949
 
 
 class MeanState(NamedTuple):
-    """Motor torque, pinion speed and mesh stiffness of a mean; errors count against a light force at least."""
+    """Motor torque and speed of the first shaft of a mean."""
 
     torque_nm: float
     speed_hz: float
+
+
+class PairMesh(NamedTuple):
+    """Law of one mesh and its mean stiffness; errors count against a light force at least.
+
+    `begins_pitches`: base pitches that it has turned where the first mesh has turned none.
+    """
+
+    law: PairLaw
     stiffness_n_per_m: float
     light_force_n: float = 0.0
+    contact: PairContact | None = None
+    begins_pitches: float = 0.0
 
 
 class PairMotion:
     """Steps with the classical Runge-Kutta method; works with any structure.
 
-    `input_vectors` (m, n) are those of `equations_about`; `speed_input` is the number of the input that is Ω/Ω_0 - 1,
-    or -1 where the speed is constant.
+    `meshes` in the order of those of the structure. `input_vectors` (m, n) are those of `equations_about`;
+    `speed_input` is the number of the input that is Ω/Ω_0 - 1, or -1 where the speed is constant.
     """
 
     coarse_inputs = False
@@ -67,35 +82,55 @@ class PairMotion:
     def __init__(
         self,
         structure: Structure,
-        law: PairLaw,
+        meshes: Sequence[PairMesh],
         *,
         mean: MeanState,
         step_s: float,
-        contact: PairContact | None = None,
         input_vectors: FloatArray | None = None,
         speed_input: int = -1,
     ) -> None:
-        self.structure = structure
-        self.law = law
-        self.contact = contact
-        self.equations = equations_about(
-            structure, mean.torque_nm, mean.stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
-        )
-        self.pair_equations = pair_equations(structure, self.equations, mean.speed_hz)
-        damping = law.damping_root_kg * float(np.sqrt(mean.stiffness_n_per_m))
-        held_hz = 2.0 * LOCK_HZ if law.places[layout.ROUGHNESSES] > 0 else 0.0
-        self.transient_s = transient_s(structure, self.equations, damping, held_hz)
-        self.teeth = law.teeth
-        self.largest_approach_m = law.backlash_m
-        self.base_pitch_m = law.base_pitch_m
-        self.tilts = structure.tilt_vector is not None
-        across = ACROSS if self.tilts else ()
+        self.structure, self.meshes = structure, tuple(meshes)
+        self.laws = tuple(mesh.law for mesh in meshes)
+        self._stiffness = np.array([mesh.stiffness_n_per_m for mesh in meshes])
+        touching_m = np.array([[0.0, -law.backlash_m] for law in self.laws])
+        self.equations = equations_about(structure, mean.torque_nm, self._stiffness, touching_m, input_vectors)
+        self.teeth = self.laws[0].teeth
+        self.pair_equations = pair_equations(structure, self.equations, mean.speed_hz, self._places())
+        rubs = any(law.places[layout.ROUGHNESSES] > 0 for law in self.laws)
+        self.transient_s = transient_s(structure, self.equations, self.damping, 2.0 * LOCK_HZ if rubs else 0.0)
+        self.limits_m = np.array([law.backlash_m + APPROACH_LIMIT_PITCHES * law.base_pitch_m for law in self.laws])
+        self.tilts = structure.mesh.tilt is not None
         self._bodies = structure.bodies
         moved = (structure.coordinates[i] for i in self._bodies)
-        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *across, *with_units(moved))
-        self._pairs = pair_table(law)
+        self.internal_names = (*self._mesh_names(), *with_units(moved))
+        self._pairs = tuple(pair_table(law) for law in self.laws)
         self._step_s = step_s
         self._speed_input = speed_input
+
+    @property
+    def law(self) -> PairLaw:
+        """The law of the first mesh."""
+        return self.laws[0]
+
+    @property
+    def damping(self) -> FloatArray:
+        """Damping (meshes,) of the linear part [N s/m]."""
+        return np.asarray(np.array([law.damping_root_kg for law in self.laws]) * np.sqrt(self._stiffness))
+
+    def _places(self) -> FloatArray:
+        """Return how base pitches of every mesh follow from those of the first, see `PairEquations`."""
+        turning, names = rigid_rotation(self.structure), self.structure.coordinates
+        speeds = [turning[names.index(mesh.turning[0])] for mesh in self.structure.meshes]
+        rates = [law.teeth * speed / (self.teeth * speeds[0]) for law, speed in zip(self.laws, speeds, strict=True)]
+        return np.array([[rate, mesh.begins_pitches] for rate, mesh in zip(rates, self.meshes, strict=True)])
+
+    def _mesh_names(self) -> Iterator[str]:
+        """Yield the names of what happens in the meshes; those of several begin with the name of the mesh."""
+        for mesh, vectors in zip(self.meshes, self.structure.meshes, strict=True):
+            across = ACROSS if self.tilts else ()
+            first = f"{vectors.name}_" if vectors.name else ""
+            for name in (*pair_internal_names(mesh.law.slots, mesh.contact), *MOTION, *across):
+                yield first + name
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state (2n,) at rest in which the pairs at this angle carry the torque, moved by mean friction.
@@ -115,13 +150,19 @@ class PairMotion:
 
     def _standing(self, pitches: float) -> FloatArray:
         """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction."""
-        equations, p = self.equations, self.equations.mesh_vector
-        approach = static_approach_m(self.law, equations.static_force, pitches)
-        stiffness = equations.reference_stiffness
-        loaded = self.structure.stiffness + stiffness * p[:, None] * p[None, :]
-        moved = p * (stiffness * (approach - equations.static_approach))
-        deviation = static_solution(self.structure, loaded, moved)
+        equations = self.equations
+        moved = np.zeros_like(equations.static_deflection)
+        for m, law in enumerate(self.laws):
+            rate, begins = self.pair_equations.places[m]
+            approach = static_approach_m(law, equations.static_force[m], pitches * rate + begins)
+            moved += equations.mesh_vector[m] * (self._stiffness[m] * (approach - equations.static_approach[m]))
+        deviation = static_solution(self.structure, self._loaded, moved)
         return np.concatenate([deviation, np.zeros_like(deviation)])
+
+    @property
+    def _loaded(self) -> FloatArray:
+        """Stiffness (n, n) with the springs of the meshes."""
+        return np.asarray(self.structure.stiffness + mesh_springs(self.structure, self._stiffness))
 
     @cached_property
     def _rest(self) -> FloatArray:
@@ -129,26 +170,27 @@ class PairMotion:
 
         None where nothing holds the load: friction then brakes it.
         """
-        p = self.structure.mesh_vector
-        loaded = self.structure.stiffness + self.equations.reference_stiffness * p[:, None] * p[None, :]
-        if self.law.places[layout.ROUGHNESSES] == 0 or free_rotations(self.structure, loaded).shape[1] > 0:
-            return np.zeros_like(p)
+        loaded, push = self._loaded, np.zeros_like(self.equations.static_deflection)
+        rubs = any(law.places[layout.ROUGHNESSES] > 0 for law in self.laws)
+        if not rubs or free_rotations(self.structure, loaded).shape[1] > 0:
+            return push
         angles = np.asarray(np.arange(MEAN_ANGLES) * self.teeth * GOLDEN % self.teeth, dtype=np.float64)
-        pairs = self.pairs(np.stack([self._standing(angle) for angle in angles]), angles)
-        friction, (r_0, r_1) = pairs[:, :, columns.FRICTION], self.structure.sliding_vectors
-        push = -r_0 * friction.sum() - r_1 * (pairs[:, :, columns.POSITION] * friction).sum()
+        states = np.stack([self._standing(angle) for angle in angles])
+        for mesh, pairs in zip(self.structure.meshes, self.pairs(states, angles), strict=True):
+            friction, (r_0, r_1) = pairs[:, :, columns.FRICTION], mesh.sliding
+            push = push + (-r_0 * friction.sum() - r_1 * (pairs[:, :, columns.POSITION] * friction).sum())
         return static_solution(self.structure, loaded, push / MEAN_ANGLES)
 
     def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_] | None:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
         column = self._speed_input
-        _advance(self.pair_equations, self.law, self._pairs, self._step_s, column, pitches, inputs, trajectory)
+        _advance(self.pair_equations, self.laws, self._pairs, self._step_s, column, pitches, inputs, trajectory)
         return None
 
     def rate(self, state: FloatArray, pitches: float) -> FloatArray:
         """Return ż (2n,) of a state, for other solvers."""
         rate = np.empty_like(state)
-        pair_rate((self.pair_equations, self.law, self._pairs), state, pitches, rate)
+        pair_rate((self.pair_equations, self.laws, self._pairs), state, pitches, rate)
         return rate
 
     def refuse_outside(self, states: FloatArray) -> None:
@@ -159,35 +201,38 @@ class PairMotion:
         ValueError
             With the tilt and its limit.
         """
-        if self.structure.tilt_vector is not None:
-            n = self.structure.tilt_vector.size
-            tilt = self.pair_equations.static_tilt + states[:, :n] @ self.structure.tilt_vector
-            approach = self.pair_equations.static_approach + states[:, :n] @ self.equations.mesh_vector
-            self._refuse_tilt(tilt, approach, "in motion")
+        n = self.equations.static_deflection.size
+        for m, mesh in enumerate(self.structure.meshes):
+            if mesh.tilt is not None:
+                static = self.pair_equations.static[m]
+                tilt = static[TILT] + states[:, :n] @ mesh.tilt
+                self._refuse_tilt(m, tilt, static[APPROACH] + states[:, :n] @ mesh.vector, "in motion")
 
-    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
-        """Return at how many states no pair carries."""
-        return _steps_apart(self.pair_equations, self.law, self._pairs, states, pitches)
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> NDArray[np.int64]:
+        """Return at how many states no pair of each mesh carries (meshes,)."""
+        apart = [(pairs[:, :, columns.FLANK] == 0.0).all(axis=1).sum() for pairs in self.pairs(states, pitches)]
+        return np.array(apart)
 
     def _refuse_soft_shafts(self) -> None:
         """Raise where the static deflection alone is beyond the model."""
-        static = self.pair_equations
-        self._refuse_tilt(np.array([static.static_tilt]), np.array([static.static_approach]), "under the mean torque")
-        moved = dict(zip(self.structure.coordinates, self.equations.static_deflection, strict=True))
-        shift = max(abs(moved[name]) for name in ("x_1", "y_1", "x_2", "y_2"))
-        if not shift <= LARGEST_SHIFT * self.base_pitch_m:
-            raise ValueError(
-                f"dynamics.shafts: a gear moves by {1e3 * shift:.3g} mm under the mean torque; allowed: at most "
-                f"{1e3 * LARGEST_SHIFT * self.base_pitch_m:.3g} mm. Take thicker or shorter shafts, or a smaller torque"
-            )
+        moved = dict(zip(self.structure.coordinates, np.abs(self.equations.static_deflection), strict=True))
+        for m, (mesh, law) in enumerate(zip(self.structure.meshes, self.laws, strict=True)):
+            static, allowed = self.pair_equations.static[m], LARGEST_SHIFT * law.base_pitch_m
+            self._refuse_tilt(m, static[TILT : TILT + 1], static[APPROACH : APPROACH + 1], "under the mean torque")
+            shift = max(moved[name.replace("theta", axis)] for name in mesh.turning for axis in "xy")
+            if not shift <= allowed:
+                raise ValueError(
+                    f"dynamics.shafts: a gear moves by {1e3 * shift:.3g} mm under the mean torque; allowed: at most "
+                    f"{1e3 * allowed:.3g} mm. Take thicker or shorter shafts, or a smaller torque"
+                )
 
-    def _refuse_tilt(self, tilt_rad: FloatArray, approach_m: FloatArray, when: str) -> None:
+    def _refuse_tilt(self, mesh: int, tilt_rad: FloatArray, approach_m: FloatArray, when: str) -> None:
         """Raise where an end of the face lies behind the flank that it faces by more than the backlash.
 
         Flanks that have parted, and those on the back flank, are counted as if they just touched: there the gap is that
         in the middle of the face.
         """
-        half_face, backlash = self.law.half_face_m, self.law.backlash_m
+        half_face, backlash = self.laws[mesh].half_face_m, self.laws[mesh].backlash_m
         approach_m = np.maximum(approach_m, 0.0)
         beyond = half_face * np.abs(tilt_rad) - approach_m - backlash
         worst = int(np.argmax(beyond)) if tilt_rad.size and half_face > 0.0 else -1
@@ -199,111 +244,47 @@ class PairMotion:
                 "smaller torque"
             )
 
-    def pairs(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
-        """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`; without inputs at Ω_0."""
-        result = np.stack([pair_table(self.law)] * len(states))
-        speed_deviation = (
-            np.zeros(len(states)) if inputs is None or self._speed_input < 0 else inputs[:, self._speed_input]
-        )
-        _all_pairs(self.pair_equations, self.law, states, pitches, np.ascontiguousarray(speed_deviation), result)
+    def pairs(
+        self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None
+    ) -> tuple[FloatArray, ...]:
+        """Return the table of pairs of every state (k, slots, COLUMNS) of every mesh; without inputs at Ω_0."""
+        result = tuple(np.stack([pair_table(law)] * len(states)) for law in self.laws)
+        column = self._speed_input
+        deviation = np.zeros(len(states)) if inputs is None or column < 0 else np.ascontiguousarray(inputs[:, column])
+        for m, tables in enumerate(result):
+            _all_pairs(self.pair_equations, m, self.laws[m], states, pitches, deviation, tables)
         return result
 
     def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
-        n = self.equations.mesh_vector.size
-        pairs = self.pairs(states, pitches, inputs)
-        found = pair_internals(pairs, self.law.line_of_action_m, self.contact)
+        n = self.equations.static_deflection.size
+        tables = self.pairs(states, pitches, inputs)
+        found = [self._mesh_internals(m, states, pairs) for m, pairs in enumerate(tables)]
+        moved = (states[:, :n] + self.equations.static_deflection)[:, self._bodies]
+        return np.concatenate([*found, moved], axis=1)
+
+    def _mesh_internals(self, mesh: int, states: FloatArray, pairs: FloatArray) -> FloatArray:
+        """Return what happens in a mesh (k, names) in states (k, 2n) with their tables of pairs."""
+        law, contact, p = self.laws[mesh], self.meshes[mesh].contact, self.equations.mesh_vector[mesh]
+        n = p.size
+        found = pair_internals(pairs, law.line_of_action_m, contact)
         approach = [
-            self.equations.static_approach + (states[:, :n] * self.equations.mesh_vector).sum(axis=1),
-            (states[:, n:] * self.equations.mesh_vector).sum(axis=1),
+            self.equations.static_approach[mesh] + (states[:, :n] * p).sum(axis=1),
+            (states[:, n:] * p).sum(axis=1),
         ]
         if self.tilts:
             approach += [pairs[:, 0, columns.TILT], pairs[:, :, columns.MOMENT].sum(axis=1)]
-        moved = (states[:, :n] + self.equations.static_deflection)[:, self._bodies]
-        if self.structure.flanks.side < 0.0:
-            found = as_back_flanks(found, self.law.slots, self.law.line_of_action_m, self.contact)
-            approach[:2] = [-self.law.backlash_m - approach[0], -approach[1]]
-        return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
-
-
-@njit(cache=True)
-def _at_speed(equations: PairEquations, speed_deviation: float) -> PairEquations:
-    """Return the equations at the speed Ω_0 (1 + speed_deviation)."""
-    ratio = 1.0 + speed_deviation
-    return PairEquations(
-        equations.rows,
-        equations.static_force,
-        equations.static_approach,
-        equations.rigid_sliding_0 * ratio,
-        equations.rigid_sliding_1 * ratio,
-        equations.external_input,
-        equations.static_tilt,
-    )
-
-
-# Inlined: taking arrays out of tuples again and again costs as much as the forces (see `packed_tables`).
-@njit(cache=True, inline="always")
-def _load_pairs(
-    equations: PairEquations, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
-) -> tuple[float, float, float, float, float]:
-    """Write the table of pairs of a state; return ΣN, ΣF, Σ s F, Σμ and Σ ζ F."""
-    rows, node = equations.rows, pairs[:1, pairs.shape[1] - columns.NODE_ROWS :].T
-    n = rows.shape[1]
-    approach, approach_rate = equations.static_approach, 0.0
-    sliding_0, sliding_1 = equations.rigid_sliding_0, equations.rigid_sliding_1
-    for i in range(n):
-        approach += rows[2 * n, i] * state[i]
-        approach_rate += rows[2 * n, i] * state[n + i]
-        sliding_0 += rows[2 * n + 1, i] * state[n + i]
-        sliding_1 += rows[2 * n + 2, i] * state[n + i]
-    node[columns.NODE_APPROACH, 0], node[columns.NODE_RATE, 0] = approach, approach_rate
-    node[columns.NODE_SLIDING_0, 0], node[columns.NODE_SLIDING_1, 0] = sliding_0, sliding_1
-    if rows.shape[0] > 2 * n + 6:
-        tilt, tilt_rate = equations.static_tilt, 0.0
-        for i in range(n):
-            tilt += rows[2 * n + 6, i] * state[i]
-            tilt_rate += rows[2 * n + 6, i] * state[n + i]
-        node[columns.NODE_TILT, 0], node[columns.NODE_TILT_RATE, 0] = tilt, tilt_rate
-    write_forces(law, pitches, pairs)
-    return (
-        node[columns.NODE_NORMAL, 0],
-        node[columns.NODE_FRICTION, 0],
-        node[columns.NODE_ARM, 0],
-        node[columns.NODE_MOMENT, 0],
-        node[columns.NODE_TURN, 0],
-    )
-
-
-# Inlined for the same reason; the forces themselves are not, since that would make five compilations of them.
-@njit(cache=True, inline="always")
-def pair_rate(
-    model: tuple[PairEquations, PairLaw, FloatArray], state: FloatArray, pitches: float, rate: FloatArray
-) -> None:
-    """Write ż (2n,) of a state into `rate`; the form that integrators call."""
-    equations, law, pairs = model
-    normal, friction, moment, across, rubbed = _load_pairs(equations, law, pairs, state, pitches)
-    excess = normal - equations.static_force
-    rows = equations.rows
-    n = rows.shape[1]
-    for i in range(n):
-        rate[i] = state[n + i]
-        rate[n + i] = -(rows[2 * n + 3, i] * excess + rows[2 * n + 4, i] * friction + rows[2 * n + 5, i] * moment)
-    if rows.shape[0] > 2 * n + 6:
-        for i in range(n):
-            rate[n + i] -= rows[2 * n + 7, i] * across + rows[2 * n + 8, i] * rubbed
-    # Columns outside, so that the inner loop carries no sum and runs on several rates at once; displacement and
-    # velocity of a coordinate together, which halves the traffic to memory.
-    for j in range(n):
-        displacement, velocity = state[j], state[n + j]
-        for i in range(n):
-            rate[n + i] += rows[j, i] * displacement + rows[n + j, i] * velocity
+        if self.structure.meshes[mesh].flanks.side < 0.0:
+            found = as_back_flanks(found, law.slots, law.line_of_action_m, contact)
+            approach[:2] = [-law.backlash_m - approach[0], -approach[1]]
+        return np.concatenate([found, np.stack(approach, axis=1)], axis=1)
 
 
 @njit(cache=True)
 def _advance(
     equations: PairEquations,
-    law: PairLaw,
-    pairs: FloatArray,
+    laws: tuple[PairLaw, ...],
+    pairs: tuple[FloatArray, ...],
     step_s: float,
     speed_input: int,
     pitches: FloatArray,
@@ -312,34 +293,20 @@ def _advance(
 ) -> None:
     scratch = np.empty((3, trajectory.shape[1]))
     pushes = np.empty((2, trajectory.shape[1] // 2 if inputs.shape[1] > 0 else 0))
-    model = (equations, law, pairs)
+    model = (equations, laws, pairs)
     for i in range(pitches.size - 1):
         start, end = trajectory[i], trajectory[i + 1]
         external_push(equations.external_input, inputs[i], pushes[0])
         external_push(equations.external_input, inputs[i + 1], pushes[1])
         if speed_input >= 0:
-            model = (_at_speed(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), law, pairs)
+            model = (at_speed(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), laws, pairs)
         runge_kutta_step(pair_rate, model, step_s, (pitches[i], pitches[i + 1]), pushes, start, end, scratch)
-
-
-@njit(cache=True)
-def _steps_apart(
-    equations: PairEquations, law: PairLaw, pairs: FloatArray, states: FloatArray, pitches: FloatArray
-) -> int:
-    count = 0
-    for i in range(states.shape[0]):
-        _load_pairs(equations, law, pairs, states[i], pitches[i])
-        touching = False
-        for j in range(pairs.shape[0]):
-            touching = touching or pairs[j, columns.FLANK] != 0.0
-        if not touching:
-            count += 1
-    return count
 
 
 @njit(cache=True)
 def _all_pairs(
     equations: PairEquations,
+    mesh: int,
     law: PairLaw,
     states: FloatArray,
     pitches: FloatArray,
@@ -347,4 +314,4 @@ def _all_pairs(
     result: FloatArray,
 ) -> None:
     for i in range(states.shape[0]):
-        _load_pairs(_at_speed(equations, speed_deviation[i]), law, result[i], states[i], pitches[i])
+        load_pairs(at_speed(equations, speed_deviation[i]), mesh, law, result[i], states[i], pitches[i])

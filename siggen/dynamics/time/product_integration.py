@@ -73,14 +73,14 @@ def scheme(equations: Equations, law: MeshLaw, step_s: float) -> Scheme:
     transition, response = _exponentials(equations, law, step_s)
     return Scheme(
         step_s=step_s,
-        transition=_with_approach(transition.T, equations.mesh_vector, step_s),
-        response=_with_approach(response, equations.mesh_vector, step_s),
+        transition=_with_approach(transition.T, equations.mesh_vector[0], step_s),
+        response=_with_approach(response, equations.mesh_vector[0], step_s),
         reference_moments=products.sum(axis=0),
         nodes=nodes,
         weights=weights,
         products=products,
         input_response=np.array(
-            [_with_approach(one, equations.mesh_vector, step_s) for one in _input_responses(equations, law, step_s)]
+            [_with_approach(one, equations.mesh_vector[0], step_s) for one in _input_responses(equations, law, step_s)]
         ),
     )
 
@@ -101,11 +101,11 @@ def _exponentials(equations: Equations, law: MeshLaw, step_s: float) -> tuple[Fl
     Velocities are scaled by h, which brings all entries to the same size. With c = (c_0..c_3) the chain ċ_j = c_{j+1}
     makes the input Σ c_j τ^j / j!, whose response turns into that of the Legendre polynomials by their coefficients.
     """
-    n = equations.mesh_vector.size
+    n = equations.mesh_vector.shape[1]
     scale = np.concatenate([np.ones(n), np.full(n, step_s)])
     augmented = np.zeros((2 * n + 4, 2 * n + 4))
     augmented[: 2 * n, : 2 * n] = _scaled_matrix(equations, law, step_s)
-    augmented[n : 2 * n, 2 * n] = step_s**2 * equations.mesh_input
+    augmented[n : 2 * n, 2 * n] = step_s**2 * equations.mesh_input[0]
     for j in range(3):
         augmented[2 * n + j, 2 * n + j + 1] = 1.0
     exponential = matrix_exponential(augmented)
@@ -117,9 +117,9 @@ def _exponentials(equations: Equations, law: MeshLaw, step_s: float) -> tuple[Fl
 
 def _scaled_matrix(equations: Equations, law: MeshLaw, step_s: float) -> FloatArray:
     """Return h A (2n, 2n) of the constant part with velocities scaled by h."""
-    n = equations.mesh_vector.size
+    n = equations.mesh_vector.shape[1]
     scale = np.concatenate([np.ones(n), np.full(n, step_s)])
-    matrix = state_matrix(equations, equations.reference_stiffness, law.damping_n_s_per_m)
+    matrix = state_matrix(equations, equations.reference_stiffness, np.array([law.damping_n_s_per_m]))
     return np.asarray(step_s * matrix * scale[:, None] / scale[None, :])
 
 
@@ -303,19 +303,19 @@ def _advance(
     pushes = np.empty((4, size // 2 if inputs.shape[1] > 0 else 0))
     moments, nodal, scratch = np.empty((4, 4)), np.empty(NODES), np.empty((3, size))
     after = np.empty(scheme.transition.shape[1])
-    rest = equations.static_force / equations.reference_stiffness
-    shift = equations.side * law.half_backlash_m
+    stiffness, side = equations.reference_stiffness[0], equations.side[0]
+    rest, shift = equations.static_force[0] / stiffness, side * law.half_backlash_m
     for i in range(pitches.size - 1):
-        approach, rate = approach_of(equations, trajectory[i])
+        approach, rate = approach_of(equations, 0, trajectory[i])
         x_0, v_0 = approach - shift, scheme.step_s * rate
-        _stiffness_moments(law, scheme, equations.reference_stiffness, pitches[i], pitches[i + 1], nodal, moments)
+        _stiffness_moments(law, scheme, stiffness, pitches[i], pitches[i + 1], nodal, moments)
         _free_motion(scheme, trajectory[i], after)
         if inputs.shape[1] > 0:
             _add_inputs(scheme, inputs[i], inputs[i + 1], after)
         _end_of_step(scheme, moments, size, rest, x_0, v_0, after)
         trajectory[i + 1] = after[:size]
         x_1, v_1 = rest + after[size], after[size + 1]
-        lowest = min(equations.side * x_0, equations.side * x_1) - HERMITE_DIP * (abs(v_0) + abs(v_1))
+        lowest = min(side * x_0, side * x_1) - HERMITE_DIP * (abs(v_0) + abs(v_1))
         if law.half_backlash_m > 0.0 and lowest <= 0.0:
             trajectory[i + 1] = trajectory[i]
             external_push(equations.external_input, inputs[i], pushes[0])

@@ -73,7 +73,8 @@ class Response:
         empty if not asked for
     angle_rad : (n,) pinion angle at the samples
     tacho_s : (k,) times of whole revolutions of the pinion
-    contact_loss_share : share of the time with the approach inside the backlash gap; 0 if the simulation failed
+    contact_loss_share : share of the time with the approach inside the backlash gap, of the mesh where that is longest;
+        0 if the simulation failed
     status, reason : "ok" and "", or what went wrong, with numbers
     internals : name -> (n,), values at the instants of the samples, not low-passed; empty unless asked for
     history, after : the samples before sample 0 and behind the last one of accelerations, bearing forces and readings;

@@ -24,8 +24,6 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response_filters import ValueDecimator, acceleration_decimator
 from siggen.errors import SolverFailure
 
-APPROACH_LIMIT_PITCHES = 0.1
-"""Penetration of the flanks, in base pitches, beyond which no teeth exist: about 1 mm, a hundred times a usual load."""
 BLOCK_SAMPLES = 2048
 """Output samples per block of integration; bounds the memory independently of the duration."""
 
@@ -41,11 +39,6 @@ class Run:
     excitation: Excitation | SampledExcitation | None = None
     motions: tuple[str, ...] = ()
 
-    @property
-    def limit_m(self) -> float:
-        """Approach beyond which a state is refused."""
-        return self.motion.largest_approach_m + APPROACH_LIMIT_PITCHES * self.motion.base_pitch_m
-
     def time_s(self, first: int, count: int) -> FloatArray:
         """Return the times (count,) of the steps from step `first` on."""
         return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
@@ -53,7 +46,7 @@ class Run:
     def pitches(self, first: int, count: int) -> FloatArray:
         """Return the angle of the mesh law in base pitches at `count` steps from step `first`."""
         turned = self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
-        return turned + self.motion.structure.flanks.ahead_pitches
+        return turned + self.motion.structure.mesh.flanks.ahead_pitches
 
     def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
         """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
@@ -74,7 +67,7 @@ class Piece(NamedTuple):
 
 
 class Stepped(NamedTuple):
-    """States (steps, 2n) from step `first` on, inputs (steps, m), and where teeth are `apart` (steps,), if known."""
+    """States (steps, 2n) from step `first` on, inputs (steps, m); `apart` (meshes, steps): where no teeth touch."""
 
     first: int
     states: FloatArray
@@ -128,12 +121,13 @@ class ResponseStream:
         self.places: tuple[str, ...] = tuple(run.motion.structure.bearing_forces) if bearing_forces else ()
         self.readings: tuple[str, ...] = tuple(run.motion.structure.shaft_readings) if shafts else ()
         self.inner: list[FloatArray] = []
-        self._settle, self._with_internals, self._lost = settle, internals, 0
+        self._settle, self._with_internals = settle, internals
+        self._lost = np.zeros(len(run.motion.structure.meshes), dtype=np.int64)
 
     @property
     def contact_loss_share(self) -> float:
-        """Share of the record in which no teeth touched, once all pieces were taken."""
-        return self._lost / (self.samples * self.run.steps_per_sample)
+        """Share of the record in which no teeth touched, of the mesh that parts most, once all pieces were taken."""
+        return int(self._lost.max()) / (self.samples * self.run.steps_per_sample)
 
     def pieces(self) -> Iterator[Piece]:
         """Step through transient and record.
@@ -185,12 +179,12 @@ class BearingForces:
         return forces if self._of_inputs is None else forces + self._of_inputs.take(block.inputs)
 
 
-def _steps_apart(run: Run, block: Stepped, recorded: slice) -> int:
-    """Return at how many of the recorded steps of a block no teeth touch."""
+def _steps_apart(run: Run, block: Stepped, recorded: slice) -> NDArray[np.int64]:
+    """Return at how many of the recorded steps of a block no teeth of each mesh touch (meshes,)."""
     if block.apart is None:
         pitches = run.pitches(block.first, len(block.states))
         return run.motion.steps_apart(block.states[recorded], pitches[recorded])
-    return int(block.apart[recorded].sum())
+    return np.asarray(block.apart[:, recorded].sum(axis=1))
 
 
 def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterator[Stepped]:
@@ -211,7 +205,7 @@ def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterat
         pitches = run.pitches(first, count + 1)
         inputs = run.inputs(first, pitches)
         apart = run.motion.advance(pitches, inputs, trajectory[: count + 1])
-        beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
+        beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.motion.limits_m)
         if beyond >= 0:
             raise _divergence(run, first + beyond, trajectory[beyond])
         state[:] = trajectory[count]
@@ -219,22 +213,25 @@ def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterat
 
 
 def _divergence(run: Run, step: int, state: FloatArray) -> SolverFailure:
-    approach, _ = approach_of(run.motion.equations, state)
+    limits = run.motion.limits_m
+    found = [approach_of(run.motion.equations, mesh, state)[0] for mesh in range(len(limits))]
+    worst = next(m for m, approach in enumerate(found) if not abs(approach) <= limits[m])
     time = step / (run.fs_hz * run.steps_per_sample)
     return SolverFailure(
         "diverged",
-        f"approach {approach:.3e} m at {time:.6f} s (before 0 s: transient); allowed are finite values within "
-        f"{run.limit_m:.3e} m; raise steps_per_sample (received {run.steps_per_sample}) or the damping",
+        f"approach {found[worst]:.3e} m at {time:.6f} s (before 0 s: transient); allowed are finite values within "
+        f"{limits[worst]:.3e} m; raise steps_per_sample (received {run.steps_per_sample}) or the damping",
     )
 
 
 @njit(cache=True)
-def _first_beyond(equations: Equations, states: FloatArray, limit_m: float) -> int:
-    """Return the first row whose approach is not a finite number within the limit, or -1."""
+def _first_beyond(equations: Equations, states: FloatArray, limits_m: FloatArray) -> int:
+    """Return the first row in which the approach of a mesh is not a finite number within its limit, or -1."""
     for i in range(states.shape[0]):
-        approach, _ = approach_of(equations, states[i])
-        if not abs(approach) <= limit_m:
-            return i
+        for mesh in range(limits_m.size):
+            approach, _ = approach_of(equations, mesh, states[i])
+            if not abs(approach) <= limits_m[mesh]:
+                return i
     return -1
 
 

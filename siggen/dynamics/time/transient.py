@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from siggen.arrays import FloatArray
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.modes import slowest_decay_per_s
@@ -16,7 +17,7 @@ TRANSIENT_CAP_S = 5.0
 
 
 def transient_s(
-    structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float, above_hz: float = 0.0
+    structure: Structure, equations: Equations, mesh_damping_n_s_per_m: FloatArray, above_hz: float = 0.0
 ) -> float:
     """Return the time [s] that is simulated and discarded before sample 0.
 

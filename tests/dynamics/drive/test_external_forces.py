@@ -32,7 +32,7 @@ def single_mass(stage: SpurStage) -> Structure:
     soft = replace(stage.pinion, bearing=Bearing(STIFFNESS, STIFFNESS, DAMPING, DAMPING))
     structure = eight_dof(replace(stage, pinion=soft))
     rotations = vector(structure.coordinates, {"theta_1": BASE_RADIUS_1, "theta_2": -BASE_RADIUS_2})
-    return replace(structure, mesh_vector=rotations)
+    return replace(structure, meshes=(replace(structure.mesh, vector=rotations),))
 
 
 def respond(structure: Structure, tables: MeshTables, drive: Drive, *sources: Source, samples: int) -> Response:

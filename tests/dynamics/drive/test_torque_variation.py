@@ -10,15 +10,16 @@ from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation, SpeedDeviation
 from siggen.dynamics.drive.slow_variation import slow_variation
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
-from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation, rigid_rotation, without_drift
+from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation, without_drift
 from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_columns import FRICTION, SLIDING
+from siggen.dynamics.structure.shaft_lines import rigid_rotation
 from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof
 from siggen.dynamics.time.equations import state_rate
 from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.pair_motion import MeanState, PairMotion
+from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.casing_stage import make_structure as casing
@@ -67,7 +68,7 @@ def test_inputs_do_no_work_on_the_rigid_rotation(assembly) -> None:
     vectors = TorqueVariation(structure, 60.0, settings()).vectors
     assert np.abs(vectors @ rotation).max() < 1e-14 * np.abs(vectors).max()
     assert np.abs(structure.stiffness @ rotation).max() == pytest.approx(0.0, abs=1e-12)
-    assert structure.mesh_vector @ rotation == pytest.approx(0.0, abs=1e-17)
+    assert structure.mesh.vector @ rotation == pytest.approx(0.0, abs=1e-17)
 
 
 @pytest.mark.parametrize("integrator", ["product", "runge_kutta"])
@@ -137,9 +138,9 @@ def test_deviations_from_the_rotation_are_those_of_the_whole_motion(
     motion = linear(structure, constant_tables, source, backlash_m=0.0)
     excitation = Excitation((source,))
     time, _, _, states = run(motion, drive, excitation, 12000, STEP, first_s=-0.03)
-    rotation, p, torque = rigid_rotation(structure), structure.mesh_vector, structure.torque_vector
+    rotation, p, torque = rigid_rotation(structure), structure.mesh.vector, structure.torque_vector
     stiffness = mean_mesh_stiffness(constant_tables)
-    damping = 2.0 * 0.07 * np.sqrt(stiffness * structure.equivalent_mesh_mass_kg)
+    damping = 2.0 * 0.07 * np.sqrt(stiffness * structure.mesh.mass_kg)
     motor = (torque == 1.0).astype(float)
     k = structure.stiffness + stiffness * np.outer(p, p)
     c = structure.damping + damping * np.outer(p, p)
@@ -183,7 +184,7 @@ def test_slow_torque_is_followed_by_the_mesh_force(structure: Structure, constan
                                                        load_once=0.0, line_ripple=0.0))  # fmt: skip
     response = respond(linear(structure, constant_tables, source), Drive(30.0, 0.0), source, 51200, internals=True)
     time = np.arange(51200) / FS
-    expected = source.motor_torque_nm(Drive(30.0, 0.0).turning(time)) / structure.mesh_vector[3]
+    expected = source.motor_torque_nm(Drive(30.0, 0.0).turning(time)) / structure.mesh.vector[3]
     # The torque changes within 10/(2π) s; the shafts' first mode at 38 Hz follows to (0.1..0.8 Hz/38 Hz)² of the 3 %.
     # The static start knows the mean torque alone: after the transient a hundredth of its error of 2 % is left.
     found = response.internals["mesh_force_n"]
@@ -203,7 +204,7 @@ def test_a_steady_run_up_twists_the_shafts_by_the_torque_that_it_takes(
     ratio = 18 / 47
     mesh_torque = 60.0 + (0.005153 + 1.125e-2) * ratio**2 * acceleration
     force = response.internals["mesh_force_n"]
-    np.testing.assert_allclose(force[10000:], mesh_torque / structure.mesh_vector[3], rtol=1e-5)
+    np.testing.assert_allclose(force[10000:], mesh_torque / structure.mesh.vector[3], rtol=1e-5)
     assert source.reduced_inertia_kg_m2 == pytest.approx(
         0.016107 + 2.37e-4 + (0.005153 + 1.125e-2) * ratio**2, rel=1e-12
     )
@@ -241,8 +242,8 @@ def test_work_of_a_run_up_with_friction_becomes_kinetic_energy_and_losses() -> N
     excitation = Excitation((SpeedDeviation(structure.coordinates, nominal), source))
     drive = VaryingDrive(SpeedRamp(15.0, 45.0, 0.25), 0.3, Ripple(1e-3))
     motion = PairMotion(
-        structure, law(friction=constant_friction(0.05)), step_s=STEP / 2,
-        mean=MeanState(TORQUE, speed, mean_mesh_stiffness(tables())),
+        structure, [PairMesh(law(friction=constant_friction(0.05)), mean_mesh_stiffness(tables()))], step_s=STEP / 2,
+        mean=MeanState(TORQUE, speed),
         input_vectors=excitation.vectors, speed_input=0,
     )  # fmt: skip
     time, pitches, inputs, states = run(motion, drive, excitation, 60000, STEP / 2)
@@ -255,7 +256,7 @@ def test_work_of_a_run_up_with_friction_becomes_kinetic_energy_and_losses() -> N
     forces += (structure.mass @ rotation) * rigid_push(structure, source, inputs, drive, time)[:, None]
     given = integral((forces * whole).sum(axis=1), time)
     values = dict(zip(motion.internal_names, motion.internals(states, pitches, inputs).T, strict=True))
-    table = motion.pairs(states, pitches, inputs)
+    (table,) = motion.pairs(states, pitches, inputs)
     teeth = integral(values["mesh_force_n"] * values["approach_rate_m_s"], time)
     rubbed = integral((table[:, :, FRICTION] * table[:, :, SLIDING]).sum(axis=1), time)
     dampers = integral(np.einsum("ti,ij,tj->t", rate, structure.damping, rate), time)

@@ -26,7 +26,7 @@ from tests.dynamics.natural_frequencies import natural_frequencies_hz
 def static(torque_nm: float = 30.0) -> np.ndarray:
     """Return the displacement under a torque at the mean mesh stiffness."""
     structure = make_structure()
-    loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh_vector, structure.mesh_vector)
+    loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh.vector, structure.mesh.vector)
     return static_solution(structure, loaded, torque_nm * structure.torque_vector)
 
 
@@ -53,8 +53,8 @@ def test_one_free_rotation_without_any_mesh_are_two() -> None:
 
 def test_torsional_limit_of_the_mesh_mode() -> None:
     structure = torsional(make_stage())
-    assert structure.equivalent_mesh_mass_kg == pytest.approx(0.2124, abs=5e-5)
-    limit = np.sqrt(MEAN_STIFFNESS / structure.equivalent_mesh_mass_kg) / (2.0 * np.pi)
+    assert structure.mesh.mass_kg == pytest.approx(0.2124, abs=5e-5)
+    limit = np.sqrt(MEAN_STIFFNESS / structure.mesh.mass_kg) / (2.0 * np.pi)
     assert limit == pytest.approx(6120.0, abs=1.0)
     # The shafts stiffen it: (6300/R_b1² + 2100/R_b2²)/k = 3 % at most, half of that in frequency.
     assert natural_frequencies_hz(structure, MEAN_STIFFNESS)[-1] == pytest.approx(limit, rel=0.015)
@@ -121,7 +121,7 @@ def test_sliding_vanishes_at_the_pitch_point_of_the_rigid_rotation(name: str) ->
     stage = make_stage()
     structure = {"casing": make_structure(), "8dof": eight_dof(stage), "torsional": torsional(stage)}[name]
     rotation = vector(structure.coordinates, {"theta_1": 1.0, "theta_2": 18.0 / 47.0})
-    still, arm = structure.sliding_vectors @ rotation
+    still, arm = structure.mesh.sliding @ rotation
     assert -still / arm == pytest.approx(BASE_RADIUS_1 * np.tan(PRESSURE_ANGLE), rel=1e-12)
     assert stage.line_of_action_m == pytest.approx((BASE_RADIUS_1 + BASE_RADIUS_2) * np.tan(PRESSURE_ANGLE))
 
@@ -129,7 +129,7 @@ def test_sliding_vanishes_at_the_pitch_point_of_the_rigid_rotation(name: str) ->
 def test_friction_and_mesh_force_act_across_each_other() -> None:
     for structure in (make_structure(), eight_dof(make_stage())):
         moving = [i for i, name in enumerate(structure.coordinates) if name[0] in "xy"]
-        assert structure.mesh_vector[moving] @ structure.sliding_vectors[0, moving] == pytest.approx(0.0, abs=1e-15)
+        assert structure.mesh.vector[moving] @ structure.mesh.sliding[0, moving] == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("places", [(), ((0.09, 0.0),), ((0.09, 0.0), (0.09, 0.0))])

@@ -40,7 +40,7 @@ def test_responses_solve_the_equations_of_motion() -> None:
     rng = np.random.default_rng(3)
     directions, frequencies = rng.standard_normal((3, len(structure.coordinates))), np.array([0.0, 7.0, 540.0, 9000.0])
     found = forced_motion(structure, mesh, directions, MOTIONS, frequencies)
-    p = structure.mesh_vector
+    p = structure.mesh.vector
     for k, omega in enumerate(2.0 * np.pi * frequencies[1:], start=1):
         dynamic = structure.stiffness + 3e8 * np.outer(p, p) - omega**2 * structure.mass
         dynamic = dynamic + 1j * omega * (structure.damping + 800.0 * np.outer(p, p))
@@ -57,7 +57,7 @@ def test_readings_of_shafts_take_what_the_rotors_do_not() -> None:
     structure, hz = locked_load(make_structure()), np.array([3.0, 120.0, 900.0, 4000.0])
     omega, place = 2.0 * np.pi * hz, structure.coordinates.index("theta_m")
     readings = ("angle/motor", "torque/input_coupling")
-    pushed = np.array([structure.mesh_vector, structure.bearing_directions["pinion_bearing/vertical"]])
+    pushed = np.array([structure.mesh.vector, structure.bearing_directions["pinion_bearing/vertical"]])
     angle, torque = forced_motion(structure, MeanMesh(3e8, 800.0), pushed, (), hz, readings).shaft.values()
     # nothing else acts on the motor, so its coupling takes what its inertia gives: J ω² θ
     np.testing.assert_allclose(torque, structure.mass[place, place] * omega**2 * angle, rtol=1e-6)
@@ -73,7 +73,7 @@ def test_a_harmonic_force_moves_the_integrated_gearbox_as_the_response_says(
     constant_tables: MeshTables, name: str
 ) -> None:
     structure = locked_load(make_structure())
-    direction = structure.mesh_vector if name == "mesh" else bearing_direction(structure, *name.split("/"))
+    direction = structure.mesh.vector if name == "mesh" else bearing_direction(structure, *name.split("/"))
     order, speed_hz, samples = 9.0, 32.0, 25600
     source = HarmonicForce(direction, 40.0, order)
     excitation = Excitation((source,))
@@ -85,7 +85,7 @@ def test_a_harmonic_force_moves_the_integrated_gearbox_as_the_response_says(
         motion, Drive(speed_hz, 0.0), SampleGrid(FS, samples, 4), excitation=excitation, settle_s=3.0
     )
     stiffness = mean_mesh_stiffness(constant_tables)
-    damping = 2.0 * 0.07 * np.sqrt(stiffness * structure.equivalent_mesh_mass_kg)
+    damping = 2.0 * 0.07 * np.sqrt(stiffness * structure.mesh.mass_kg)
     frequency = np.array([order * speed_hz])
     expected = forced_motion(structure, MeanMesh(stiffness, damping), direction[None, :], MOTIONS, frequency)
     turn = np.exp(-2j * np.pi * frequency * np.arange(samples) / FS)

@@ -24,9 +24,9 @@ def test_a_heavy_base_on_stiff_mounts_is_the_ground() -> None:
     ground, base = locked_load(make_structure()), standing_on(Base(2e9, 2e8, (900.0, 900.0, 900.0), 0.1))
     for structure in (ground, base):
         assert np.array_equal(structure.stiffness, structure.stiffness.T)
-    direction = ground.mesh_vector[None, :]
+    direction = ground.mesh.vector[None, :]
     fixed = forced_motion(ground, MESH, direction, (LID,), FREQUENCIES).acceleration[LID]
-    found = forced_motion(base, MESH, base.mesh_vector[None, :], (LID,), FREQUENCIES).acceleration[LID]
+    found = forced_motion(base, MESH, base.mesh.vector[None, :], (LID,), FREQUENCIES).acceleration[LID]
     np.testing.assert_allclose(found, fixed, rtol=1e-5)  # masses are 1e8 apart, mounts and bolts 1e7
 
 

@@ -21,7 +21,7 @@ STRUCTURES = {
 
 
 def loaded(structure: Structure, mesh: float = MEAN_STIFFNESS) -> np.ndarray:
-    return structure.stiffness + mesh * np.outer(structure.mesh_vector, structure.mesh_vector)
+    return structure.stiffness + mesh * np.outer(structure.mesh.vector, structure.mesh.vector)
 
 
 @pytest.mark.parametrize("name", STRUCTURES)
@@ -75,10 +75,11 @@ def test_rigid_supports_leave_the_torsional_model(stiffness: float, name: str) -
     assert expected[-1] == pytest.approx(6120.0, rel=0.015)  # √(k/m_e)/2π, 1.1 % stiffer by the shafts
     force = 30.0 * structure.torque_vector
     q = static_solution(structure, loaded(structure), force)
-    assert MEAN_STIFFNESS * (structure.mesh_vector @ q) == pytest.approx(30.0 / BASE_RADIUS_1, rel=1e-11)
-    equations = equations_about(structure, 30.0, MEAN_STIFFNESS, 0.0, 0.0)
-    decay = slowest_decay_per_s(structure, equations, 1000.0)
-    torsion = slowest_decay_per_s(alone, equations_about(alone, 30.0, MEAN_STIFFNESS, 0.0, 0.0), 1000.0)
+    assert MEAN_STIFFNESS * (structure.mesh.vector @ q) == pytest.approx(30.0 / BASE_RADIUS_1, rel=1e-11)
+    equations = equations_about(structure, 30.0, np.array([MEAN_STIFFNESS]), np.zeros((1, 2)))
+    decay = slowest_decay_per_s(structure, equations, np.array([1000.0]))
+    about = equations_about(alone, 30.0, np.array([MEAN_STIFFNESS]), np.zeros((1, 2)))
+    torsion = slowest_decay_per_s(alone, about, np.array([1000.0]))
     if name == "8dof":  # the heavy casing has slow modes of its own
         assert decay == pytest.approx(torsion, rel=2e-3)
 

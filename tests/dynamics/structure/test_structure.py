@@ -14,8 +14,8 @@ POSITIVE = st.floats(min_value=1e-3, max_value=1e3)
 def rigid_rotation(structure: Structure) -> np.ndarray:
     """Return the motion of both shafts turning together without any deformation."""
     ratio = (
-        -structure.mesh_vector[structure.coordinates.index("theta_1")]
-        / structure.mesh_vector[structure.coordinates.index("theta_2")]
+        -structure.mesh.vector[structure.coordinates.index("theta_1")]
+        / structure.mesh.vector[structure.coordinates.index("theta_2")]
     )
     turns = {"theta_m": 1.0, "theta_1": 1.0, "theta_2": ratio, "theta_l": ratio}
     return np.array([turns.get(name, 0.0) for name in structure.coordinates])
@@ -28,7 +28,7 @@ def test_rigid_rotation_deforms_nothing_and_torques_balance_on_it(assembly, stag
     # A product of numbers of size 330 and 66 mm with rounded ratios: 1e-12 of the largest entry is rounding.
     assert np.abs(structure.stiffness @ rigid).max() < 1e-12 * np.abs(structure.stiffness).max()
     assert np.abs(structure.damping @ rigid).max() < 1e-12 * np.abs(structure.damping).max()
-    assert abs(structure.mesh_vector @ rigid) < 1e-15
+    assert abs(structure.mesh.vector @ rigid) < 1e-15
     assert abs(structure.torque_vector @ rigid) < 1e-14
 
 
@@ -49,7 +49,7 @@ def test_natural_frequencies_of_the_published_parameter_set(structure: Structure
 
 def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: SpurStage) -> None:
     structure = eight_dof(stage)
-    p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
+    p = dict(zip(structure.coordinates, structure.mesh.vector, strict=True))
     assert p["x_1"] == -p["x_2"] == pytest.approx(np.sin(stage.working_pressure_angle_rad))
     assert p["y_1"] == -p["y_2"] == pytest.approx(np.cos(stage.working_pressure_angle_rad))
     assert (p["theta_1"], p["theta_2"]) == (stage.pinion.base_radius_m, -stage.gear.base_radius_m)
@@ -58,9 +58,9 @@ def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: Spu
 def test_torsional_limit_frequency_follows_from_the_equivalent_mesh_mass(stage: SpurStage) -> None:
     structure = six_dof(stage)
     rotations = [structure.coordinates.index(name) for name in ("theta_1", "theta_2")]
-    p = structure.mesh_vector[rotations]
+    p = structure.mesh.vector[rotations]
     inverse_mass = (p**2 / np.diag(structure.mass)[rotations]).sum()
-    assert structure.equivalent_mesh_mass_kg == pytest.approx(1.0 / inverse_mass, rel=1e-14)
+    assert structure.mesh.mass_kg == pytest.approx(1.0 / inverse_mass, rel=1e-14)
 
 
 @given(stiffness=POSITIVE, damping=POSITIVE, first=POSITIVE, second=POSITIVE)

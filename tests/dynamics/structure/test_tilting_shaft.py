@@ -110,7 +110,7 @@ def beam_stiffness_of_end(length: float) -> float:
 def test_a_gear_in_the_middle_does_not_tilt_under_the_mesh_force_and_one_beside_it_does() -> None:
     for share, tilted in ((0.5, False), (0.35, True)):
         structure = tilting_structure(replace(SHAFT, gear_share=share))
-        loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh_vector, structure.mesh_vector)
+        loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh.vector, structure.mesh.vector)
         q = static_solution(structure, loaded, 30.0 * structure.torque_vector)
         tilt = [q[structure.coordinates.index(f"phi_y_{i}")] for i in "12"]
         assert bool(max(abs(t) for t in tilt) > 1e-7) is tilted
@@ -118,7 +118,7 @@ def test_a_gear_in_the_middle_does_not_tilt_under_the_mesh_force_and_one_beside_
 
 def test_seats_of_tilting_shafts_carry_the_mesh_force() -> None:
     structure = tilting_structure()
-    loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh_vector, structure.mesh_vector)
+    loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh.vector, structure.mesh.vector)
     q = static_solution(structure, loaded, 30.0 * structure.torque_vector)
     force = 30.0 / make_stage().pinion.base_radius_m * np.cos(make_stage().working_pressure_angle_rad)
     for place, sign in (("pinion_bearing", -1.0), ("gear_bearing", 1.0)):
@@ -135,7 +135,7 @@ def test_moving_everything_together_bends_no_shaft() -> None:
 
 def test_the_tilt_vector_takes_the_pinion_against_the_gear_in_the_plane_of_action() -> None:
     structure = tilting_structure()
-    assert structure.tilt_vector is not None
-    tilts = dict(zip(structure.coordinates, structure.tilt_vector, strict=True))
+    assert structure.mesh.tilt is not None
+    tilts = dict(zip(structure.coordinates, structure.mesh.tilt, strict=True))
     assert {name: value for name, value in tilts.items() if value} == {"phi_y_1": 1.0, "phi_y_2": -1.0}
-    assert make_structure().tilt_vector is None
+    assert make_structure().mesh.tilt is None

@@ -23,7 +23,7 @@ def test_static_force_and_approach_follow_from_the_torque(
     assert equations.static_force == pytest.approx(force, rel=1e-10)
     assert equations.static_approach == pytest.approx(force / 3.2e8 + np.sign(torque) * 40e-6, rel=1e-10)
     vertical = structure.coordinates.index("y_1")
-    expected = -force * structure.mesh_vector[vertical] / structure.stiffness[vertical, vertical]
+    expected = -force * structure.mesh.vector[vertical] / structure.stiffness[vertical, vertical]
     assert equations.static_deflection[vertical] == pytest.approx(expected, rel=1e-9)
 
 
@@ -49,7 +49,7 @@ def test_deviations_do_not_depend_on_the_twist_of_the_shafts(structure: Structur
 def test_a_torque_without_load_has_no_equilibrium(structure: Structure) -> None:
     force = np.zeros(8)
     force[0] = 60.0
-    stiffness = structure.stiffness + 3e8 * np.outer(structure.mesh_vector, structure.mesh_vector)
+    stiffness = structure.stiffness + 3e8 * np.outer(structure.mesh.vector, structure.mesh.vector)
     with pytest.raises(ValueError, match="unbalanced force"):
         static_solution(structure, stiffness, force)
 

@@ -13,7 +13,7 @@ from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.equations import no_inputs, state_matrix
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
-from siggen.dynamics.time.pair_motion import MeanState, PairMotion
+from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import TORQUE, constant_tables, exact_involutes, law, tables
 
@@ -23,8 +23,12 @@ FS = 25600.0
 def motion(kind: type[PairMotion], chosen: PairLaw, step_s: float, torque_nm: float = TORQUE, **more) -> PairMotion:
     stiffness = more.pop("stiffness", mean_mesh_stiffness(tables()))
     return kind(
-        locked_load(make_structure()), chosen, mean=MeanState(torque_nm, 30.0, stiffness), step_s=step_s, **more
-    )  # fmt: skip
+        locked_load(make_structure()),
+        [PairMesh(chosen, stiffness)],
+        mean=MeanState(torque_nm, 30.0),
+        step_s=step_s,
+        **more,
+    )
 
 
 def states(run: PairMotion, step_s: float, steps: int, every: int = 1) -> np.ndarray:
@@ -44,7 +48,7 @@ def sliding_law() -> PairLaw:
 def error(found: np.ndarray, reference: np.ndarray) -> float:
     """Return the relative rms error of the rate of the approach."""
     n = reference.shape[1] // 2
-    vector = make_structure().mesh_vector
+    vector = make_structure().mesh.vector
     wanted = reference[:, n:] @ vector
     return float(np.sqrt(np.mean((found[:, n:] @ vector - wanted) ** 2) / np.mean(wanted**2)))
 
@@ -61,7 +65,7 @@ def test_a_linear_mesh_is_propagated_exactly() -> None:
     found[0, 4] += 1e-7
     run.advance(pitches, no_inputs(pitches), found)
     damping = chosen.damping_root_kg * np.sqrt(3.14e8)
-    exact = matrix_exponential(state_matrix(run.equations, 3.14e8, damping) * step)
+    exact = matrix_exponential(state_matrix(run.equations, np.array([3.14e8]), np.array([damping])) * step)
     deviation, wanted = found[0] - rest, []
     for _ in range(200):
         deviation = exact @ deviation
@@ -124,12 +128,12 @@ def unbalanced_share(steps_per_sample: int) -> float:
     path[0, n:] += 1e-3 * np.sin(np.arange(n))  # thrown: there is energy to lose
     run.advance(pitches, no_inputs(pitches), path)
     place, rate = path[:, :n], path[:, n:]
-    pairs = run.pairs(path, pitches)
+    pairs = run.pairs(path, pitches)[0]
     normal, friction = pairs[:, :, NORMAL].sum(axis=1), pairs[:, :, FRICTION]
-    rolled, slid = (rate @ vector for vector in structure.sliding_vectors)
+    rolled, slid = (rate @ vector for vector in structure.mesh.sliding)
     powers = np.stack([
         (rate @ structure.damping * rate).sum(axis=1),
-        (normal - run.equations.static_force) * (rate @ structure.mesh_vector),
+        (normal - run.equations.static_force) * (rate @ structure.mesh.vector),
         friction.sum(axis=1) * rolled + (friction * pairs[:, :, POSITION]).sum(axis=1) * slid,
     ])  # fmt: skip
     stored = 0.5 * ((rate @ structure.mass * rate).sum(axis=1) + (place @ structure.stiffness * place).sum(axis=1))

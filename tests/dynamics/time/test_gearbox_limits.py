@@ -66,7 +66,7 @@ def test_contact_ratio_and_friction_arms_are_those_of_the_geometry() -> None:
     chosen = law(missing_material(gear_pair(), None, corner_contact=False), friction=constant_friction(0.05))
     run = motion(locked_load(make_structure()), chosen, step_s=STEP_S)
     pitches, states = settled(run, 30.0, STEP_S, STEPS_PER_MESH)
-    pairs = run.pairs(states[:-1], pitches[:-1])
+    pairs = run.pairs(states[:-1], pitches[:-1])[0]
     touching = pairs[:, :, FLANK] > 0.0
     # Counted at 200 angles per mesh, so each end is known to a two-hundredth.
     assert touching.sum(axis=1).mean() == pytest.approx(1.6368, abs=2.0 / STEPS_PER_MESH)

@@ -52,9 +52,9 @@ def ringing(request):
     """Return modes, the part of every mode in the spectrum at each natural frequency (k, k), and the measured one."""
     structure = lightly_damped()
     modes = natural_modes(structure, MEAN_STIFFNESS)
-    blow, p = structure.motions[request.param], structure.mesh_vector
+    blow, p = structure.motions[request.param], structure.mesh.vector
     velocity = velocities(structure, blow) @ blow
-    mesh = 2.0 * 0.007 * np.sqrt(MEAN_STIFFNESS * structure.equivalent_mesh_mass_kg)
+    mesh = 2.0 * 0.007 * np.sqrt(MEAN_STIFFNESS * structure.mesh.mass_kg)
     decay = np.einsum("in,nm,im->i", modes.shapes, structure.damping + mesh * np.outer(p, p), modes.shapes)
     omega = 2.0 * np.pi * modes.frequency_hz
     at = omega[1:, None]

@@ -136,7 +136,7 @@ def test_power_is_balanced(coefficient: float) -> None:
     torque = TORQUE * 47.0 / 18.0 + lock * inner["theta_l_rad"] + damper * velocity["theta_l"]
     p_in = (TORQUE * (omega + velocity["theta_m"])).mean()
     p_out = (torque * (omega * 18.0 / 47.0 + velocity["theta_l"])).mean()
-    pairs = run.pairs(states, pitches)
+    pairs = run.pairs(states, pitches)[0]
     p_friction = (pairs[:, :, FRICTION] * pairs[:, :, SLIDING]).sum(axis=1).mean()
     p_mesh = (inner["mesh_force_n"] * inner["approach_rate_m_s"]).mean()
     bare = make_structure().damping
@@ -272,7 +272,7 @@ def test_lost_contact_leaves_the_mean_force() -> None:
         lambda step: motion(torsional(make_stage()), law(exact(), damping_ratio=0.01), speed_hz=340.0, torque_nm=5.0,
                             step_s=step), 180, 340.0)  # fmt: skip
     force = columns(run, states, pitches)["mesh_force_n"]
-    apart = (run.pairs(states, pitches)[:, :, FLANK] == 0.0).all(axis=1)
+    apart = (run.pairs(states, pitches)[0][:, :, FLANK] == 0.0).all(axis=1)
     assert 0.01 < apart.mean() < 0.9
     assert run.steps_apart(states, pitches) == apart.sum()
     assert (force[apart] == 0.0).all()

@@ -65,7 +65,7 @@ def powers(run: PairMotion, states: np.ndarray, pitches: np.ndarray) -> dict[str
     lock = held.stiffness[load, load] - bare.stiffness[load, load]
     damper = held.damping[load, load] - bare.damping[load, load]
     torque = TORQUE * 47.0 / 18.0 + lock * inner["theta_l_rad"] + damper * rate[:, load]
-    pairs = run.pairs(states, pitches)
+    pairs = run.pairs(states, pitches)[0]
     return {
         "in": (TORQUE * (OMEGA + rate[:, motor])).mean(),
         "out": (torque * (OMEGA * 18.0 / 47.0 + rate[:, load])).mean(),

@@ -84,8 +84,8 @@ def test_response_weights_are_the_integrals_they_stand_for(structure: Structure,
 
     equations, law, _ = model(structure, sharp_tables)
     constants = scheme(equations, law, STEP)
-    matrix = state_matrix(equations, equations.reference_stiffness, law.damping_n_s_per_m)
-    inputs = np.concatenate([np.zeros(8), equations.mesh_input])
+    matrix = state_matrix(equations, equations.reference_stiffness, np.array([law.damping_n_s_per_m]))
+    inputs = np.concatenate([np.zeros(8), equations.mesh_input[0]])
     nodes, weights = np.polynomial.legendre.leggauss(12)
     nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
     powers = nodes ** np.arange(4)[:, None]

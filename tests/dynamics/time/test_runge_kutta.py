@@ -53,7 +53,7 @@ def test_energy_is_conserved_without_damping_at_constant_stiffness(
     start = start.copy()
     start[8:] = np.linspace(-1e-3, 1e-3, 8)
     states = trajectory(RungeKutta, equations, law, start, 5e-7, 40000)
-    stiffness = undamped.stiffness + 3.2e8 * np.outer(undamped.mesh_vector, undamped.mesh_vector)
+    stiffness = undamped.stiffness + 3.2e8 * np.outer(undamped.mesh.vector, undamped.mesh.vector)
     w, v = states[:, :8], states[:, 8:]
     energy = 0.5 * np.einsum("ti,ij,tj->t", w, stiffness, w) + 0.5 * np.einsum("ti,ij,tj->t", v, undamped.mass, v)
     # Classical Runge-Kutta loses the share (ωh)^6/72 of a mode's energy per step: 3e-12 at the 0.025 rad of the mesh

@@ -134,7 +134,7 @@ def test_power_is_balanced_with_tilt_coupling_and_friction() -> None:
     states, pitches = states[:-1], pitches[:-1]
     bare, held = structure(), run.structure
     names, n = held.coordinates, len(held.coordinates)
-    inner, rate, pairs = columns(run, states, pitches), states[:, n:], run.pairs(states, pitches)
+    inner, rate, pairs = columns(run, states, pitches), states[:, n:], run.pairs(states, pitches)[0]
     omega, load, motor = 2.0 * np.pi * 30.0, names.index("theta_l"), names.index("theta_m")
     lock, damper = (
         getattr(held, what)[load, load] - getattr(bare, what)[load, load] for what in ("stiffness", "damping")
@@ -143,7 +143,7 @@ def test_power_is_balanced_with_tilt_coupling_and_friction() -> None:
     power_in = (TORQUE * (omega + rate[:, motor])).mean()
     power_out = (torque * (omega * 18.0 / 47.0 + rate[:, load])).mean()
     friction = (pairs[:, :, FRICTION] * pairs[:, :, SLIDING]).sum(axis=1).mean()
-    tilt_rate = rate @ held.tilt_vector
+    tilt_rate = rate @ held.mesh.tilt
     mesh = (inner["mesh_force_n"] * inner["approach_rate_m_s"] + inner["mesh_moment_nm"] * tilt_rate).mean()
     dampers = float(np.einsum("ti,ij,tj->t", rate, bare.damping, rate).mean())
     assert power_in == pytest.approx(5655.0, abs=0.5)

@@ -1,0 +1,42 @@
+"""How fast the shaft lines of a structure turn when nothing deforms: a walk along its meshes.
+
+Derived: at a mesh with the entries p_a and p_b at the rotations of its gears nothing approaches where
+p_a θ_a + p_b θ_b = 0. Rotations count in the running sense of their shaft.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.structure.structure import Structure
+
+
+def turning_lines(structure: Structure) -> FloatArray:
+    """Return (lines, n): each shaft line by itself, as far as it turns per turn of the first one."""
+    turned, speeds = 1.0, [1.0]
+    for mesh in structure.meshes:
+        driving, driven = mesh.of_turning(structure.coordinates)
+        turned *= -driving / driven
+        speeds.append(turned)
+    return _lines(structure, speeds)
+
+
+def turning_per_load(structure: Structure) -> FloatArray:
+    """Return (n,): how far each rotation turns per turn of the load's line."""
+    turned, speeds = 1.0, [1.0]
+    for mesh in reversed(structure.meshes):
+        driving, driven = mesh.of_turning(structure.coordinates)
+        turned *= -driven / driving
+        speeds.append(turned)
+    return np.asarray(_lines(structure, speeds[::-1]).sum(axis=0))
+
+
+def rigid_rotation(structure: Structure) -> FloatArray:
+    """Return r (n,): how far each coordinate turns per turn of the first shaft line."""
+    return np.asarray(turning_lines(structure).sum(axis=0))
+
+
+def _lines(structure: Structure, speeds: list[float]) -> FloatArray:
+    of_line = zip(structure.shaft_lines, speeds, strict=True)
+    return np.array([[speed * (name in line) for name in structure.coordinates] for line, speed in of_line])
