@@ -13,7 +13,9 @@ from tests.config.minimal import minimal
 
 
 @pytest.mark.parametrize(("level_m_s2", "expected"), [(0.0, 1e-6), (1e-4, 1e-6), (10.0, 1e-10)])
-def test_an_error_of_a_billionth_is_relative_to_the_noise_of_a_sensor_at_least(level_m_s2: float, expected: float):
+def test_an_error_of_a_billionth_is_relative_to_the_noise_of_a_sensor_at_least(
+    level_m_s2: float, expected: float
+) -> None:
     config = parse(minimal()).config
     assert config is not None
     wanted = {channel.column: np.full(64, level_m_s2) for channel in channels(config)}
