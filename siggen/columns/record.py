@@ -19,6 +19,7 @@ from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
 from siggen.keys.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
+from siggen.sensors.quantity import STILL_M_S2
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -136,7 +137,8 @@ INTEGRATION_COLUMNS = (
         "integration_error",
         pa.float64(),
         "",
-        "estimated relative rms error of the simulated motion by the steps of integration, from a stretch of "
+        f"estimated relative rms error of the simulated motion (of at least {STILL_M_S2:g} m/s^2) by the steps of "
+        "integration, from a stretch of "
         "the record with twice as many; above the set's tolerance where the motion depends on every rounding or the "
         "finest steps do not suffice, inf where it diverges",
     ),

@@ -35,3 +35,6 @@ class Quantity:
 
 
 ACCELERATION = Quantity("acceleration", "accel", "m/s^2", "m_s2", "vibration")
+STILL_M_S2 = 1e-3
+"""Acceleration (rms) that no error is relative to less of: about what a good piezoelectric accelerometer itself makes
+over 10 kHz (from memory: 0.3 to 3e-3 m/s²). Perfect gears at 0 N m stand still, and rounding is no error of theirs."""

@@ -28,6 +28,7 @@ from siggen.dataset.storage import LocalFolder
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.errors import DatasetError
+from siggen.sensors.quantity import ACCELERATION, STILL_M_S2
 from siggen.sets import physics as contents
 from siggen.sets.verification import stored_config, why_not_again
 
@@ -231,12 +232,13 @@ def chosen_records(dataset: Dataset, states: Sequence[str], count: int) -> dict[
 
 
 def record_error(config: Config, delivered: Mapping[str, Any], again: Mapping[str, Any]) -> float:
-    """Return the relative rms difference of the worst channel."""
+    """Return the relative rms difference of the worst channel; accelerations count as STILL_M_S2 at least."""
     worst = 0.0
     for channel in channels(config):
         wanted = again[channel.column].astype(float)
+        least = STILL_M_S2**2 if channel.quantity == ACCELERATION.word else np.finfo(float).tiny
         apart = delivered[channel.column].astype(float) - wanted
-        worst = max(worst, float(np.sqrt(np.mean(apart**2) / max(np.mean(wanted**2), np.finfo(float).tiny))))
+        worst = max(worst, float(np.sqrt(np.mean(apart**2) / max(np.mean(wanted**2), least))))
     return worst
 
 
@@ -254,7 +256,8 @@ def precision_lines(found: Precision) -> list[str]:
     stated = "none stated" if found.tolerance is None else f"tolerance {found.tolerance:g}"
     lines = [
         f"{len(found.records)} records integrated again ({found.reference}); "
-        f"relative rms error of the delivered signals before the converter, worst channel ({stated}):"
+        f"relative rms error of the delivered signals before the converter, worst channel ({stated}); "
+        f"accelerations count as {STILL_M_S2:g} m/s^2 at least:"
     ]
     lines += [f"  {'state':<{width}}  records   median  largest"]
     lines += [f"  {s.state:<{width}}  {s.records:7d}  {s.median:7.1e}  {s.largest:7.1e}" for s in found.states]

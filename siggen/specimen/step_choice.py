@@ -28,6 +28,7 @@ from siggen.dynamics.time.stretch import LEAD, Stretch, state_at, stretch_accele
 from siggen.dynamics.time.transient import DECAY_TIMES
 from siggen.errors import SolverFailure
 from siggen.planning.specimen import OperatingPoint
+from siggen.sensors.quantity import STILL_M_S2
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
@@ -168,7 +169,7 @@ class _Errors:
             return inf
         apart = ((coarse - fine)[:, self._ringing :] ** 2).mean(axis=1)
         whole = (fine[:, self._ringing :] ** 2).mean(axis=1)
-        return SHRINKS * float(np.sqrt(apart / np.maximum(whole, np.finfo(float).tiny)).max(initial=0.0))
+        return SHRINKS * float(np.sqrt(apart / np.maximum(whole, STILL_M_S2**2)).max(initial=0.0))
 
     def _with(self, steps: int) -> FloatArray | None:
         grid = exponential_grid(steps)

@@ -105,6 +105,15 @@ def test_the_worst_delivered_channel_of_the_hardest_record_of_quickstart_meets_i
     assert 0.0 < channel_error(config, 56) <= config.dynamics.integration_tolerance
 
 
+def test_a_turn_of_sliding_that_vibration_moves_from_the_pitch_point_is_met_in_short_steps() -> None:
+    """The spalled pair of record 106 turns behind the place of short steps; with whole ones the casing rings: 1.35e-3.
+
+    Half of the tolerance: short steps leave a fifth of that.
+    """
+    config = siggen.load_config(CONFIGS / "paper_b.yaml", [f"duration_s={CHANNEL_S}"])
+    assert 0.0 < channel_error(config, 106) <= 0.5 * config.dynamics.integration_tolerance
+
+
 def channel_error(config: Config, record_id: int) -> float:
     """Return the relative rms error of the worst channel as it reaches its converter."""
     unrounding = unrounded(config)
