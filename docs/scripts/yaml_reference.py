@@ -1,7 +1,7 @@
 """Print docs/reference/yaml.md: `python docs/scripts/yaml_reference.py > docs/reference/yaml.md`, or `make reference`.
 
-Meaning, range and default come from `siggen schema`; the shipped configurations say which of them set a key, and the
-remarks beside their values which source a value has.
+Meaning, range and default come from `siggen schema`; the shipped configurations say which keys they set. Sources of
+their values stand beside these, in the files.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import json
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,6 @@ from siggen.cli.app import app
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 NULL = {"type": "null"}
-SOURCE = re.compile(r"paper [AB]|assumed|published|ISO \d|derived", re.IGNORECASE)
 
 HEAD = """# Keys of the YAML file
 
@@ -128,27 +126,22 @@ def mapping(value: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class Shipped:
-    """One shipped configuration: the keys it sets, and the sources that remarks beside them name."""
+    """One shipped configuration, and the keys it sets."""
 
     path: Path
 
-    @cached_property
-    def lines(self) -> list[str]:
-        """The file, line by line."""
-        return self.path.read_text(encoding="utf-8").splitlines()
-
-    def set_keys(self, schema: Schema) -> dict[str, str]:
-        """Return key -> remark of its line, where that names a source, else nothing."""
+    def set_keys(self, schema: Schema) -> set[str]:
+        """Return the paths of its keys."""
         root = yaml.compose(self.path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
-        return dict(self._walk(schema, schema.content, root, ""))
+        return set(self._walk(schema, schema.content, root, ""))
 
-    def _walk(self, schema: Schema, section: Mapping[str, Any], node: Any, prefix: str) -> Iterator[tuple[str, str]]:
+    def _walk(self, schema: Schema, section: Mapping[str, Any], node: Any, prefix: str) -> Iterator[str]:
         for name_node, value_node in pairs(node):
             value = section.get("properties", {}).get(name_node.value)
             if value is None:
                 continue
             path = f"{prefix}{name_node.value}"
-            yield path, self._remark(name_node.value, value_node)
+            yield path
             entries = value_node.value if isinstance(value_node, yaml.SequenceNode) else [value_node]
             sections = [(*one, one[1]["properties"].get("kind", {}).get("const")) for one in schema.sections(value)]
             for ending, inner, kind in sections:
@@ -156,16 +149,6 @@ class Shipped:
                     # an entry without a kind is of the first one
                     if isinstance(entry, yaml.MappingNode) and kind in (None, kind_of(entry) or sections[0][2]):
                         yield from self._walk(schema, inner, entry, f"{path}{ending}.")
-
-    def _remark(self, name: str, value: Any) -> str:
-        if not isinstance(value, yaml.ScalarNode):
-            return ""
-        text = self.lines[value.end_mark.line].partition(" #")[2].strip()
-        if not SOURCE.search(text):
-            return ""
-        # "teeth: paper A, section 4.2; bore assumed" beside several keys of one line: each takes its own part
-        parts = [part for part in re.split(r"; |, (?=\w+ assumed)", text) if name.split("_", maxsplit=1)[0] in part]
-        return (parts[0] if len(parts) == 1 and text.count(";") else text).removeprefix(f"{name}: ")
 
 
 def pairs(node: Any) -> Iterator[tuple[Any, Any]]:
@@ -250,33 +233,20 @@ def table(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]) -> 
         yield row(*shown, *cells, " / ".join(entry.defaults), marks)
 
 
-def sources(rows: list[Entry], remarks: Mapping[str, list[str]]) -> Iterator[str]:
-    """Yield the sources that shipped configurations name for values of these keys."""
-    named = [(entry.names[0], [said for key in entry.keys for said in remarks[key.path]]) for entry in rows]
-    if any(said for _, said in named):
-        yield ""
-        yield "Sources named in shipped configurations:"
-        yield ""
-        yield from (f"* `{name}`: {'; '.join(dict.fromkeys(said))}" for name, said in named if said)
-
-
 def page() -> str:
     """Return the page."""
     schema = Schema(json.loads(CliRunner().invoke(app, ["schema"], catch_exceptions=False).output))
     keys = list(schema.keys(schema.content))
     users: dict[str, list[str]] = {key.path: [] for key in keys}
-    remarks: dict[str, list[str]] = {key.path: [] for key in keys}
     for path in sorted(CONFIGS.glob("*.yaml")):
-        for key, remark in Shipped(path).set_keys(schema).items():
-            if key in users:
-                users[key].append(path.stem)
-                remarks[key] += [f"{path.stem}.yaml: {remark}"] if remark else []
+        for key in Shipped(path).set_keys(schema) & set(users):
+            users[key].append(path.stem)
     tops = [(key, entries(schema, keys, key.path)) for key in keys if key.path in schema.content["properties"]]
     plain = [Entry((key,), "") for key, _ in tops]
     count = len(plain) + sum(len(rows) for _, tables in tops for rows in tables)
     lines = [HEAD, f"There are {count} keys in {len(keys)} places.", ""]
     alone = [Entry((key,), "") for key, tables in tops if not tables]
-    lines += ["## Top level", "", *table(schema, alone, users), *sources(alone, remarks), ""]
+    lines += ["## Top level", "", *table(schema, alone, users), ""]
     for top, tables in tops:
         text = described(schema, top.schema)
         listed = " A list; these are the keys of an entry." if top.schema.get("type") == "array" else ""
@@ -287,7 +257,7 @@ def page() -> str:
             else:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
                 lines += ["### " + re.sub(r" \(kind: \w+\)", "", place), ""]
-            lines += [*table(schema, rows, users), *sources(rows, remarks), ""]
+            lines += [*table(schema, rows, users), ""]
     lines += [DISTRIBUTION_TEXT, *distributions(schema)]
     return "\n".join(lines).rstrip() + "\n"
 

@@ -103,8 +103,8 @@ class ForeignMesh(Section):
     order: Annotated[Number, Within(above=0, most=10_000)] = Field(description="of the mesh, per turn of the pinion")
     force_share: Annotated[Number, Within(least=0, most=2)] = Field(
         default=LogUniform(low=0.005, high=0.05),
-        description="first line over the mean mesh force (derived: mesh 1 is 1 to 4 % of it; on machines others "
-        "were 6 to 26 dB below mesh 1, behind a housing that passes some 14 dB less of their lower frequency)",
+        description="first line over the mean mesh force (derived: mesh 1 is 1 to 4 % of it, others "
+        "were measured 6 to 26 dB below mesh 1)",
     )
     shaft_order: Annotated[Number | None, Within(above=0, most=10_000, words=(None,))] = Field(
         default=None, description="turns of the sidebands' shaft per turn of the pinion; null: the gear's shaft"
@@ -116,8 +116,8 @@ class Background(Section):
 
     redraw: Literal["gearbox", "record"] = Field(
         default="gearbox",
-        description="what levels of noise, forces and sensors alike, are drawn for; gearbox: all states share them, "
-        "record: each record has its own, and a state cannot be told by them either",
+        description="what levels of noise and forces are drawn for; gearbox: all states share them, record: each "
+        "record has its own",
     )
     base: Base | None = Field(default=None, description="null: bolts stand on the ground")
     rubbing: Rubbing | None = Field(default=None, description="null: none")

@@ -50,8 +50,8 @@ class Gears(Section):
     gear: Wheel = Field(description="the driven gear")
     pairs: Annotated[Pairs, PAIRS] = Field(
         default=(),
-        description="pairs of the set, each gearbox has one; sizes, masses, torques and damage of the whole file are "
-        "those of the pair above and are carried over to each; null: all gearboxes have the pair above",
+        description="pairs of the set, each gearbox has one; all other numbers of the file are those of the pair above "
+        "and are carried over to each; null: no other pairs",
     )
 
     def teeth_of(self, which: str) -> tuple[int, ...]:

@@ -52,8 +52,8 @@ class Manufacture(Section):
     )
     draw: Literal["specimen", "state"] = Field(
         default="specimen",
-        description="specimen: one gear pair in all states, as on a rig before and after damage; state: another pair "
-        "of the same drawing for each state, as in a field of machines",
+        description="specimen: one gear pair in all states, as on a rig; state: another pair of the same drawing for "
+        "each state, as in a field of machines",
     )
 
     @model_validator(mode="after")

@@ -16,9 +16,8 @@ class Mesh(Section):
 
     law: Literal["linear", "pairs"] = Field(
         default="pairs",
-        description="linear: mesh stiffness times approach; damage lowers the stiffness, as in potential-energy models "
-        "(paper A); pairs: every tooth pair by itself, its contact solved across the face, load-dependent after Weber "
-        "and Banaschek, with elastic edges of damage",
+        description="linear: mesh stiffness times approach, damage lowers the stiffness (paper A); pairs: every tooth "
+        "pair by itself, its contact solved across the face",
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
         default=8.0, description="parabolic relief at the tips of both gears, over a quarter of a base pitch"

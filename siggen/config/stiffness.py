@@ -19,8 +19,8 @@ class Stiffness(Section):
     )
     coupling: Literal["none", "body", "auto"] = Field(
         default="auto",
-        description="whether neighbouring teeth in contact deflect each other through the gear body; none: the mesh is "
-        "the plain sum of its pairs (paper A); auto: body for calibrated, none otherwise",
+        description="whether neighbouring teeth deflect each other through the gear body; none: the plain sum of pairs "
+        "(paper A); auto: body for calibrated, none otherwise",
     )
 
     @property
