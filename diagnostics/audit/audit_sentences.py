@@ -117,6 +117,9 @@ def _realism_sentence(found: Realism) -> str:
         f"On average over the quantities, {percent(found.mean_inside)} of "
         f"{counted(found.channel_records, 'healthy channel-record')} lie in the range of measured healthy gearboxes."
     )
+    if found.left_out:
+        words = ", ".join(dict.fromkeys(found.left_out.values()))
+        text += f" Only accelerations were measured there; left out: {words}."
     if not found.shares:
         return text
     worst = min(found.shares, key=lambda share: share.inside)

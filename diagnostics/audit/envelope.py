@@ -6,7 +6,8 @@ The ranges pool recordings of a few machines (90 % of their channels) and are wi
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -99,7 +100,7 @@ class Realism:
     """Shares of the thirteen quantities and of those of the background, and sensor spreads.
 
     `mean_inside` is the mean over the thirteen, `all_inside` the share of channel-records inside all of them,
-    `background_inside` the mean over the background's.
+    `background_inside` the mean over the background's, `left_out` the quantity of every channel without acceleration.
     """
 
     shares: tuple[QuantityShare, ...]
@@ -108,6 +109,7 @@ class Realism:
     spreads: tuple[SensorSpread, ...]
     channel_records: int
     background: tuple[QuantityShare, ...] = ()
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def background_inside(self) -> float:
@@ -121,7 +123,9 @@ def quantities(speed: str = BENCH) -> tuple[Quantity, ...]:
 
 
 def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
-    """Return how the healthy records lie in the ranges; None without healthy records.
+    """Return how the healthy records lie in the ranges; None without healthy records or without accelerations.
+
+    Ranges were measured with accelerometers: channels of another quantity are left out and named.
 
     Parameters
     ----------
@@ -130,19 +134,20 @@ def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
     speed : str
         `bench` or `variable`.
     """
-    healthy = measured.healthy
-    if not healthy.any():
+    judged = np.ix_(measured.healthy, measured.accelerations)
+    if not all(one.size for one in judged):
         return None
-    shares = [quantity_share(quantity, measured.values[quantity.name][healthy]) for quantity in quantities(speed)]
+    shares = [quantity_share(quantity, measured.values[quantity.name][judged]) for quantity in quantities(speed)]
     inside = [share.quantity.inside(share.values) for share in shares]
-    background = [q for q in BACKGROUND_QUANTITIES if np.isfinite(measured.values[q.name][healthy]).any()]
+    background = [q for q in BACKGROUND_QUANTITIES if np.isfinite(measured.values[q.name][judged]).any()]
     return Realism(
         shares=tuple(shares),
         mean_inside=float(np.mean([share.inside for share in shares])),
         all_inside=float(np.all(inside, axis=0).mean()),
         spreads=sensor_spreads(measured),
         channel_records=int(shares[0].values.size),
-        background=tuple(quantity_share(q, measured.values[q.name][healthy]) for q in background),
+        background=tuple(quantity_share(q, measured.values[q.name][judged]) for q in background),
+        left_out=measured.other_quantities,
     )
 
 
@@ -156,12 +161,12 @@ def quantity_share(quantity: Quantity, values: np.ndarray) -> QuantityShare:
 
 
 def sensor_spreads(measured: MeasuredSet) -> tuple[SensorSpread, ...]:
-    """Return the spread between channels for each quantity; empty with fewer than three channels."""
-    if len(measured.channels) < 3:
+    """Return the spread between channels for each quantity; empty with fewer than three accelerometers."""
+    if measured.accelerations.size < 3:
         return ()
     found = []
     for name, wanted in SPREAD_RANGES.items():
-        values = measured.values[name][measured.healthy]
+        values = measured.values[name][np.ix_(measured.healthy, measured.accelerations)]
         spread = np.std(values, axis=1, ddof=1)
         found.append(SensorSpread(name, float(np.nanmedian(spread)), wanted))
     return tuple(found)

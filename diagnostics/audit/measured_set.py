@@ -6,7 +6,7 @@ For every record a healthy record of the same specimen at the same operating poi
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import PULSE_CONDITIONS, RecordTable, record_table
+from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.recording import TACHO_NAME
 from diagnostics.records.sample_bytes import BYTES
 from diagnostics.records.state_classes import HEALTHY, ordered_states
@@ -100,6 +101,8 @@ class MeasuredSet:
         Checksum of the samples of every channel.
     config, failures
         Configuration and failed records of the set.
+    other_quantities : dict of str to str
+        Channel name -> quantity, of the channels that hold no acceleration.
     """
 
     labels: dict[str, np.ndarray]
@@ -111,6 +114,14 @@ class MeasuredSet:
     checksums: np.ndarray
     config: dict[str, Any]
     failures: list[dict[str, Any]]
+    other_quantities: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def accelerations(self) -> np.ndarray:
+        """(k,) int: places of the channels that hold accelerations, which is what ranges were measured of."""
+        return np.array(
+            [k for k, name in enumerate(self.channels) if name not in self.other_quantities], dtype=np.int64
+        )
 
     @property
     def healthy(self) -> np.ndarray:
@@ -164,6 +175,7 @@ def measured_set(
         checksums=table.values([f"checksum.{channel}" for channel in table.channels]).astype(np.int64),
         config=dict(dataset.config),
         failures=list(dataset.manifest.get("failures", [])),
+        other_quantities={c.name: c.quantity for c in dataset.channels if c.quantity != RECORDED.word},
     )
 
 

@@ -91,22 +91,46 @@ def indicators(
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
     """
     span = recording.speed_range_hz()
-    indicator, workers, as_json = computing.indicator, computing.workers, computing.as_json
     if teeth is not None or file_rows(targets[0])[0][0].is_file():
-        of_sets = {"--indicator": indicator, "--state": ranking.state, "--leave-out": ranking.leave_out}
-        of_sets["--explore"] = page.explore
-        if ignored := [option for option, given in of_sets.items() if given]:
-            raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
-        _of_recordings(targets, teeth, recording.facts(), span, out, as_json)
+        _refuse_options_of_sets(computing, ranking, page)
+        _of_recordings(targets, teeth, recording.facts(), span, out, computing.as_json)
         return
-    if as_json:
+    directory = _one_set(targets, computing)
+    if out is not None and out.suffix in (".parquet", ".csv"):
+        _table_alone(directory, out, computing.indicator, computing.workers)
+        return
+    path = _ranking_report(directory, out, span, computing, ranking, explore=page.explore)
+    typer.echo(str(path))
+    if page.show:
+        opened(path)
+
+
+def _refuse_options_of_sets(computing: ComputingOptions, ranking: RankingOptions, page: PageOptions) -> None:
+    of_sets = {"--indicator": computing.indicator, "--state": ranking.state, "--leave-out": ranking.leave_out}
+    of_sets["--explore"] = page.explore
+    if ignored := [option for option, given in of_sets.items() if given]:
+        raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
+
+
+def _one_set(targets: list[str], computing: ComputingOptions) -> Path:
+    """Return the folder of the only set asked for."""
+    if computing.as_json:
         raise UsageError("--json: for recordings only; --out table.parquet or .csv has the indicators of a set")
     if len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
-    directory = Path(targets[0])
-    if out is not None and out.suffix in (".parquet", ".csv"):
-        _table_alone(directory, out, indicator, workers)
-        return
+    return Path(targets[0])
+
+
+def _ranking_report(
+    directory: Path,
+    out: Path | None,
+    span: tuple[float, float] | None,
+    computing: ComputingOptions,
+    ranking: RankingOptions,
+    *,
+    explore: bool,
+) -> Path:
+    """Write the ranking of a set's indicators, and the explorer where it is wanted; return the page."""
     from diagnostics.base.beside import beside
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
@@ -121,22 +145,20 @@ def indicators(
     from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
-    own = load_indicators(indicator)
+    own, states = load_indicators(computing.indicator), ranking.state or ()
     dataset = open_set(directory)
     check_states(dataset)
-    chosen_states(dataset, ranking.state or ())
+    chosen_states(dataset, states)
     settings = IndicatorSettings(speed_range_hz=span)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
-        everything = record_table(dataset, settings, own, workers=workers, advance=advance)
-    table = ranking_table(everything, dataset, states=ranking.state or (), leave_out=ranking.leave_out)
+        everything = record_table(dataset, settings, own, workers=computing.workers, advance=advance)
+    table = ranking_table(everything, dataset, states=states, leave_out=ranking.leave_out)
     folder = out or beside(dataset.path, "_indicators")
     judged = AssessmentSettings(seed=ranking.seed, false_alarms=ranking.false_alarms)
-    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=EXPLORER * page.explore)
-    if page.explore:
-        _explorer(dataset, folder, workers, own)
-    typer.echo(str(path))
-    if page.show:
-        opened(path)
+    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=EXPLORER * explore)
+    if explore:
+        _explorer(dataset, folder, computing.workers, own)
+    return path
 
 
 def _explorer(dataset: Dataset, folder: Path, workers: int, own: tuple[OwnIndicator, ...]) -> None:

@@ -194,12 +194,12 @@ def _channel_result(signals: ChannelSignals, raw: np.ndarray, pulses: np.ndarray
     if grid is None or grid.revolutions < FEWEST_AUDIT_TURNS:
         return ChannelResult(values | dict.fromkeys(LEVELS, math.nan), signals.moments(), conditions=conditions)
     values |= _levels(signals, grid, pulses)
-    average = signals.shaft("pinion").average
+    teeth = (signals.shafts[0].teeth, signals.shafts[1].teeth)
     return ChannelResult(
         values,
         signals.moments(),
-        _waveform(average, signals.shafts[0].teeth),
-        noise_sketch(signals.signal, signals.fs_hz, average, grid, pulses),
+        _waveform(signals.shaft("pinion").average, teeth[0]),
+        noise_sketch(signals.signal, signals.fs_hz, signals.steps, teeth, grid),
         conditions,
     )
 

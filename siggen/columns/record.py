@@ -45,7 +45,7 @@ class Channel:
     @property
     def shown_unit(self) -> str:
         """The unit as pages and pictures show it."""
-        return self.unit.replace("^2", "²").replace("^3", "³")
+        return self.unit.replace("^2", "²").replace("^3", "³").replace("um", "µm")
 
 
 @dataclass(frozen=True, slots=True)

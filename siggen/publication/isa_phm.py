@@ -32,6 +32,8 @@ PARAMETERS = {
     "place": "Sensor location",
     "axis": "Sensor orientation",
     "column": "Column of the data files",
+    "quantity": "Quantity that is measured",
+    "unit": "Unit of the column",
     "rows": "Rows of the data files",
 }
 UNITS = ("Hz", "N m", "s", "mm")
@@ -107,6 +109,8 @@ def _assay(
         "place": {"value": channel["place"]},
         "axis": {"value": channel["axis"]},
         "column": {"value": channel["column"]},
+        "quantity": {"value": sensor.quantity.word},
+        "unit": {"value": sensor.quantity.unit},
         "rows": {"value": f"state = {state.name}"},
     }
     parameters = [{"category": {"@id": f"#parameter/{key}"}, **value} for key, value in values.items()]

@@ -31,7 +31,7 @@ class Quantity:
     @property
     def shown_unit(self) -> str:
         """The unit as pages and pictures show it."""
-        return self.unit.replace("^2", "²").replace("^3", "³")
+        return self.unit.replace("^2", "²").replace("^3", "³").replace("um", "µm")
 
 
 ACCELERATION = Quantity("acceleration", "accel", "m/s^2", "m_s2", "vibration")

@@ -24,6 +24,19 @@ def investigation(published: Path) -> dict[str, Any]:
     return json.loads((published / "i_investigation.json").read_text())
 
 
+SHAFTS = """
+extends: quickstart
+name: shafts
+sensors:
+  - {kind: accelerometer, name: side}
+  - {kind: encoder, name: first, place: pinion}
+  - {kind: encoder, name: second, place: gear}
+  - {kind: transmission_error, name: error, pinion_encoder: first, gear_encoder: second}
+  - {kind: coupling_torque, name: flange, range_nm: 200, floor_nm: 0.05}
+  - {kind: motor_current, name: clamp, rated_torque_nm: 60, pole_pairs: 2, range_a: 100, floor_a: 0.01}
+"""
+
+
 def objects(node: Any) -> Iterator[dict[str, Any]]:
     if isinstance(node, dict):
         yield node
@@ -65,6 +78,27 @@ def test_ranges_of_a_preset_are_texts_from_the_least_to_the_most(preset: str, tm
     values = {c["category"]["@id"]: c["value"] for c in source["characteristics"]}
     assert (" to " in str(values["#characteristic/module"])) == bool(config.gears.pairs)
     assert len(found["studies"][0]["materials"]["samples"]) == len(config.operating_points)
+
+
+def test_every_assay_names_quantity_and_unit_of_its_sensor(tmp_path: Path) -> None:
+    path = tmp_path / "shafts.yaml"
+    path.write_text(SHAFTS, encoding="utf-8")
+    config = load_config(path)
+    facts = read_publication_facts(facts_file(tmp_path))
+    channels = [{"name": name, "place": "", "axis": "", "column": name} for name in config.channels]
+    found = isa_phm(config, facts, "text", channels, ["data/train-00000.parquet"])
+    shown = []
+    for assay in found["studies"][0]["assays"]:
+        values = {v["category"]["@id"]: v["value"] for v in assay["processSequence"][0]["parameterValues"]}
+        shown.append((values["#parameter/quantity"], values["#parameter/unit"]))
+    assert shown == [
+        ("acceleration", "m/s^2"),
+        ("angular speed", "rad/s"),
+        ("angular speed", "rad/s"),
+        ("transmission error", "um"),
+        ("torque", "N m"),
+        ("current", "A"),
+    ]
 
 
 @pytest.mark.slow  # installs isatools into an environment of its own: its pins exclude those of constraints.txt

@@ -66,3 +66,15 @@ def test_what_stands_beside_the_mesh_lines_is_judged_apart_from_the_thirteen(fou
 
 def test_a_set_without_healthy_records_has_nothing_to_compare(found: MeasuredSet) -> None:
     assert realism(replace(found, labels={**found.labels, "fault": np.full(found.healthy.size, "pitting")})) is None
+
+
+def test_ranges_of_accelerometers_judge_no_other_quantity(found: MeasuredSet) -> None:
+    values = np.tile([-20.0, -17.0, 60.0], (found.checksums.shape[0], 1))
+    mixed = replace(found, values={**found.values, "sideband1_db": values}, other_quantities={"bearing_x": "torque"})
+    result = realism(mixed)
+    assert result is not None
+    assert result.channel_records == 3 * 2 * 2
+    assert next(share for share in result.shares if share.quantity.name == "sideband1_db").inside == 1.0
+    assert result.spreads == ()
+    none = dict.fromkeys(found.channels, "torque")
+    assert realism(replace(found, other_quantities=none)) is None
