@@ -134,3 +134,12 @@ def test_a_chip_needs_flanks_with_a_shape_and_a_state_more_of_it_than_its_milder
         config_with(CHIP, law="linear")
     with pytest.raises(ConfigError, match=r"states\.2\.damage\.height_mm"):
         config_with(CHIP, {**CHIP, "height_mm": 1.0})
+
+
+def test_a_missing_tooth_is_missing_under_either_torque() -> None:
+    losses = []
+    for torque_nm in (10.0, -10.0):
+        found = records(quick(BROKEN, torque_nm=torque_nm), [0, 1])
+        losses.append([float(one.labels["contact_loss_share"]) for one in found])  # type: ignore[arg-type]
+    assert [healthy for healthy, _ in losses] == [0.0, 0.0]
+    assert all(0.01 < broken < 0.2 for _, broken in losses)
