@@ -131,7 +131,10 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
             sham=config.states[state_id].sham,
         )
         most_n = largest_force_n(config.operating_points, pair)
-        mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, most_n, lead_of(teeth.errors))
+        mesh = with_back_flanks(
+            mesh, specimen.dynamics, teeth.options, most_n, lead_of(teeth.errors),
+            made.missing_before_chips(state_id), teeth.parts,
+        )  # fmt: skip
     return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
 
 

@@ -6,7 +6,7 @@ from functools import cache
 
 from siggen.config import Config
 from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
-from siggen.gears.damage.part import Parts
+from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
@@ -48,7 +48,14 @@ class MadeGears:
 
     def missing(self, state_id: int) -> WavyTeeth:
         """Return the missing material of relief, damage, errors and waves, under any torque."""
-        return self._missing(self._drawn_for(state_id), from_flanks(self.damage(state_id)))
+        losses = from_flanks(self.damage(state_id))
+        return self._missing(self._drawn_for(state_id), losses, reach_pitches(self.pair, losses))
+
+    def missing_before_chips(self, state_id: int) -> WavyTeeth:
+        """Return the same without what single teeth have lost."""
+        losses = from_flanks(self.damage(state_id))
+        everywhere = tuple(one for one in losses if one.tooth == NO_TOOTH)
+        return self._missing(self._drawn_for(state_id), everywhere, reach_pitches(self.pair, losses))
 
     def damage(self, state_id: int) -> Parts:
         """Return the damage of a state.
@@ -73,8 +80,8 @@ class MadeGears:
     def _computed_waves(self, drawn_for: int) -> SpecimenWaves | None:
         return specimen_waves(self._config, self.pair, self._specimen.specimen_id, drawn_for)
 
-    def _computed_missing(self, drawn_for: int, losses: Losses) -> WavyTeeth:
+    def _computed_missing(self, drawn_for: int, losses: Losses, reach: float) -> WavyTeeth:
         pair = self.pair
-        whole = teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS, reach_pitches(pair, losses))
+        whole = teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS, reach)
         plain = with_losses(whole, pair, losses)
         return WavyTeeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), pair, self._waves(drawn_for))

@@ -11,6 +11,7 @@ from siggen.checks.quantity_names import available_quantities
 from siggen.columns.record import Record
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gears.damage.chip import Chip
 from siggen.record.damage_rows import damage_rows
 from siggen.record.simulation import simulate
 from tests.faults.test_damage import config_with, damage_of
@@ -95,6 +96,9 @@ def test_rows_tell_what_is_lost_and_a_broken_tooth_takes_the_place_of_its_chip()
         ({"height_mm": "half"}, r"states\.1\.damage\.height_mm: received the text 'half'; .* or whole"),
         ({"height_mm": "whole", "teeth": 2}, r"states\.1\.damage\.teeth: received 2; allowed: teeth that are no neigh"),
         ({"height_mm": "whole", "teeth": [0, 17]}, r"states\.1\.damage\.teeth: .* no neighbours"),
+        ({"face_share": 1.2}, r"states\.1\.damage\.face_share: received 1\.2; allowed: a number above 0"),
+        ({"face_share": 0.0}, r"states\.1\.damage\.face_share: received 0\.0; allowed: a number above 0"),
+        ({"height_mm": 6.8, "corner": True}, r"states\.1\.damage\.height_mm: received 6\.8; allowed: up to 6\.75, the"),
         ({"teeth": [18]}, r"states\.1\.damage\.teeth: received tooth 18"),
     ],
 )
@@ -103,8 +107,39 @@ def test_what_cannot_be_is_refused_by_name(change: dict[str, Any], said: str) ->
         config_with({**CHIP, **change})
 
 
+@pytest.mark.parametrize("share", [None, 1.0])
+def test_a_chip_over_all_of_the_face_is_the_one_without_a_share(share: float | None) -> None:
+    config = config_with({**CHIP, "teeth": [4], "face_share": share})
+    assert damage_of(config, 1) == (Chip("pinion", 4, 1.5e-3),)
+
+
+def test_rows_tell_how_much_of_the_face_is_lost_and_more_takes_the_place_of_less() -> None:
+    part = {**CHIP, "teeth": [4], "face_share": 0.3}
+    config = config_with({**part, "corner": True}, part, {**part, "height_mm": "whole", "face_share": 0.5})
+    assert [len(damage_of(config, state)) for state in (1, 2, 3)] == [1, 1, 1]
+    found = [damage_rows(config, state)[0] for state in (1, 2, 3)]
+    assert [(row["kind"], row["chip_height_mm"], row["chip_width_mm"]) for row in found] == [
+        ("chip", 1.5, 6.0),
+        ("chip", 1.5, 6.0),
+        ("broken_tooth", 0.0, 10.0),
+    ]
+    # A corner's height falls to 0 at its width, that of a part is the same over it.
+    lines = [np.subtract(row["polygon_height_mm"][1], row["polygon_height_mm"][0]) for row in found]
+    assert lines[0] > 1.4
+    assert lines[1:] == [0.0, 0.0]
+
+
 def test_a_chip_needs_flanks_with_a_shape_and_a_state_more_of_it_than_its_milder_one() -> None:
     with pytest.raises(ConfigError, match=r"states\.1\.damage\.kind: received 'chip'; allowed: another kind with"):
         config_with(CHIP, law="linear")
     with pytest.raises(ConfigError, match=r"states\.2\.damage\.height_mm"):
         config_with(CHIP, {**CHIP, "height_mm": 1.0})
+
+
+def test_a_missing_tooth_is_missing_under_either_torque() -> None:
+    losses = []
+    for torque_nm in (10.0, -10.0):
+        found = records(quick(BROKEN, torque_nm=torque_nm), [0, 1])
+        losses.append([float(one.labels["contact_loss_share"]) for one in found])  # type: ignore[arg-type]
+    assert [healthy for healthy, _ in losses] == [0.0, 0.0]
+    assert all(0.01 < broken < 0.2 for _, broken in losses)

@@ -14,7 +14,8 @@ from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
 from siggen.gears.contact.pair_rest import PairRest, pair_rest
 from siggen.gears.contact.table_options import TableOptions, face_slices, half_width, reference_force_n
 from siggen.gears.damage.flank_chords import FlankChords, flank_chords
-from siggen.gears.damage.tooth_damage import Damage, pits_of
+from siggen.gears.damage.part_chip import standing_share
+from siggen.gears.damage.tooth_damage import Damage, goes_through, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
@@ -71,16 +72,18 @@ def kind_row(
         flank_chords(pair.member(which), of_tooth, pair.face_width_m, slices)
         for which, of_tooth in zip(flanks, pits, strict=True)
     ]
-    # What shows on no flank acts through the tooth alone.
-    acting = [tuple(d for d in of_tooth if options.section_loss or d.outline is None) for of_tooth in pits]
-    if healthy is not None and not any(acting):
+    # What shows on no flank acts through the tooth alone; what is gone through it leaves a narrower one.
+    notches = [[d for d in of_tooth if not goes_through(d)] for of_tooth in pits]
+    acting = [tuple(d for d in of_tooth if options.section_loss or d.outline is None) for of_tooth in notches]
+    standing = [standing_share(pair, which, of_tooth) for which, of_tooth in zip(flanks, pits, strict=True)]
+    if healthy is not None and not any(acting) and min(standing) == 1.0:
         rest = healthy.rest
     else:
         teeth = [
             tooth_compliance(pair, which, roll, stiffness, of_tooth)
             for which, roll, of_tooth in zip(flanks, rolls, acting, strict=True)
         ]
-        rest = pair_rest(pair, (teeth[0], teeth[1]), stiffness)
+        rest = pair_rest(pair, (teeth[0], teeth[1]), stiffness, (standing[0], standing[1]))
     stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
     stated = stated[stated > 0.0]
     edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m

@@ -14,7 +14,7 @@ single gears tilt errs by up to 21 %, the other way on either.
 
 from __future__ import annotations
 
-from math import exp
+from math import exp, sinh
 from typing import NamedTuple
 
 import numpy as np
@@ -46,16 +46,43 @@ def rigid_rest(compliance_m_per_n: FloatArray) -> PairRest:
     return PairRest(compliance_m_per_n, np.zeros_like(compliance_m_per_n), np.inf)
 
 
-def pair_rest(pair: GearPair, teeth: tuple[ToothCompliance, ToothCompliance], options: StiffnessOptions) -> PairRest:
-    """Return the rest of pinion and gear tooth (k,) each; without foundation no body twists."""
+def pair_rest(
+    pair: GearPair,
+    teeth: tuple[ToothCompliance, ToothCompliance],
+    options: StiffnessOptions,
+    standing: tuple[float, float] = (1.0, 1.0),
+) -> PairRest:
+    """Return the rest of pinion and gear tooth (k,) each; without foundation no body twists.
+
+    `standing` is the share of the face, at its end, over which either tooth still stands.
+    """
     whole = np.add(teeth[0].total, teeth[1].total)
-    bends = np.zeros_like(whole)
-    for gear, tooth in zip((pair.pinion, pair.gear), teeth, strict=True):
+    bends, softer = np.zeros_like(whole), np.zeros_like(whole)
+    for gear, tooth, share in zip((pair.pinion, pair.gear), teeth, standing, strict=True):
         twist = 0.0
         if options.foundation != "none":
             twist = ring_torsion(gear, pair.poisson_ratio) / (pair.youngs_modulus_pa * pair.face_width_m)
-        bends += np.maximum(tooth.total - twist, 0.0)
-    return PairRest(whole - bends, bends, bending_length_m(pair))
+        own = np.maximum(tooth.total - twist, 0.0)
+        bends += own
+        if share < 1.0:
+            softer += (strip_factor(pair, share) - 1.0) * own
+    return PairRest(whole - bends, bends + softer, bending_length_m(pair))
+
+
+def strip_factor(pair: GearPair, share: float) -> float:
+    """Return by how much teeth must bend more for a strip at an end of the face to be a tooth of its own.
+
+    Derived. Of t - l² t'' = C b q with free ends, an even load on the share f at one end sinks, on its mean, by
+
+        (C/f) F [1 - (l/(f b)) sinh((1 - f) b/l) sinh(f b/l)/sinh(b/l)],
+
+    since what is beside it helps; where nothing is there, by (C/f) F.
+    """
+    if share <= 0.0:
+        return 1.0  # nothing stands that could carry
+    width = pair.face_width_m / bending_length_m(pair)
+    helped = sinh((1.0 - share) * width) * sinh(share * width) / (share * width * sinh(width))
+    return 1.0 / (1.0 - helped)
 
 
 def bending_length_m(pair: GearPair) -> float:

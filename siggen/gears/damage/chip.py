@@ -21,6 +21,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.part import Part, Refusal
+from siggen.gears.damage.part_chip import PartChip
 from siggen.gears.damage.sham import SHAM
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
@@ -74,7 +75,7 @@ class Chip:
         """Return whether less is left than of the same tooth before; where nothing is, nothing else is to be seen."""
         if (other.gear, other.tooth) != (self.gear, self.tooth):
             return False
-        return self.whole_tooth or (isinstance(other, Chip) and other.height_m <= self.height_m)
+        return self.whole_tooth or (isinstance(other, (Chip, PartChip)) and other.height_m <= self.height_m)
 
     def sham(self) -> Chip:
         """Return a tooth that has lost no height."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Protocol, TypeAlias, TypeGuard
+from typing import Protocol, TypeAlias, TypeGuard, TypeVar
 
 import numpy as np
 
@@ -37,6 +37,7 @@ class FlankLoss(Part, Protocol):
 
 
 Losses: TypeAlias = tuple[FlankLoss, ...]
+SomePart = TypeVar("SomePart", bound=Part)
 
 
 def from_flanks(parts: Iterable[Part]) -> Losses:
@@ -68,6 +69,33 @@ def with_losses(missing: MissingMaterial, pair: GearPair, losses: Losses) -> Mis
         pinion=_without(missing.pinion, pair, position, [one for one in losses if one.gear == "pinion"]),
         gear=_without(missing.gear, pair, position, [one for one in losses if one.gear == "gear"]),
     )
+
+
+def on_back_flanks(missing: MissingMaterial, pair: GearPair, losses: Losses) -> MissingMaterial:
+    """Return what back flanks miss (`siggen.gears.geometry.back_flanks`) where single teeth have lost it on both sides.
+
+    `losses` are those of the drive flanks, `pair` is the one with the gear in front.
+    """
+    own = [turned(one, pair) for one in losses if one.tooth != NO_TOOTH]
+    if not own:
+        return missing
+    position = np.linspace(missing.start_m, missing.end_m, missing.pinion.profile_m.shape[1])
+    # Tables keep the gear that they belong to, parts have the role that it plays.
+    return replace(
+        missing,
+        pinion=_without(missing.pinion, pair, position, [one for one in own if one.gear == "gear"]),
+        gear=_without(missing.gear, pair, position, [one for one in own if one.gear == "pinion"]),
+    )
+
+
+def turned(part: SomePart, pair: GearPair) -> SomePart:
+    """Return what is gone through a tooth as the pair with the gear in front has it, which is `pair`.
+
+    The gear's tooth behind the one that a pair is numbered by is that whose back flank is in contact.
+    """
+    if part.gear == "pinion":
+        return replace(part, gear="gear")  # type: ignore[type-var]
+    return replace(part, gear="pinion", tooth=(part.tooth - 1) % pair.pinion.teeth)  # type: ignore[type-var]
 
 
 def _without(teeth: ToothTables, pair: GearPair, position_m: FloatArray, losses: list[FlankLoss]) -> ToothTables:

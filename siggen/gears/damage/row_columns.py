@@ -17,3 +17,5 @@ COLUMNS = 14
 """Width of a row."""
 UNSTATED = -1.0
 """Edge radius of a damage that has the one of the contact's options."""
+THROUGH_M = 0.1
+"""Depth of what is gone through the whole tooth, above any half thickness: no notch in a section, and no floor [m]."""

@@ -13,6 +13,7 @@ from typing import Protocol, TypeAlias, TypeGuard
 from siggen.arrays import FloatArray
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.part import Part, Refusal
+from siggen.gears.damage.row_columns import THROUGH_M
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 
@@ -88,6 +89,11 @@ def pits_of(damage: Iterable[ToothDamage], which: str, tooth: int) -> Damage:
 def damaged_teeth(damage: Iterable[ToothDamage], which: str) -> tuple[int, ...]:
     """Return the damaged teeth of 'pinion' or 'gear', ascending."""
     return tuple(sorted({one.tooth for one in damage if one.gear == which}))
+
+
+def goes_through(damage: ToothDamage) -> bool:
+    """Whether material is gone through the whole tooth: its sections are no business of rows."""
+    return damage.depth_m >= THROUGH_M
 
 
 def has_extent(damage: ToothDamage) -> bool:

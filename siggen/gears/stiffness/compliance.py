@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 from siggen.arrays import FloatArray
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.kinks import section_kinks
-from siggen.gears.damage.tooth_damage import Damage, ToothDamage
+from siggen.gears.damage.tooth_damage import Damage, ToothDamage, goes_through
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -120,8 +120,9 @@ def _damaged(
     healthy: tuple[FloatArray, FloatArray],
 ) -> ToothCompliance:
     beam, foundation = healthy
-    if pit_rows(pits).size:
-        beam = beam + _beam_compliances(pair, arms, _pit_gain(pair, gear, options.shape, angles, pits))
+    notches = tuple(one for one in pits if not goes_through(one))
+    if pit_rows(notches).size:
+        beam = beam + _beam_compliances(pair, arms, _pit_gain(pair, gear, options.shape, angles, notches))
     sound = healthy[0].sum(axis=0) + healthy[1]
     for one in pits:
         foundation = foundation + one.tooth_compliance_m_per_n(pair, angles, sound)

@@ -18,8 +18,9 @@ from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.static_stiffness import static_approaches_m
 from siggen.gears.damage.chip import MARGIN_PITCHES, Chip, corner_reach_pitches, keeps_contact
-from siggen.gears.damage.flank_loss import reach_pitches, with_losses
+from siggen.gears.damage.flank_loss import on_back_flanks, reach_pitches, turned, with_losses
 from siggen.gears.damage.pit import Pit
+from siggen.gears.geometry.back_flanks import back_flanks, driven_pair
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, missing_material
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, MeshTables, mesh_tables
@@ -113,3 +114,26 @@ def test_a_missing_tooth_has_no_back_flank() -> None:
             carried |= {int(number) for number in pairs[pairs[:, NORMAL] != 0.0, NUMBER]}
         assert {4, 6} <= carried
         assert 5 not in carried
+
+
+@pytest.mark.parametrize(("which", "tooth"), [("pinion", 5), ("gear", 9), ("gear", 0)])
+def test_the_back_flank_of_a_chipped_tooth_is_chipped_where_a_misplaced_one_is_misplaced(
+    which: str, tooth: int
+) -> None:
+    """Tables of back flanks number pairs as those of drive flanks, in which the gear's tooth is the one in front."""
+    whole, driven = missing_material(PAIR, points=TABLE_POINTS), driven_pair(PAIR)
+    teeth = getattr(whole, which)
+    places = teeth.offset_m.copy()
+    places[tooth] = 1e-6
+    misplaced = getattr(back_flanks(replace(whole, **{which: replace(teeth, offset_m=places)}), PAIR), which)
+    chip = Chip(which, tooth, 0.2 * PAIR.pinion.module_m)
+    back = getattr(on_back_flanks(back_flanks(whole, PAIR), driven, (chip,)), which)
+    sound = getattr(back_flanks(whole, PAIR), which).profile_m[0]
+    chipped = np.abs(back.profile_m[back.kind_of_tooth] - sound).max(axis=1) > 0.0
+    np.testing.assert_array_equal(chipped, misplaced.offset_m != 0.0)
+    role = "gear" if which == "pinion" else "pinion"
+    lower = replace(driven, **{role: replace(driven.member(role), addendum_coefficient=0.8)})
+    position = PAIR.line_of_action_m - np.linspace(whole.end_m, whole.start_m, TABLE_POINTS)
+    expected = touching_gap_m(lower, role, position)
+    np.testing.assert_allclose(back.profile_m[back.kind_of_tooth][chipped][0], expected, rtol=1e-9, atol=1e-14)
+    assert turned(chip, driven).tooth == int(np.flatnonzero(chipped)[0])
