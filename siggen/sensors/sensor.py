@@ -17,6 +17,7 @@ from pydantic import Field, model_validator
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.structure.structure import COUPLINGS, SHAFTS
 from siggen.errors import Problem
+from siggen.keys.distributions import DRAWN
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import BRANCHES, received_text, refusal
 from siggen.keys.section import Section, Whole
@@ -155,6 +156,11 @@ class Sensor(Section):
         return frozenset(shown | (set() if self.through is None else {FORCE}))
 
     @property
+    def drawn_by_name(self) -> bool:
+        """Whether a gearbox draws numbers of it by its name, so that two of them differ in more than their noise."""
+        return any(_is_drawn(getattr(self, key)) for key in type(self).model_fields)
+
+    @property
     def plate(self) -> str | None:
         """The plate of a housing that it stands on; None for none."""
         return None
@@ -237,6 +243,12 @@ class Sensor(Section):
         if problems:
             raise refusal(problems)
         return self
+
+
+def _is_drawn(value: object) -> bool:
+    if isinstance(value, Section) and not isinstance(value, DRAWN):
+        return any(_is_drawn(getattr(value, key)) for key in type(value).model_fields)
+    return any(map(_is_drawn, value)) if isinstance(value, tuple) else isinstance(value, DRAWN)
 
 
 def needs(sensors: tuple[Sensor, ...], kind: str) -> bool:
