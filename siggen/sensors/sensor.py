@@ -104,6 +104,11 @@ class Sensor(Section):
         default=1.0,
         description="reading per true value, drawn per specimen and axis; a list: one number per axis",
     )
+    dropout_share: Annotated[Number, Within(least=0, below=1)] = Field(
+        default=0.0,
+        description="of a record that a bad contact of the cable loses, drawn per record and axis: gaps of 1 to 50 ms "
+        "of zeros (assumed)",
+    )
     bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
         default=16, description="of the converter; null: not quantised"
     )
