@@ -103,7 +103,7 @@ def missing(config: Config) -> Iterator[str]:
     seen: list[Sensor] = []
     for sensor, noisy in zip(config.sensors, noises, strict=True):
         nameless = sensor.model_copy(update={"name": "any"})
-        if not noisy and nameless in seen:
+        if not (noisy or sensor.drawn_by_name) and nameless in seen:
             yield f"sensors: {sensor.name} repeats another sensor: their channels will be identical, bit by bit"
         seen.append(nameless)
     yield from _empty_splits(config)

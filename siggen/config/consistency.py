@@ -168,7 +168,13 @@ def _flank_shapes(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
 
 
 def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    if sections.get("manufacture") is None or "dynamics" not in sections:
+    if "dynamics" not in sections:
+        return
+    if sections.get("manufacture") is None:
+        for which in ("pinion", "gear"):
+            if bounds(given := getattr(sections["dynamics"], which).eccentricity_um)[1] > 0.0:
+                allowed = "allowed: 0, or a section manufacture, whose teeth stand each in a place of its own"
+                yield Problem(f"dynamics.{which}.eccentricity_um", str(given), allowed)
         return
     if sections["dynamics"].mesh.law == "linear":
         allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"

@@ -34,6 +34,11 @@ class Rotor(Section):
     bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
         default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
     )
+    eccentricity_um: Annotated[Number, Within(least=0, most=200)] = Field(
+        default=0.0,
+        description="of the gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
+        "allows; needs manufacture",
+    )
 
 
 class Coupling(Section):

@@ -141,6 +141,9 @@ states:                       # on one tooth of the pinion; sizes grow with the 
     damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
   - name: severe
     damage: {{<<: *spall, profile_length_mm: {0.5 * m:.3g}, face_share: 1.0}}
+  - name: sham                # its damage passes everywhere, with nothing removed: whatever finds it has found a leak
+    sham: true
+    damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
 """
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.sensing.dropout import silence
 from siggen.sensing.measurement import Measurement, converted, ratio_db
 from siggen.sensing.spread import Spread
 
@@ -39,9 +42,10 @@ class Recorder:
         bits: int | None,
         rng: np.random.Generator,
         noise_floor: float | None,
+        gaps: Sequence[tuple[int, int]] = (),
     ) -> None:
         """Begin to convert what was taken; arguments as those of `measurement.measure`."""
-        self._limit, self._bits, self._rng = limit, bits, rng
+        self._limit, self._bits, self._rng, self._gaps = limit, bits, rng, gaps
         self._rms = self._spread.std
         self._floor = noise_floor
         self._clipped, self._step, self._done = 0, 0.0, 0
@@ -54,6 +58,7 @@ class Recorder:
             noisy += self._floor * self._rng.standard_normal(count)
         if added is not None:
             noisy += added
+        silence(noisy, self._done, self._gaps)
         part[:], clipped, self._step = converted(noisy, self._limit, self._bits)
         self._clipped += clipped
         self._done += count

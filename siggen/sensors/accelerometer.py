@@ -83,6 +83,12 @@ class Accelerometer(SourceKeys, Sensor):
         default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
     )
 
+    @property
+    def drawn_by_name(self) -> bool:
+        """Its numbers, the direction of its cross axis, or its place on a plate."""
+        placed = self.plate not in {None, "floor"} and self.position_mm is None
+        return placed or self.cross_axis != 0.0 or super().drawn_by_name
+
     def own_problems(self) -> Iterator[Problem]:
         """Yield what does not go with the place: position, axes, path."""
         has_position = self.place == "casing" or self.plate not in {None, "floor"}

@@ -76,6 +76,11 @@ class Encoder(Sensor):
             yield Problem("pulses_per_turn", str(self.pulses_per_turn), allowed)
 
     @property
+    def drawn_by_name(self) -> bool:
+        """Every disc sits at an angle of its own on its shaft, whatever its errors."""
+        return True
+
+    @property
     def limit(self) -> float:
         """A speed that no shaft has [rad/s]: a counter clips nothing."""
         return FASTEST_RAD_S

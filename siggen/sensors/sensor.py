@@ -17,6 +17,7 @@ from pydantic import Field, model_validator
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.structure.structure import COUPLINGS, SHAFTS
 from siggen.errors import Problem
+from siggen.keys.distributions import DRAWN
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import BRANCHES, received_text, refusal
 from siggen.keys.section import Section, Whole
@@ -103,6 +104,11 @@ class Sensor(Section):
         default=1.0,
         description="reading per true value, drawn per specimen and axis; a list: one number per axis",
     )
+    dropout_share: Annotated[Number, Within(least=0, below=1)] = Field(
+        default=0.0,
+        description="of a record that a bad contact of the cable loses, drawn per record and axis: gaps of 1 to 50 ms "
+        "of zeros (assumed)",
+    )
     bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
         default=16, description="of the converter; null: not quantised"
     )
@@ -153,6 +159,11 @@ class Sensor(Section):
         middle = AxisDraws(lambda _: 0.5, "", lambda _: generator(0, Stage.SENSOR, 0))
         shown = {one.kind for axis in self.axes for one in self.shows(axis, middle)}
         return frozenset(shown | (set() if self.through is None else {FORCE}))
+
+    @property
+    def drawn_by_name(self) -> bool:
+        """Whether a gearbox draws numbers of it by its name, so that two of them differ in more than their noise."""
+        return any(_is_drawn(getattr(self, key)) for key in type(self).model_fields)
 
     @property
     def plate(self) -> str | None:
@@ -237,6 +248,12 @@ class Sensor(Section):
         if problems:
             raise refusal(problems)
         return self
+
+
+def _is_drawn(value: object) -> bool:
+    if isinstance(value, Section) and not isinstance(value, DRAWN):
+        return any(_is_drawn(getattr(value, key)) for key in type(value).model_fields)
+    return any(map(_is_drawn, value)) if isinstance(value, tuple) else isinstance(value, DRAWN)
 
 
 def needs(sensors: tuple[Sensor, ...], kind: str) -> bool:

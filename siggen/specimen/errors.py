@@ -11,7 +11,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Config, Manufacture
 from siggen.gears.errors.error_shapes import Draws, error_shapes
-from siggen.gears.errors.gear_errors import FlankDeviations, GearErrors, deviations, gear_errors
+from siggen.gears.errors.gear_errors import FlankDeviations, GearErrors, deviations, gear_errors, off_axis
 from siggen.gears.errors.helix import Helix, drawn_helix, straight_helix
 from siggen.gears.errors.iso_1328 import FlankTolerances, flank_tolerances
 from siggen.gears.errors.tooth_errors import with_errors
@@ -19,7 +19,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import at
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stage, named_generator, named_uniforms
 
 RUNOUT_SHARE = Uniform(low=0.3, high=0.8)
 """Runout over what class and tolerance share allow; the first harmonic of the pitch deviations (assumed)."""
@@ -95,7 +95,12 @@ def specimen_errors(config: Config, pair: GearPair, specimen_id: int, state_id: 
     def draws(name: str) -> np.random.Generator:
         return named_generator(config.seed, Stage.MANUFACTURE, *owner, name=f"manufacture.{name}")
 
-    pinion, gear = (_made(section, pair, which, draws) for which in ("pinion", "gear"))
+    supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
+    seats = {}
+    for which in ("pinion", "gear"):
+        number = getattr(config.dynamics, which).eccentricity_um
+        seats[which] = 1e-6 * at(number, supports(f"dynamics.{which}.eccentricity_um"))
+    pinion, gear = (_made(section, pair, which, seats[which], draws) for which in ("pinion", "gear"))
     return SpecimenErrors(pinion, gear, _shafts_m(section, (pinion, gear), draws))
 
 
@@ -134,7 +139,7 @@ def error_labels(config: Config, errors: SpecimenErrors | None) -> dict[str, obj
     return labels | {"lead_misalignment_um": 1e6 * errors.lead_misalignment_m}
 
 
-def _made(section: Manufacture, pair: GearPair, which: str, draws: Draws) -> MadeGear:
+def _made(section: Manufacture, pair: GearPair, which: str, seat_m: float, draws: Draws) -> MadeGear:
     def uniform(name: str) -> float:
         return float(draws(f"{which}.{name}").random())
 
@@ -145,6 +150,7 @@ def _made(section: Manufacture, pair: GearPair, which: str, draws: Draws) -> Mad
     waves = np.array([PROFILE_WAVES.at(float(u)) for u in of_teeth])
     shapes = error_shapes(waves, lambda name: draws(f"{which}.{name}"))
     errors = gear_errors(pair, which, shapes, tolerances.times(share), RUNOUT_SHARE.at(uniform("runout_share")))
+    errors = off_axis(errors, seat_m, 2.0 * pi * uniform("eccentricity_angle"))
     helix = _helix(section, which, tolerances.times(share), uniform)
     return MadeGear(accuracy_class, share, tolerances, errors, deviations(pair, which, errors), helix)
 

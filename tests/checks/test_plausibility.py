@@ -72,3 +72,15 @@ def test_pink_noise_alone_is_noise() -> None:
 def test_one_gear_pair_cannot_be_split_by_pairs_and_all_can() -> None:
     told = [implausible(load_config("families", [f"gears.pairs.count={count}"])) for count in (1, 60)]
     assert ["no records" in " ".join(sentences) for sentences in told] == [True, False]
+
+
+def test_only_sensors_of_which_nothing_is_drawn_are_called_identical() -> None:
+    def said(*sensors: str) -> bool:
+        silent = [f"sensors=[{', '.join(sensors)}]", "background=null"]
+        return "identical, bit by bit" in "\n".join(implausible(load_config("ideal", silent)))
+
+    accelerometers = "{{name: one{0}}}, {{name: two{0}}}"
+    assert said(accelerometers.format(""))
+    assert not said(accelerometers.format(", gain: {kind: uniform, low: 0.9, high: 1.1}"))
+    # each disc has marks and a seat of its own
+    assert not said("{kind: encoder, name: one, place: pinion}", "{kind: encoder, name: two, place: pinion}")

@@ -39,7 +39,15 @@ def test_a_machine_of_a_few_numbers_can_be_simulated_and_is_plausible(tmp_path: 
     config = load_config(file)
     assert implausible(config) == ()
     assert len(config.channels) == 3
-    assert [state.severity for state in config.states] == ["healthy", "healthy", "slight", "moderate", "severe"]
+    assert [state.severity for state in config.states] == [
+        "healthy",
+        "healthy",
+        "slight",
+        "moderate",
+        "severe",
+        "healthy",
+    ]
+    assert [state.name for state in config.states if state.sham] == ["sham"]
 
 
 def test_an_editor_completes_and_checks_a_rig_by_the_schema_beside_it(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ pitch reaches its limit, slopes and waves until they reach theirs, both together
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -103,6 +103,17 @@ def gear_errors(
     )
     slope, form = _profile(eccentric_profiles_m(pair, which, alone), shapes, limits)
     return GearErrors(eccentricity, shapes.phase_rad, pitch, slope, form)
+
+
+def off_axis(errors: GearErrors, eccentricity_m: float, phase_rad: float) -> GearErrors:
+    """Return the errors of the same gear with its axis off its shaft's: both eccentricities add as vectors (derived).
+
+    Nothing else moves, whatever the tolerances; 0 changes no bit.
+    """
+    if eccentricity_m == 0.0:
+        return errors
+    total = errors.eccentricity_m * np.exp(1j * errors.phase_rad) + eccentricity_m * np.exp(1j * phase_rad)
+    return replace(errors, eccentricity_m=float(abs(total)), phase_rad=float(np.angle(total)))
 
 
 def deviations(pair: GearPair, which: str, errors: GearErrors) -> FlankDeviations:
