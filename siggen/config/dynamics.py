@@ -9,6 +9,7 @@ from pydantic import Field
 from siggen.config.external_forces import Unbalance
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.shafts import Shafts
+from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
 
@@ -33,6 +34,11 @@ class Rotor(Section):
     )
     bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
         default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+    )
+    bearing: BallGeometry | None = Field(
+        default=None,
+        description="null: the stiffnesses above, at any load; given: each of two such ball bearings, whose stiffness "
+        "follows load and clearance and takes their place",
     )
 
 
