@@ -122,14 +122,9 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
         static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS)
         mesh = SpecimenMesh(
-            pair,
-            assembled,
-            tables.tables,
-            missing,
-            tables.coupling_m_per_n,
-            tables.contact,
+            pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
             sham=config.states[state_id].sham,
-        )
+        )  # fmt: skip
         most_n = largest_force_n(config.operating_points, pair)
         mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, most_n, lead_of(teeth.errors))
     return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)

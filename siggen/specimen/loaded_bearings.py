@@ -42,6 +42,12 @@ def shaft_load_n(dynamics: Dynamics, pair: GearPair, which: str, torque_nm: floa
     return np.asarray((on_pinion if which == "pinion" else -on_pinion) - np.array([0.0, mass_kg * GRAVITY_M_S2]))
 
 
+def cage_sense(dynamics: Dynamics, which: str) -> float:
+    """Return 1 where a shaft turns from horizontal to upward, -1 where back: the pinion's mesh goes up, beside it."""
+    pinion = -1.0 if dynamics.model == "casing" else 1.0
+    return pinion if which == "pinion" else -pinion
+
+
 def on_loaded_bearings(stage: SpurStage, found: dict[str, LoadedBearing]) -> SpurStage:
     """Return a stage on bearings under load."""
     rotors = {"pinion": stage.pinion, "gear": stage.gear}

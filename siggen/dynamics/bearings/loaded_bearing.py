@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.arrays import FloatArray
+from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 
 ANGLES = 32
@@ -45,7 +45,7 @@ class LoadedBearing:
     along_n_per_m, across_n_per_m : mean stiffness in the direction of the load and at right angles to it
     passing_m : (ANGLES, 2)
         Way along the load and across it, less its mean, with the first ball at the middles of as many equal parts of
-        the spacing behind the load.
+        the spacing ahead of the load; angles count from along to across.
     """
 
     bearing: BallBearing
@@ -67,6 +67,20 @@ class LoadedBearing:
         (c, s), along, across = self.direction, self.along_n_per_m, self.across_n_per_m
         mixed = (along - across) * c * s
         return np.array([[along * c * c + across * s * s, mixed], [mixed, along * s * s + across * c * c]])
+
+    def passing_lines_m(self, count: int, sense: float = 1.0) -> ComplexArray:
+        """Return p (2, count), complex: along both axes it moves by Re Σ p_h exp(i h θ) as θ passes 2π with every ball.
+
+        `sense`: below 0 for a cage that turns from the second axis to the first.
+        """
+        angles = len(self.passing_m)
+        place = 2.0 * np.pi * (np.arange(angles) + 0.5) / angles
+        waves = np.exp(-1j * np.outer(np.arange(1, count + 1), place))
+        along, across = (2.0 / angles * (waves * way).sum(axis=1) for way in self.passing_m.T)
+        if sense < 0.0:
+            along, across = along.conj(), across.conj()
+        c, s = self.direction
+        return np.array([c * along - s * across, s * along + c * across])
 
     @property
     def half_zone_rad(self) -> float:

@@ -108,3 +108,17 @@ def test_any_load_settles_and_none_leaves_no_stiffness() -> None:
     assert still.along_n_per_m == still.across_n_per_m == 0.0
     with pytest.raises(ValueError, match="finite"):
         under(bearing(), np.inf)
+
+
+def test_eight_lines_hold_what_passing_balls_do_and_many_balls_do_nothing() -> None:
+    for clearance_m in (0.0, 10e-6, 30e-6):
+        found = loaded_bearing(bearing(9, clearance_m), 1200.0 * np.array([0.6, 0.8]))
+        place = 2.0 * np.pi * (np.arange(32) + 0.5) / 32
+        waves = np.exp(1j * np.outer(np.arange(1, 9), place))
+        first, second = (found.passing_lines_m(8) @ waves).real
+        along, across = found.passing_m.T
+        size = np.abs(found.passing_m).max()
+        np.testing.assert_allclose(0.6 * first + 0.8 * second, along, atol=0.03 * size)  # kinks where a ball is let go
+        np.testing.assert_allclose(0.6 * second - 0.8 * first, across, atol=0.03 * size)
+    few, many = (np.abs(under(bearing(balls, 10e-6), 1200.0).passing_m).max() for balls in (9, 90))
+    assert many < 1e-2 * few
