@@ -39,7 +39,7 @@ SLIP = (0.005, 0.02)
 PASSING_LINES = 3
 """Lines of passing balls, each half as large as the one before (assumed)."""
 VARYING_LINES = 8
-"""Of bearings under load: what balls do beyond is below 1 % of it (test)."""
+"""Of bearings under load: what balls do beyond has less than 1 % of its power (test)."""
 AXES = ("horizontal", "vertical")
 WEAKEST = 0.2
 """Displacements of passing balls lie between this share of the drawn one and all of it, by axis (assumed)."""

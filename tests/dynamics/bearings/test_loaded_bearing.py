@@ -116,9 +116,8 @@ def test_eight_lines_hold_what_passing_balls_do_and_many_balls_do_nothing() -> N
         place = 2.0 * np.pi * (np.arange(32) + 0.5) / 32
         waves = np.exp(1j * np.outer(np.arange(1, 9), place))
         first, second = (found.passing_lines_m(8) @ waves).real
-        along, across = found.passing_m.T
-        size = np.abs(found.passing_m).max()
-        np.testing.assert_allclose(0.6 * first + 0.8 * second, along, atol=0.03 * size)  # kinks where a ball is let go
-        np.testing.assert_allclose(0.6 * second - 0.8 * first, across, atol=0.03 * size)
+        rebuilt = np.stack([0.6 * first + 0.8 * second, 0.6 * second - 0.8 * first], axis=1)
+        # a ball that is let go leaves a kink, whose lines fall slowly
+        assert ((rebuilt - found.passing_m) ** 2).sum() < 0.01 * (found.passing_m**2).sum()
     few, many = (np.abs(under(bearing(balls, 10e-6), 1200.0).passing_m).max() for balls in (9, 90))
     assert many < 1e-2 * few
