@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from siggen.checks.bearing_problems import bearing_problems
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.pair_problems import pair_problems
@@ -68,6 +69,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     if sections.get("manufacture") is not None:
         problems += _tolerance_problems(sound)
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)
+    problems += bearing_problems(sections)
     problems += variation_problems(sections, sound)
     problems += shaft_problems(sections, sound)
     problems += housing_problems(sections, sound)

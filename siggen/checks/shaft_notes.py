@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from siggen.checks.bearing_notes import bearing_notes
 from siggen.checks.tilt_problems import NEEDED, flank_tilts
 from siggen.config import Config
 from siggen.specimen.gears import gear_pair
@@ -24,4 +25,4 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
                 f"{1e6 * tilts.largest_rad:.0f} urad; at {1e6 * tilts.limit_rad:.0f} an end meets the other flank: "
                 "such gearboxes end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
-    return tuple(notes)
+    return (*notes, *bearing_notes(config))

@@ -19,14 +19,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.config import Dynamics, Rotor, Shaft
+from siggen.dynamics.bearings.loaded_bearing import loaded_bearing
 from siggen.dynamics.structure.tilting_shaft import Shaft as Beam
 from siggen.dynamics.structure.tilting_shaft import cantilever_compliance_m_per_n
 from siggen.errors import Problem
 from siggen.gears.contact.table_columns import approach_under_m
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.distributions import Uniform
+from siggen.keys.drawing import corners
 from siggen.keys.number import Number, at, bounds
 from siggen.specimen.contact import largest_force_n
 from siggen.specimen.gears import stiffness_options
+from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 
 NEEDED = ("dynamics", "operating_points", "stiffness")
 MEMBERS = ("pinion", "gear")
@@ -107,7 +111,7 @@ def _tilts_over_places_rad(
 
 def _in_the_middle(dynamics: Dynamics, which: str) -> Dynamics:
     """Return the dynamics with one gear's bearings at the middle of what is drawn."""
-    rotor = getattr(dynamics, which)
+    rotor: Rotor = getattr(dynamics, which)
     names = ("bearing_stiffness_y_n_per_m", "bearing_stiffness_x_n_per_m")
     rotor = rotor.model_copy(update={name: at(getattr(rotor, name), 0.5) for name in names})
     return dynamics.model_copy(update={which: rotor})
@@ -116,7 +120,7 @@ def _in_the_middle(dynamics: Dynamics, which: str) -> Dynamics:
 def static_tilts_rad(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float) -> tuple[float, float]:
     """Return least and largest tilt [rad] of one gear under a motor torque, over the bounds of shaft and bearings."""
     shaft: Shaft = getattr(dynamics.shafts, which)
-    rotor: Rotor = getattr(dynamics, which)
+    rotor = under_load(dynamics, which, pair, torque_nm)
     along = {"vertical": np.cos(pair.working_pressure_angle_rad), "horizontal": np.sin(pair.working_pressure_angle_rad)}
     bearings = {"vertical": rotor.bearing_stiffness_y_n_per_m, "horizontal": rotor.bearing_stiffness_x_n_per_m}
     found = []
@@ -129,6 +133,23 @@ def static_tilts_rad(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: 
         found.append([sum(ends) for ends in zip(*each, strict=True)])
     force_n = torque_nm / pair.pinion.base_radius_m
     return force_n * min(low for low, _ in found), force_n * max(high for _, high in found)
+
+
+def under_load(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float) -> Rotor:
+    """Return the section of one gear with what its bearings have under a torque, where they follow the load."""
+    rotor: Rotor = getattr(dynamics, which)
+    if rotor.bearing is None:
+        return rotor
+    load_n = shaft_load_n(dynamics, pair, which, torque_nm, 0.0) / BEARINGS
+    each = [BEARINGS * loaded_bearing(one.bearing(), load_n).stiffness_n_per_m for one in corners(rotor.bearing)]
+    ends = {axis: [float(k[i, i]) for k in each] for i, axis in enumerate("xy")}
+    numbers = {
+        f"bearing_stiffness_{axis}_n_per_m": Uniform(low=min(ends[axis]), high=max(ends[axis]))
+        if len(each) > 1
+        else ends[axis][0]
+        for axis in ends
+    }
+    return rotor.model_copy(update=numbers)
 
 
 def _tilt_per_n(beam: Beam, bearing_n_per_m: float) -> float:

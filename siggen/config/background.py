@@ -62,10 +62,13 @@ class Bearings(Section):
         "1800, 10000 Hz (memory)",
     )
     compliance_um: Annotated[Number, Within(least=0, most=100)] = Field(
-        default=LogUniform(low=0.02, high=0.3), description="displacement as each ball passes (assumed)"
+        default=LogUniform(low=0.02, high=0.3),
+        description="displacement as each ball passes (assumed); bearings of dynamics.<shaft>.bearing have their own",
     )
     ball_pass_order: Annotated[Number, Within(above=0, most=100)] = Field(
-        default=Uniform(low=3.0, high=5.5), description="balls past the outer ring per turn of the shaft (derived)"
+        default=Uniform(low=3.0, high=5.5),
+        description="balls past the outer ring per turn of the shaft (derived); "
+        "bearings of dynamics.<shaft>.bearing have their own",
     )
     level_std: Annotated[Number, Within(least=0, most=2)] = Field(
         default=LogUniform(low=0.1, high=0.6),

@@ -9,6 +9,7 @@ from pydantic import Field
 from siggen.config.external_forces import Unbalance
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.shafts import Shafts
+from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
 
@@ -38,6 +39,11 @@ class Rotor(Section):
         default=0.0,
         description="of the gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
         "allows; needs manufacture",
+    )
+    bearing: BallGeometry | None = Field(
+        default=None,
+        description="null: the stiffnesses above, at any load; given: each of two such ball bearings, whose stiffness "
+        "follows load and clearance and takes their place",
     )
 
 

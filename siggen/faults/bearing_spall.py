@@ -10,9 +10,9 @@ from typing import Annotated, ClassVar, Literal
 import pyarrow as pa
 from pydantic import Field
 
-from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.bearings.bearing_spall import BearingSpall, in_bearings
 from siggen.errors import Problem
+from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.fault import Fault, HitTeeth
 from siggen.faults.flank_place import MM, allowed_text, in_mm
 from siggen.faults.growth import Growth
@@ -21,7 +21,6 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.column import MILLIMETRE, Column
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant
-from siggen.keys.section import Section, Whole
 from siggen.seeding import Stage, named_uniforms
 
 KEYS = {
@@ -31,32 +30,6 @@ KEYS = {
     "ball_diameter_m": "geometry.ball_diameter_mm",
 }
 """Key that a problem of the drawn spall is about."""
-
-
-class BallGeometry(Section):
-    """Numbers of a ball bearing: those of a 6205, with the clearance of its normal class (memory: ISO 5753-1)."""
-
-    balls: Annotated[Whole, Field(ge=3, le=100)] = Field(default=9, description="number of balls")
-    ball_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=7.94, description="of a ball")
-    pitch_diameter_mm: Annotated[Number, Within(above=0)] = Field(
-        default=39.04, description="of the circle of the balls' centres"
-    )
-    contact_angle_deg: Annotated[Number, Within(least=0, most=45)] = Field(
-        default=0.0, description="of the balls' contacts against the plane of the bearing"
-    )
-    clearance_um: Annotated[Number, Within(least=0, most=1000)] = Field(
-        default=10.0, description="radial play from side to side in running; it narrows the zone of load"
-    )
-
-    def bearing(self) -> BallBearing:
-        """Return drawn numbers in SI."""
-        return BallBearing(
-            self.balls,
-            MM * constant(self.ball_diameter_mm),
-            MM * constant(self.pitch_diameter_mm),
-            radians(constant(self.contact_angle_deg)),
-            1e-6 * constant(self.clearance_um),
-        )
 
 
 class BearingSpalls(Fault):

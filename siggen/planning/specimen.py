@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from siggen.config import Config, Dynamics, Gears, RigidHousing, Stiffness
 from siggen.keys.drawing import draw
@@ -15,7 +15,10 @@ from siggen.sensors.sensor import Sensor
 
 @dataclass(frozen=True, slots=True)
 class Specimen:
-    """A gearbox: sections of the configuration with every distribution replaced by a value."""
+    """A gearbox: sections of the configuration with every distribution replaced by a value.
+
+    `bearing_point` is the operating point under whose mean load its bearings stand; None where they have one stiffness.
+    """
 
     specimen_id: int
     gears: Gears
@@ -23,6 +26,11 @@ class Specimen:
     dynamics: Dynamics
     housing: PlateNumbers | RigidHousing
     sensors: tuple[Sensor, ...]
+    bearing_point: OperatingPoint | None = None
+
+    def under(self, point: OperatingPoint) -> Specimen:
+        """Return the gearbox at an operating point; itself where its bearings have one stiffness."""
+        return self if self.bearing_point in (None, point) else replace(self, bearing_point=point)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +44,8 @@ class OperatingPoint:
 def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     """Return a specimen; depends on the seed, the sections it is drawn from and its index alone.
 
-    Noise of the sensors belongs to records and is left as it is.
+    Noise of the sensors belongs to records and is left as it is. Bearings that follow the load stand at the first
+    operating point; `Specimen.under` puts them at that of a record.
     """
     own = gearbox_config(config, specimen_id)
     gears = named_uniforms(config.seed, Stage.GEARS, specimen_id)
@@ -49,7 +58,13 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         dynamics=draw(own.dynamics, supports, "dynamics"),
         housing=drawn_housing(own.housing, supports),
         sensors=tuple(one.drawn(sensor) for one in own.sensors),
+        bearing_point=draw_operating_point(own, specimen_id, 0) if follows_load(own.dynamics) else None,
     )
+
+
+def follows_load(dynamics: Dynamics) -> bool:
+    """Return whether the stiffness of any bearing follows its load."""
+    return dynamics.pinion.bearing is not None or dynamics.gear.bearing is not None
 
 
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:

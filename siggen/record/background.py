@@ -86,7 +86,7 @@ class BackgroundBlocks:
         if section.rubbing is not None:
             self._rubbing = RubbingForce(section.rubbing, course, self._length)
         if self._background.bearings:
-            self._bearings = BearingVelocities(self._background.bearings, course)
+            self._bearings = BearingVelocities(self._background.bearings, course, self._of_record[1])
         if section.machines is not None:
             self._machines = machine_noise(section.machines, course)
 

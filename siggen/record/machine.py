@@ -7,12 +7,12 @@ same uniforms.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from siggen.config import Config
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import Specimen, draw_specimen
+from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.labels import gearbox_labels
 from siggen.record.stage_times import stage
@@ -29,6 +29,15 @@ class Machine:
     gears: MadeGears
     instrument: Instrument
     labels: dict[str, object]
+
+    def at_point(self, operating_point_id: int) -> Machine:
+        """Return the machine under the load of an operating point; itself where its bearings have one stiffness."""
+        point = draw_operating_point(self.config, self.specimen.specimen_id, operating_point_id)
+        specimen = self.specimen.under(point)
+        if specimen is self.specimen:
+            return self
+        with stage("sensing"):
+            return replace(self, specimen=specimen, instrument=specimen_instrument(self.config, specimen))
 
 
 def machines(whole: Config, specimen_id: int) -> Callable[[int], Machine]:

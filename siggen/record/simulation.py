@@ -122,14 +122,9 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
         static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS)
         mesh = SpecimenMesh(
-            pair,
-            assembled,
-            tables.tables,
-            missing,
-            tables.coupling_m_per_n,
-            tables.contact,
+            pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
             sham=config.states[state_id].sham,
-        )
+        )  # fmt: skip
         most_n = largest_force_n(config.operating_points, pair)
         mesh = with_back_flanks(
             mesh, specimen.dynamics, teeth.options, most_n, lead_of(teeth.errors),
@@ -167,12 +162,23 @@ def record_response(
         If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
     with refused_as("outside_model"):
+        specimen, state = at_point(config, specimen, state, record)
         stream, point, _ = _stream(config, specimen, state, record, internals=internals, driven=driven, motions=motions)
         with stage("loop"):
             response = collected_response(stream)
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
+
+
+def at_point(
+    config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord
+) -> tuple[Specimen, SpecimenState]:
+    """Return a specimen and its state under the load of a record; as they are where bearings have one stiffness."""
+    if specimen.bearing_point is None:
+        return specimen, state
+    specimen = specimen.under(draw_operating_point(config, record.specimen_id, record.operating_point_id))
+    return specimen, replace(state, mesh=state.mesh.on(structure(config, specimen)))
 
 
 def _stream(
@@ -232,6 +238,7 @@ def simulated(
     """
     with_internals = has_internals(config, planned)
     with refused_as("outside_model"), stage("inputs"):
+        specimen, state = at_point(config, specimen, state, planned)
         driven = _driven(config, specimen, state, planned)
     seen = {motion for channel in instrument.channels for motion in channel.motions}
     if with_internals:
@@ -288,10 +295,12 @@ class _RefusedPieces:
 def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
     machine_of = machines(whole, records[0].specimen_id)
     state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(machine_of(state_id), state_id))
+    loaded = lru_cache(maxsize=2)(lambda state_id, point_id: machine_of(state_id).at_point(point_id))
     machine_of(records[0].state_id)
     for record in records:
         try:
-            machine, state = machine_of(record.state_id), state_of(record.state_id)
+            machine = loaded(record.state_id if whole.changes_of(record.state_id) else 0, record.operating_point_id)
+            state = state_of(record.state_id)
             made = simulated(machine.config, machine.specimen, machine.instrument, state, record)
             labels = {**made.labels, **machine.labels, **state_labels(whole, record.state_id)}
             yield replace(made, labels=labels)

@@ -1,10 +1,13 @@
 """Spalled bearings of a specimen as what acts on its structure in one record.
 
 The force that loads a bearing is the mean one of this gearbox at this operating point: what the mean torque presses
-through the teeth, half of it on each of the two bearings of a shaft. Slip and walk of the cage belong to the record.
+through the teeth, half of it on each of the two bearings of a shaft; weight too where `dynamics.<shaft>.bearing` says
+which bearing it is. Slip and walk of the cage belong to the record.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,19 +21,18 @@ from siggen.dynamics.drive.external_forces import bearing_direction, shaft_direc
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.damage.part import Parts
-from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, named_generator
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.loaded_bearings import BEARINGS
+from siggen.specimen.structure import specimen_bearings, supported_stage
 
 SLIP = (0.01, 0.02)
 """Share by which the cage lags, drawn per record (memory: 1 to 2 %)."""
 WALK = (0.005, 0.02)
 """Standard deviation of a step of the cage as each ball passes, as a share of the angle between two (memory)."""
 AXES = ("horizontal", "vertical")
-BEARINGS = 2
-"""Of a shaft: each bears half of the force and has half of their stiffness."""
 MARGIN_S = 1.0
 """Beyond transient and record, for the filters."""
 
@@ -52,18 +54,22 @@ def spall_sources(
         If the structure has no bearings.
     """
     found = []
-    for spall in in_bearings(parts):
+    bearings = specimen_bearings(specimen)
+    for drawn in in_bearings(parts):
+        own = bearings.get(drawn.shaft)
+        spall = drawn if own is None else replace(drawn, bearing=own.bearing)
         order = 1.0 if spall.shaft == "pinion" else specimen.gears.pinion.teeth / specimen.gears.gear.teeth
         place = spall.place
+        force_n = mean_force_n(specimen, structure, point, place) / BEARINGS if own is None else own.force_n
         shares = _transmitted(specimen, structure, spall.shaft)
         rows = np.array([bearing_direction(structure, place, axis) for axis in AXES])
         source = SpalledBearing(
             spall=spall,
-            zone=mean_zone(spall, mean_force_n(specimen, structure, point, place) / BEARINGS),
+            zone=mean_zone(spall, force_n),
             cage=_cage(config, record, rotation, spall, order),
             order=order * turning_sense(structure, place),
-            directions=shares[:, None] * rows,
-            on_seat={f"{place}/{axis}": row for axis, row in zip(AXES, -np.diag(shares), strict=True)},
+            directions=shares.T @ rows,
+            on_seat={f"{place}/{axis}": row for axis, row in zip(AXES, -shares, strict=True)},
         )
         if source.ever_pushes:
             found.append(source)
@@ -77,16 +83,20 @@ def mean_force_n(specimen: Specimen, structure: Structure, point: OperatingPoint
 
 
 def _transmitted(specimen: Specimen, structure: Structure, shaft: str) -> FloatArray:
-    """Return the share (2,) of a bearing's lost load that shaft and seat feel along both axes.
+    """Return the share (2, 2) of a bearing's lost load that shaft and seat feel: along both axes, by loss along both.
 
     What moves in series with a bearing's spring is felt through all that is in series with it: the shaft's bending, the
-    seat's giving way. With stiff ones it is 1.
+    seat's giving way. With stiff ones it is 1. What one axis passes to the other by shaft and seat is left out unless
+    the bearing does so too.
     """
-    rotor = getattr(specimen.dynamics, shaft)
-    own = (rotor.bearing_stiffness_x_n_per_m, rotor.bearing_stiffness_y_n_per_m)
+    own = getattr(supported_stage(specimen), shaft).bearing
     names = [f"{shaft}_bearing/{axis}" for axis in AXES]
     whole = [float(structure.bearing_forces[name][0] @ shaft_direction(structure, name)) for name in names]
-    return np.array([felt / constant(stiffness) for felt, stiffness in zip(whole, own, strict=True)])
+    if own.stiffness_xy_n_per_m == 0.0:
+        return np.diag([whole[0] / own.stiffness_x_n_per_m, whole[1] / own.stiffness_y_n_per_m])
+    x, xy, y = own.stiffness_x_n_per_m, own.stiffness_xy_n_per_m, own.stiffness_y_n_per_m
+    crossed = [[structure.bearing_forces[n][0] @ shaft_direction(structure, other) for other in names] for n in names]
+    return np.asarray(np.array(crossed) @ np.array([[y, -xy], [-xy, x]]) / (x * y - xy * xy))
 
 
 def _cage(config: Config, record: PlannedRecord, rotation: Rotation, spall: BearingSpall, order: float) -> CageCourse:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,6 +15,7 @@ from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_internals import PairContact
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.structure.back_flanks import on_back_flanks
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
@@ -22,6 +23,7 @@ from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from siggen.gears.contact.contact_table import ContactTable
+from siggen.gears.geometry.back_flanks import pitches_ahead
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import (
     CORNER_REACH_PITCHES,
@@ -67,6 +69,14 @@ class SpecimenMesh:
     contact: ContactTable | None = None
     sham: bool = False
     back: Callable[[], SpecimenMesh] | None = None
+
+    def on(self, structure: Structure) -> SpecimenMesh:
+        """Return the same teeth on another structure."""
+        back = self.back
+        if back is None:
+            return replace(self, structure=structure)
+        behind = on_back_flanks(structure, self.pair.line_of_action_m, pitches_ahead(self.pair))
+        return replace(self, structure=structure, back=lambda: replace(back(), structure=behind))
 
     def carrying(self, point: OperatingPoint) -> tuple[SpecimenMesh, OperatingPoint]:
         """Return the flanks that carry the torque of a point, and the point as the gear in front of their pair has it.

@@ -9,6 +9,7 @@ from math import pi
 from siggen.config import Config, Dynamics, RigidHousing, Rotor
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Shaft as ShaftSection
+from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.body import Body, Bolts, Casing, Point, modal_body
 from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
@@ -23,6 +24,7 @@ from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing import coupled_modes, specimen_housing
+from siggen.specimen.loaded_bearings import loaded_bearings, on_loaded_bearings
 
 CASING_GYRATION = 1.15
 """Radius of gyration of a casing over its centre distance: a box of even wall round the gears (derived)."""
@@ -31,8 +33,7 @@ ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 
 def structure(config: Config, specimen: Specimen) -> Structure:
     """Return the structure of a drawn specimen; a gear without given mass is a steel disc with its bore."""
-    dynamics, pair = specimen.dynamics, gear_pair(specimen.gears)
-    stage = spur_stage(dynamics, pair)
+    dynamics, pair, stage = specimen.dynamics, gear_pair(specimen.gears), supported_stage(specimen)
     if dynamics.model != "casing":
         return ASSEMBLIES[dynamics.model](stage)
     found = carried_structure(stage, specimen_body(config, specimen), _shafts(dynamics, stage, pair))
@@ -41,6 +42,20 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
     shafts = {name.replace("bearing", "shaft"): shaft_direction(found, name) for name in found.bearing_directions}
     return replace(found, motions=shafts)
+
+
+def supported_stage(specimen: Specimen) -> SpurStage:
+    """Return the stage of a drawn specimen on its bearings, those that follow the load under that of its point."""
+    stage = spur_stage(specimen.dynamics, gear_pair(specimen.gears))
+    return on_loaded_bearings(stage, specimen_bearings(specimen))
+
+
+def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
+    """Return one of both bearings of each shaft whose stiffness follows the load."""
+    if specimen.bearing_point is None:
+        return {}
+    pair, torque_nm = gear_pair(specimen.gears), specimen.bearing_point.torque_nm
+    return loaded_bearings(specimen.dynamics, spur_stage(specimen.dynamics, pair), pair, torque_nm)
 
 
 def specimen_body(config: Config, specimen: Specimen) -> Body:

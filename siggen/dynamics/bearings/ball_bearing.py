@@ -12,7 +12,7 @@ races of steel: δ = 4.4e-4 Q^(2/3) d^(-1/3) in mm and N (reference: catalogues,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import acos, cos, pi, sqrt
+from math import acos, cos, pi, sin, sqrt
 
 import numpy as np
 
@@ -88,6 +88,11 @@ class BallBearing:
     def spacing_rad(self) -> float:
         """Angle between two balls."""
         return 2.0 * pi / self.balls
+
+    @property
+    def room_m(self) -> float:
+        """Distance of two balls' centres, below which their diameter lies."""
+        return self.pitch_diameter_m * sin(0.5 * self.spacing_rad)
 
     @property
     def contact_n_per_m15(self) -> float:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from math import pi, sin
+from math import pi
 
 import numpy as np
 
@@ -76,7 +76,7 @@ class BearingSpall:
     def own_problems(self) -> Iterator[Refusal]:
         """Yield balls that do not fit between their neighbours, and a spall that does not fit its element."""
         bearing = self.bearing
-        room_m = bearing.pitch_diameter_m * sin(0.5 * bearing.spacing_rad)
+        room_m = bearing.room_m
         if bearing.ball_diameter_m >= room_m:
             received = f"{bearing.balls} balls of {bearing.ball_diameter_m!r} m"
             yield Refusal("ball_diameter_m", received, f"below {room_m!r} m, the distance of two balls' centres")

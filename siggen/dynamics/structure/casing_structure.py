@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +32,9 @@ from siggen.dynamics.structure.structure import (
     stage_lines,
     vector,
 )
-from siggen.dynamics.structure.tilting_shaft import Shaft, tilting_ends
+from siggen.dynamics.structure.tilting_shaft import Shaft, crossed_ends, tilting_ends
+
+AXES = ("vertical", "horizontal")
 
 
 def torsional(stage: SpurStage) -> Structure:
@@ -91,10 +94,11 @@ def carried_structure(stage: SpurStage, body: Body, shafts_of_gears: tuple[Shaft
         **_bearings("2", "gear_bearing", stage.gear, body, angle),
     }
     held = _held(bearings, shafts_of_gears)
+    crossing = _crossing(held, bearings, stage, shafts_of_gears)
     inertias = {**_rotations(stage), **_translations(stage), **body.inertias, **_tilt_inertias(shafts_of_gears)}
     coordinates = tuple(inertias)
     stiffness, damping = assemble(coordinates, (*shafts(stage), *body.supports))
-    springs = seated_springs(coordinates, held, tuple(body.seats), body.flexibility_m_per_n)
+    springs = seated_springs(coordinates, held, tuple(body.seats), body.flexibility_m_per_n, crossing)
     line_of_action = {"y_1": 1.0, "y_2": -1.0}
     across = {"x_1": 1.0, "x_2": -1.0}
     motions = {name: vector(coordinates, row) for name, row in body.motions.items()}
@@ -122,6 +126,33 @@ def _held(
     return held
 
 
+Crossing = Mapping[str, Sequence[tuple[float, float]]]
+"""Bearing -> stiffness and damping that tie both axes, for each of its springs."""
+
+
+def _crossing(
+    held: dict[str, tuple[Element, ...]],
+    bearings: Mapping[str, Element],
+    stage: SpurStage,
+    shafts_of_gears: tuple[Shaft, Shaft] | None,
+) -> Crossing:
+    """Return what ties both axes of bearings that do; of shafts that bend their springs are put into `held`."""
+    found = {}
+    for number, (name, rotor) in enumerate((("pinion_bearing", stage.pinion), ("gear_bearing", stage.gear))):
+        mixed = rotor.bearing.stiffness_xy_n_per_m
+        if mixed == 0.0:
+            continue
+        axes = f"{name}/vertical", f"{name}/horizontal"
+        if shafts_of_gears is None:
+            found[name] = [(mixed, 0.0)]
+            continue
+        both = bearings[axes[0]], bearings[axes[1]]
+        ends = crossed_ends(both, mixed, shafts_of_gears[number], str(number + 1))
+        held |= {axis: tuple(end.elements[i] for end in ends) for i, axis in enumerate(axes)}
+        found[name] = [(end.stiffness, end.damping) for end in ends]
+    return found
+
+
 def _tilt_inertias(shafts_of_gears: tuple[Shaft, Shaft] | None) -> dict[str, float]:
     if shafts_of_gears is None:
         return {}
@@ -146,20 +177,30 @@ def seated_springs(
     held: Mapping[str, Sequence[Element]],
     seats: tuple[str, ...],
     flexibility_m_per_n: FloatArray | None,
+    crossing: Crossing = MappingProxyType({}),
 ) -> SeatedSprings:
     """Return bearings on seats that give way by (seats, seats), each by the forces on all of them.
 
     Derived: springs k_i in series with the flexibility R of their seats have the stiffness K = (diag(1/k) + R)^-1
     together. A damper c sees its own spring's share of the motion, K/k: C = K diag(c/k²) K (exact for slow motion).
+    Where both axes of a bearing are tied, matrices k and c stand for the diagonal ones.
     """
     elements = [(seats.index(name), element) for name, of_place in held.items() for element in of_place]
     rows = np.array([vector(coordinates, element.direction) for _, element in elements])
     seat = [number for number, _ in elements]
     k, c = (np.array([getattr(e, name) for _, e in elements]) for name in ("stiffness", "damping"))
     stiff, damped = np.diag(k), np.diag(c)
+    for name, ties in crossing.items():
+        axes = [[i for i, place in enumerate(seat) if seats[place] == f"{name}/{axis}"] for axis in AXES]
+        for i, j, tie in zip(*axes, ties, strict=True):
+            stiff[i, j], damped[i, j] = stiff[j, i], damped[j, i] = tie
     if flexibility_m_per_n is not None:
-        stiff = _inverse(np.diag(1.0 / k) + flexibility_m_per_n[np.ix_(seat, seat)])
-        damped = _squares(stiff, _squares(np.diag(c / k**2), stiff))
+        give, slow = np.diag(1.0 / k), np.diag(c / k**2)
+        if crossing:
+            give = _inverse(stiff)
+            slow = _squares(give, _squares(damped, give))
+        stiff = _inverse(give + flexibility_m_per_n[np.ix_(seat, seat)])
+        damped = _squares(stiff, _squares(slow, stiff))
     pushing, braking = _squares(stiff, rows), _squares(damped, rows)
     forces, directions = {}, {}
     for name in held:

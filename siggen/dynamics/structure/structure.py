@@ -94,12 +94,17 @@ class Structure:
 
 @dataclass(frozen=True, slots=True)
 class Bearing:
-    """Both bearings of one shaft together, along the centre line (x) and vertical (y)."""
+    """Both bearings of one shaft together, along the centre line (x) and vertical (y).
+
+    `stiffness_xy_n_per_m`: force along one axis per way along the other, of bearings that are stiffer along a slanted
+    load.
+    """
 
     stiffness_x_n_per_m: float
     stiffness_y_n_per_m: float
     damping_x_n_s_per_m: float
     damping_y_n_s_per_m: float
+    stiffness_xy_n_per_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,13 +248,32 @@ def _supports(stage: SpurStage) -> dict[str, Element]:
     return {place: Element({name: 1.0}, *numbers[name]) for place, name in _PLACES.items()}
 
 
+def _crossing(stage: SpurStage) -> list[Element]:
+    """Return what ties x and y of a shaft: k (x y + y x) as springs along both diagonals, one of them negative."""
+    found = []
+    for index, rotor in (("1", stage.pinion), ("2", stage.gear)):
+        half, (x, y) = 0.5 * rotor.bearing.stiffness_xy_n_per_m, (f"x_{index}", f"y_{index}")
+        found += [Element({x: 1.0, y: 1.0}, half, 0.0), Element({x: 1.0, y: -1.0}, -half, 0.0)]
+    return found
+
+
+def _other(place: str) -> str:
+    name, axis = place.split("/")
+    return f"{name}/{'horizontal' if axis == 'vertical' else 'vertical'}"
+
+
+def _mixed(stage: SpurStage, place: str) -> float:
+    rotor = stage.pinion if place.startswith("pinion") else stage.gear
+    return rotor.bearing.stiffness_xy_n_per_m
+
+
 def _spur_structure(
     stage: SpurStage, inertias: Mapping[str, float], couplings: Sequence[Element], *, driven_at: str, loaded_at: str
 ) -> Structure:
     """Assemble grounded bearings, shafts and the gear mesh over the coordinates of `inertias`."""
     coordinates = tuple(inertias)
     supports = _supports(stage)
-    stiffness, damping = assemble(coordinates, (*supports.values(), *couplings))
+    stiffness, damping = assemble(coordinates, (*supports.values(), *couplings, *_crossing(stage)))
     mass = np.diag(list(inertias.values()))
     for matrix in (mass, damping, stiffness):
         matrix.setflags(write=False)
@@ -270,7 +294,10 @@ def _spur_structure(
         torque_vector=vector(coordinates, {driven_at: 1.0, loaded_at: -stage.ratio}),
         motions=directions,
         bearing_forces={
-            place: (directions[place] * element.stiffness, directions[place] * element.damping)
+            place: (
+                directions[place] * element.stiffness + directions[_other(place)] * _mixed(stage, place),
+                directions[place] * element.damping,
+            )
             for place, element in supports.items()
         },
         bearing_directions=directions,

@@ -14,6 +14,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
+from typing import NamedTuple
+
+import numpy as np
 
 from siggen.dynamics.structure.structure import Element
 
@@ -75,6 +78,36 @@ def tilting_ends(bearing: Element, shaft: Shaft, index: str) -> dict[str, Elemen
         direction = dict(bearing.direction) | tilts(bearing.direction, lever_m, index)
         ends[end] = Element(direction, softened, 0.5 * bearing.damping * (softened / half) ** 2)
     return ends
+
+
+class CrossedEnd(NamedTuple):
+    """Springs and dampers at one end of a shaft along two axes, and what ties them: force per way along the other."""
+
+    elements: tuple[Element, Element]
+    stiffness: float
+    damping: float
+
+
+def crossed_ends(bearings: tuple[Element, Element], mixed: float, shaft: Shaft, index: str) -> tuple[CrossedEnd, ...]:
+    """Return the ends a and b of a shaft whose bearings push across too, by `mixed` in all: as `tilting_ends`.
+
+    Half of the bearings' stiffness K in series with the cantilever's compliance c is P K with P = (1 + c K)^-1, and
+    their damping C becomes P C P.
+    """
+    first, second = bearings
+    k = 0.5 * np.array([[first.stiffness, mixed], [mixed, second.stiffness]])
+    c = 0.5 * np.diag([first.damping, second.damping])
+    ends = []
+    for lever_m in shaft.levers_m.values():
+        (a, b), (_, d) = np.eye(2) + cantilever_compliance_m_per_n(shaft, abs(lever_m)) * k
+        p = np.array([[d, -b], [-b, a]]) / (a * d - b * b)
+        stiff, damped = p @ k, p @ c @ p
+        made = [
+            Element(dict(e.direction) | tilts(e.direction, lever_m, index), float(stiff[i, i]), float(damped[i, i]))
+            for i, e in enumerate(bearings)
+        ]
+        ends.append(CrossedEnd((made[0], made[1]), float(stiff[0, 1]), float(damped[0, 1])))
+    return tuple(ends)
 
 
 def tilts(direction: Mapping[str, float], lever_m: float, index: str) -> dict[str, float]:

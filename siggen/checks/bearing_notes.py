@@ -1,0 +1,38 @@
+"""Sentences about bearings whose stiffness follows the load: what it is at each operating point, and in which state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees
+
+from siggen.config import Config
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.state_config import state_config
+from siggen.specimen.loaded_bearings import BEARINGS
+from siggen.specimen.structure import specimen_bearings
+
+
+def bearing_notes(config: Config) -> tuple[str, ...]:
+    """Return the stiffness of both bearings of each such shaft of gearbox 0, and that of states that change it."""
+    found = dict(_of(config))
+    notes = [f"{key}: {text}" for key, text in found.items()]
+    for index, state in enumerate(config.states):
+        if state.changes:
+            changed = _of(state_config(config, 0, index))
+            notes += [f"{key}, state {state.name}: {text}" for key, text in changed if found.get(key) != text]
+    return tuple(notes)
+
+
+def _of(config: Config) -> Iterator[tuple[str, str]]:
+    specimen = draw_specimen(config, 0)
+    for number in range(len(config.operating_points)):
+        point = draw_operating_point(config, 0, number)
+        for which, one in specimen_bearings(specimen.under(point)).items():
+            balls = f"{one.bearing.balls} balls of {1e3 * one.bearing.ball_diameter_m:.3g} mm"
+            clearance_um = 1e6 * one.bearing.clearance_m
+            text = (
+                f"{BEARINGS * one.along_n_per_m:.3g} N/m along the load, {BEARINGS * one.across_n_per_m:.3g} across; "
+                f"{balls} bear it over {degrees(one.half_zone_rad):.0f} degrees to either side (clearance "
+                f"{clearance_um:.3g} um)"
+            )
+            yield f"both bearings of the {which} under {point.torque_nm:.3g} N m (gearbox 0)", text

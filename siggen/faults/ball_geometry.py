@@ -1,0 +1,38 @@
+"""Section of a ball bearing's numbers, as its spall and the stiffness of its shaft's support have them."""
+
+from __future__ import annotations
+
+from math import radians
+from typing import Annotated
+
+from pydantic import Field
+
+from siggen.dynamics.bearings.ball_bearing import BallBearing
+from siggen.keys.number import Number, Within, constant
+from siggen.keys.section import Section, Whole
+
+
+class BallGeometry(Section):
+    """Numbers of a ball bearing: those of a 6205, with the clearance of its normal class (memory: ISO 5753-1)."""
+
+    balls: Annotated[Whole, Field(ge=3, le=100)] = Field(default=9, description="number of balls")
+    ball_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=7.94, description="of a ball")
+    pitch_diameter_mm: Annotated[Number, Within(above=0)] = Field(
+        default=39.04, description="of the circle of the balls' centres"
+    )
+    contact_angle_deg: Annotated[Number, Within(least=0, most=45)] = Field(
+        default=0.0, description="of the balls' contacts against the plane of the bearing"
+    )
+    clearance_um: Annotated[Number, Within(least=0, most=1000)] = Field(
+        default=10.0, description="radial play from side to side in running; it narrows the zone of load"
+    )
+
+    def bearing(self) -> BallBearing:
+        """Return drawn numbers in SI."""
+        return BallBearing(
+            self.balls,
+            1e-3 * constant(self.ball_diameter_mm),
+            1e-3 * constant(self.pitch_diameter_mm),
+            radians(constant(self.contact_angle_deg)),
+            1e-6 * constant(self.clearance_um),
+        )

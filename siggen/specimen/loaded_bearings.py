@@ -1,0 +1,62 @@
+"""Bearings of a drawn specimen under the mean load of its operating point: what `dynamics.<shaft>.bearing` stands for.
+
+Teeth press along the line of action, under a torque below 0 along that of the back flanks; gears and shafts weigh. Each
+of the two bearings of a shaft bears half. Vibration about that load is small: bearings are linear about it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, sin
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Dynamics
+from siggen.dynamics.bearings.loaded_bearing import LoadedBearing, loaded_bearing
+from siggen.dynamics.structure.structure import Rotor, SpurStage
+from siggen.gears.geometry.gear_pair import GearPair
+
+BEARINGS = 2
+"""Of a shaft: each bears half of the force and has half of their stiffness."""
+GRAVITY_M_S2 = 9.81
+
+
+def loaded_bearings(dynamics: Dynamics, stage: SpurStage, pair: GearPair, torque_nm: float) -> dict[str, LoadedBearing]:
+    """Return one of both bearings of each shaft whose stiffness follows the load, under a torque on the pinion."""
+    found = {}
+    for which in ("pinion", "gear"):
+        section = getattr(dynamics, which).bearing
+        if section is not None:
+            force_n = shaft_load_n(dynamics, pair, which, torque_nm, getattr(stage, which).mass_kg)
+            found[which] = loaded_bearing(section.bearing(), force_n / BEARINGS)
+    return found
+
+
+def shaft_load_n(dynamics: Dynamics, pair: GearPair, which: str, torque_nm: float, mass_kg: float) -> FloatArray:
+    """Return the mean force (2,) on a shaft, horizontal and upward [N]: of the teeth and of its weight."""
+    angle, force_n = pair.working_pressure_angle_rad, torque_nm / pair.pinion.base_radius_m
+    # Horizontal runs from the gear to the pinion in a casing, else back. Either flank pushes the gears apart.
+    apart = 1.0 if dynamics.model == "casing" else -1.0
+    on_pinion = np.array([apart * sin(angle) * abs(force_n), -cos(angle) * force_n])
+    return np.asarray((on_pinion if which == "pinion" else -on_pinion) - np.array([0.0, mass_kg * GRAVITY_M_S2]))
+
+
+def cage_sense(dynamics: Dynamics, which: str) -> float:
+    """Return 1 where a shaft turns from horizontal to upward, -1 where back: the pinion's mesh goes up, beside it."""
+    pinion = -1.0 if dynamics.model == "casing" else 1.0
+    return pinion if which == "pinion" else -pinion
+
+
+def on_loaded_bearings(stage: SpurStage, found: dict[str, LoadedBearing]) -> SpurStage:
+    """Return a stage on bearings under load."""
+    rotors = {"pinion": stage.pinion, "gear": stage.gear}
+    rotors |= {which: _on(rotors[which], one) for which, one in found.items()}
+    return replace(stage, pinion=rotors["pinion"], gear=rotors["gear"])
+
+
+def _on(rotor: Rotor, one: LoadedBearing) -> Rotor:
+    stiffness = BEARINGS * one.stiffness_n_per_m
+    x, xy, y = float(stiffness[0, 0]), float(stiffness[0, 1]), float(stiffness[1, 1])
+    numbers = replace(rotor.bearing, stiffness_x_n_per_m=x, stiffness_y_n_per_m=y, stiffness_xy_n_per_m=xy)
+    return replace(rotor, bearing=numbers)
