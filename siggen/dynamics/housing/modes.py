@@ -8,7 +8,6 @@ last one. Forces and motions share their numbers, so reciprocity is exact.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
@@ -25,23 +24,23 @@ VIBRATING_HZ = 1e6
 """What lies above in a table is a residual vector: it only gives way."""
 
 
-class Modes(ABC):
+class Modes:
     """Natural modes in ascending order; `frequency_hz` (m,)."""
 
     frequency_hz: FloatArray
 
     @property
-    @abstractmethod
     def vibrating(self) -> int:
         """How many of them may move with the gears."""
+        raise NotImplementedError
 
-    @abstractmethod
     def shapes(self, motions: Sequence[Motion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
+        raise NotImplementedError
 
-    @abstractmethod
     def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
         """Return what all modes above the first so many give way, (outputs, inputs) [m/N]."""
+        raise NotImplementedError
 
     def residual_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
         """Return what all modes above the last one give way, (outputs, inputs) [m/N]."""
