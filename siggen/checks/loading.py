@@ -26,6 +26,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     # compile nothing, but load the physics
     from siggen.checks.density_files import with_density_files
     from siggen.checks.emptied_pairs import emptied_pairs
+    from siggen.checks.mode_files import mode_problems, with_mode_file
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.quantity_names import quantity_problems
     from siggen.checks.state_problems import state_problems
@@ -38,7 +39,8 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         raw, folder, read_from = read_yaml(file), file.parent, str(source)
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)
-    parsed = parse(filled)
+    with_modes, unread_modes = with_mode_file(filled, folder)
+    parsed = parse(with_modes)
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
     problems = [
         *written,
@@ -46,8 +48,10 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         *physical_problems(parsed),
         *state_problems(parsed),
         *unread,
+        *unread_modes,
         *unusable,
         *response_problems(parsed.sections),
+        *mode_problems(parsed.sections),
     ]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
-from siggen.config import Bolts, Config, Feet, Housing, RigidHousing
+from siggen.config import Bolts, Config, Feet, Housing, ModalHousing, RigidHousing
 from siggen.errors import counted
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
@@ -19,6 +19,7 @@ from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.modal_housing import given_modes
 from siggen.specimen.structure import disc_inertia_kg_m2, disc_mass_kg
 
 FORM_FACTOR = 2.5
@@ -217,9 +218,14 @@ def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
 
 def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
     bolts: Bolts | Feet
+    gears = sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
+    if isinstance(housing, ModalHousing):
+        what, hint = "mass that a seat feels over both discs", "are shapes in 1/sqrt(kg), not of unit length?"
+        masses = [mass / gears for mass in given_modes(housing).seat_masses_kg]
+        yield Quantity("housing.file", what, _ends(masses), 0.5, 500.0, hint)
+        return
     if isinstance(housing, RigidHousing):
         bolts, name = housing.bolts, "bolts"
-        gears = sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
         yield _of("housing.mass_kg", "mass over both discs", housing.mass_kg, 0.5, 500.0, "is it in kg?", gears)
     else:
         bolts, name = housing.feet, "feet"

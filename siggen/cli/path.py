@@ -15,6 +15,7 @@ from siggen.cli.working import working
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from siggen.dynamics.housing.box import Box
     from siggen.views.path_curves import PathCurves
 
 
@@ -33,6 +34,9 @@ def path(
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as housing.wall_mm=12.")
+    ] = None,
+    modes: Annotated[
+        Path | None, typer.Option("--modes", help="CSV of the housing's modes, for housing.kind: modal.")
     ] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -62,12 +66,27 @@ def path(
     if out is not None:
         write_table_file(found.table, out)
         typer.echo(str(out), err=as_json)
+    if modes is not None:
+        _write_modes(found, modes)
+        typer.echo(str(modes), err=as_json)
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.path_figure import save_path_figure
 
             save_path_figure(found, png)
         picture.drawn(png)
+
+
+def _write_modes(found: PathCurves, path: Path) -> None:
+    from siggen.errors import UsageError
+    from siggen.views.exported_modes import exported_modes
+
+    if found.housing is None:
+        raise UsageError("no sensor stands on a housing that gives way: allowed is housing.kind: plates")
+    try:
+        path.write_text(exported_modes(found.housing).text, encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error
 
 
 def _facts(found: PathCurves) -> dict[str, object]:
@@ -94,8 +113,14 @@ def _printed(found: PathCurves) -> Table:
         rms = f"{channel.path_rms_m_s2_per_n:.3g}"
         table.add_row(channel.name, str(channel.path_modes or "-"), rms, f"{largest:.3g}", f"{at_hz:.0f}")
     if found.housing is not None:
-        size = " x ".join(f"{1e3 * length:.0f}" for length in found.housing.box.size_m)
         first = ", ".join(f"{f:.0f} Hz ({100 * d:.1f} %)" for f, d in found.housing.pairs[:SHOWN])
-        table.caption = f"housing of {found.housing.box.mass_kg:.1f} kg, {size} mm; its lowest modes: {first}"
+        table.caption = f"{_body_text(found.housing.box)}; its lowest modes: {first}"
         table.caption_justify = "left"
     return table
+
+
+def _body_text(box: Box | None) -> str:
+    if box is None:
+        return "housing by its modes"
+    size = " x ".join(f"{1e3 * length:.0f}" for length in box.size_m)
+    return f"housing of {box.mass_kg:.1f} kg, {size} mm"

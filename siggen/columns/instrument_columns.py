@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from siggen.sensors.sensor import Sensor
 
 
-def channel_columns(sensor: Sensor, channel: str, *, has_plates: bool) -> Iterator[Column]:
+def channel_columns(sensor: Sensor, channel: str, *, gives_way: bool) -> Iterator[Column]:
     """Yield the columns that describe path and disturbances of one channel: those of parts that its sensor has."""
-    if sensor.through is not None or (has_plates and MOTION in sensor.reads):
+    if sensor.through is not None or (gives_way and MOTION in sensor.reads):
         yield from path_columns(channel, is_family=getattr(sensor.through, "is_family", False))
     for source in sensor.sources:
         name = source.column(channel, sensor.quantity.suffix)
@@ -37,4 +37,4 @@ def instrument_columns(config: Config) -> Iterator[Column]:
     """Yield the columns of all parts that a configuration has, channel by channel."""
     for sensor in config.sensors:
         for name, _ in sensor.channels:
-            yield from channel_columns(sensor, name, has_plates=config.has_plates)
+            yield from channel_columns(sensor, name, gives_way=config.gives_way)

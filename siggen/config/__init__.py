@@ -14,7 +14,7 @@ from siggen.config.config import BLOCK, Config, OperatingRange, Splits
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
 from siggen.config.external_forces import Unbalance
 from siggen.config.gears import Gears, Wheel
-from siggen.config.housing import Bolts, Feet, Housing, PlateHousing, RigidHousing
+from siggen.config.housing import Bolts, Feet, Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
@@ -49,6 +49,7 @@ __all__ = [
     "Machines",
     "Manufacture",
     "Mesh",
+    "ModalHousing",
     "OperatingRange",
     "ParsedConfig",
     "PlateHousing",

@@ -13,7 +13,7 @@ from siggen.config.background import Background
 from siggen.config.changes import Change
 from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears
-from siggen.config.housing import Housing, PlateHousing
+from siggen.config.housing import Housing, PlateHousing, RigidHousing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
 from siggen.config.states import State, changes_of, grown_from
@@ -101,7 +101,8 @@ class Config(Section):
     variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
     internals: Internals | None = Field(default=None, description="what no sensor sees; null: not stored")
     housing: Housing = Field(
-        default=PlateHousing(), description="what carries the bearings with dynamics.model: casing; plates or rigid"
+        default=PlateHousing(),
+        description="what carries the bearings with dynamics.model: casing; plates, modal or rigid",
     )
     background: Background | None = Field(default=None, description="what a healthy machine adds; null: nothing")
 
@@ -112,8 +113,13 @@ class Config(Section):
 
     @property
     def has_plates(self) -> bool:
-        """Whether forces of the bearings reach sensors through a housing of plates."""
+        """Whether every gearbox has a housing of plates of its own."""
         return self.dynamics.model == "casing" and isinstance(self.housing, PlateHousing)
+
+    @property
+    def gives_way(self) -> bool:
+        """Whether forces of the bearings reach sensors through modes of a housing."""
+        return self.dynamics.model == "casing" and not isinstance(self.housing, RigidHousing)
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from siggen.config.housing import PlateHousing
+from siggen.config.housing import ModalHousing, PlateHousing
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
 from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
-from siggen.sensors.sensor import PLATES
+from siggen.sensors.sensor import MODAL, PLATES
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -84,6 +84,8 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
         return
     if model == "casing" and isinstance(sections["housing"], PlateHousing):
         model = PLATES
+    elif model == "casing" and isinstance(sections["housing"], ModalHousing):
+        model = MODAL
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.model_problems(model):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)

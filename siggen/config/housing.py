@@ -1,6 +1,7 @@
 """Section `housing`: the body between bearings, ground and sensors; used by `dynamics.model: casing`.
 
-`kind: plates` is drawn from its geometry and gives way; `kind: rigid` is a block of given mass on bolts.
+`kind: plates` is drawn from its geometry and gives way; `kind: modal` gives way as the modes of a file say; `kind:
+rigid` is a block of given mass on bolts.
 """
 
 from __future__ import annotations
@@ -99,9 +100,21 @@ class RigidHousing(Section):
     bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
 
 
+class ModalHousing(Section):
+    """A housing by natural modes from finite elements or a modal test; all gearboxes have the same."""
+
+    kind: Literal["modal"] = Field(description="a body whose modes are known")
+    file: str | None = Field(
+        default=None, description="CSV, a line per mode; its path counts from the folder of the configuration"
+    )
+    modes: str | None = Field(
+        default=None, description="the content of `file`, filled in when it is read, so that the set needs no file"
+    )
+
+
 def with_kind(section: Any) -> Any:
     """Return the section with its kind."""
     return {"kind": "plates", **section} if isinstance(section, Mapping) else section
 
 
-Housing = Annotated[PlateHousing | RigidHousing, Discriminator("kind"), BeforeValidator(with_kind)]
+Housing = Annotated[PlateHousing | ModalHousing | RigidHousing, Discriminator("kind"), BeforeValidator(with_kind)]

@@ -27,7 +27,7 @@ SHOWN_NUMBERS = 4
 ONE, SEVERAL = "one", "several"
 """Tags of what may be a section or a list of them."""
 
-BRANCHES = {"plates", "rigid", ONE, SEVERAL}
+BRANCHES = {"modal", "plates", "rigid", ONE, SEVERAL}
 """Tags by which pydantic names the branch of a union it took, to which kinds of damage and sensors add their own.
 
 No key of the file has such a name (tested).

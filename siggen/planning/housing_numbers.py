@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated
 
-from siggen.config import Housing, PlateHousing, RigidHousing
+from siggen.config import Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within
@@ -49,9 +49,9 @@ class PlateNumbers(PlateHousing):
     rib_height: Drawn = Uniform(low=2.0, high=5.0)
 
 
-def drawn_housing(section: Housing, uniform: Callable[[str], float]) -> PlateNumbers | RigidHousing:
+def drawn_housing(section: Housing, uniform: Callable[[str], float]) -> PlateNumbers | ModalHousing | RigidHousing:
     """Return the housing of one gearbox; the damping of plates belongs to modes and stays as it is."""
-    if isinstance(section, RigidHousing):
+    if isinstance(section, (RigidHousing, ModalHousing)):
         return draw(section, uniform, "housing")
     numbers: PlateNumbers = draw(PlateNumbers.model_construct(**dict(section)), uniform, "housing")
     material = section.material

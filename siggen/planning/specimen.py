@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from siggen.config import Config, Dynamics, Gears, RigidHousing, Stiffness
+from siggen.config import Config, Dynamics, Gears, ModalHousing, RigidHousing, Stiffness
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.planning.gearbox import gearbox_config
@@ -24,7 +24,7 @@ class Specimen:
     gears: Gears
     stiffness: Stiffness
     dynamics: Dynamics
-    housing: PlateNumbers | RigidHousing
+    housing: PlateNumbers | ModalHousing | RigidHousing
     sensors: tuple[Sensor, ...]
     bearing_point: OperatingPoint | None = None
 

@@ -35,7 +35,7 @@ def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
     yield "shafts that bend, gears that tilt", dynamics.shafts is not None, "`dynamics.shafts`"
     yield "unbalance", dynamics.unbalance != type(dynamics.unbalance)(), "`dynamics.unbalance`"
     yield "variation within a record", config.variation != type(config.variation)(), drive_text(config)
-    yield "housing of plates that give way", config.has_plates, "`housing`"
+    yield "housing that gives way", config.gives_way, "`housing`"
     yield "measured path to the sensors", bool(paths), f"{len(paths)} of {len(config.sensors)} sensors"
     yield "background of a healthy machine", config.background is not None, "`background`"
 

@@ -16,7 +16,8 @@ from siggen.keys.number import constant
 from siggen.planning.gearbox import pair_of
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.housing import MODES_ON_BOLTS, specimen_housing
+from siggen.specimen.housing import specimen_housing
+from siggen.specimen.specimen_housing import MODES_ON_BOLTS
 from siggen.specimen.static_mesh import StaticMesh
 
 GEARS = ("pinion", "gear")
@@ -77,7 +78,7 @@ def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
 
 def _housing_labels(config: Config, specimen: Specimen) -> dict[str, object]:
     housing = specimen_housing(config, specimen)
-    if housing is None:
+    if housing is None or housing.box is None:
         return {}
     return {
         "housing_mass_kg": housing.box.mass_kg,

@@ -22,7 +22,7 @@ from siggen.sensing.sensor_response import high_pass_response, resonance_respons
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
 from siggen.sensors.quantity import ACCELERATION, Quantity
 from siggen.sensors.resonance import Resonance
-from siggen.sensors.sensor import PLATE_OF, PLATES, SIZE, AxisDraws, Sensor
+from siggen.sensors.sensor import MODAL, PLATE_OF, PLATES, SIZE, AxisDraws, Sensor
 
 POSITION = AllowedText(
     "two numbers in mm, from a casing's centre of gravity or the middle of a plate; a distribution is drawn per gearbox"
@@ -54,8 +54,8 @@ class Accelerometer(SourceKeys, Sensor):
         "gear_rim",
     ] = Field(
         default="pinion_bearing",
-        description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid or a path, "
-        "rims with the model torsional",
+        description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
+        "modal or a path, rims with the model torsional",
     )  # fmt: skip
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,
@@ -97,9 +97,6 @@ class Accelerometer(SourceKeys, Sensor):
             return
         if self.path is not None and self.place != "casing":
             yield Problem("path", f"a path at place {self.place}", "allowed: null, or place: casing")
-        if self.position_mm is None and self.path is None and self.place == "casing":
-            allowed = "allowed: a position [horizontal, vertical] from the centre of gravity; or a measured path"
-            yield Problem("position_mm", received_text(None), allowed)
         if self.position_mm is not None and not has_position:
             yield Problem("position_mm", received_text(self.position_mm), f"allowed: null at place {self.place}")
         if self.place.endswith("_rim") and self.cross_axis != 0.0:
@@ -112,13 +109,23 @@ class Accelerometer(SourceKeys, Sensor):
         """Yield what does not go with the model: its place, or what its path leaves out or has in it."""
         if self.path is None or model == "torsional":
             yield from super().model_problems(model)
-            if "axial" in self.axes and model != PLATES:
-                allowed = "allowed: vertical, horizontal; axial needs housing.kind: plates or a path"
+            if "axial" in self.axes and model not in {PLATES, MODAL}:
+                allowed = "allowed: vertical, horizontal; axial needs housing.kind: plates or modal, or a path"
                 yield Problem("axes", ", ".join(self.axes), allowed)
+            yield from self._position_problems(model)
             return
         if self.cross_axis != 0.0:
             allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
             yield Problem("cross_axis", str(self.cross_axis), allowed)
+
+    def _position_problems(self, model: str) -> Iterator[Problem]:
+        """Yield a position that a rigid casing needs, or that given modes know already."""
+        if model == MODAL and self.position_mm is not None:
+            allowed = f"allowed: null; housing.file says how the place {self.name} moves"
+            yield Problem("position_mm", received_text(self.position_mm), allowed)
+        if model != MODAL and self.place == "casing" and self.path is None and self.position_mm is None:
+            allowed = "allowed: a position [horizontal, vertical] from the centre of gravity; or a measured path"
+            yield Problem("position_mm", received_text(None), allowed)
 
     @property
     def plate(self) -> str | None:

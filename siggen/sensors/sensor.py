@@ -31,6 +31,8 @@ from siggen.sensors.transducer import Transducer
 
 PLATES = "casing, housing.kind: plates"
 """The model whose housing gives way."""
+MODAL = "casing, housing.kind: modal"
+"""The model whose housing gives way as given modes say."""
 PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
 """Place -> plate of the housing."""
 PLACES = {
@@ -39,6 +41,7 @@ PLACES = {
     "8dof": ("pinion_bearing", "gear_bearing"),
     "casing": ("casing", "pinion_bearing", "gear_bearing"),
     PLATES: (*PLATE_OF, "pinion_bearing", "gear_bearing"),
+    MODAL: ("casing", *PLATE_OF, "pinion_bearing", "gear_bearing"),
 }
 """Places whose motion a model has."""
 SHAFTS_OF = {model: tuple(SHAFTS) for model in PLACES} | {"6dof": ("pinion", "gear")}
@@ -154,11 +157,15 @@ class Sensor(Section):
         return None
 
     @property
+    def shown_inputs(self) -> frozenset[Input]:
+        """What of the model it shows along its axes; what a path adds comes by itself."""
+        middle = AxisDraws(lambda _: 0.5, "", lambda _: generator(0, Stage.SENSOR, 0))
+        return frozenset(one for axis in self.axes for one in self.shows(axis, middle))
+
+    @property
     def reads(self) -> frozenset[str]:
         """Kinds of `Input` that it needs: those that it shows, and forces where they come through a path."""
-        middle = AxisDraws(lambda _: 0.5, "", lambda _: generator(0, Stage.SENSOR, 0))
-        shown = {one.kind for axis in self.axes for one in self.shows(axis, middle)}
-        return frozenset(shown | (set() if self.through is None else {FORCE}))
+        return frozenset({one.kind for one in self.shown_inputs} | (set() if self.through is None else {FORCE}))
 
     @property
     def drawn_by_name(self) -> bool:

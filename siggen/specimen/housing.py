@@ -1,252 +1,38 @@
-"""The housing of one specimen: a box of plates from its geometry, its modes, and where it is pressed and seen.
-
-The box follows from the gears, the shafts and `siggen.planning.housing_numbers`. x runs from gear to pinion and is
-horizontal, y is vertical, z runs along the shafts. With `dynamics.shafts` the walls stand where the bearings are.
-"""
+"""The housing of one specimen that gives way: from its geometry, or from modes that its user gave."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import lru_cache
-from math import cos, pi, sin
-
-import numpy as np
-
-from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, Shafts
-from siggen.dynamics.housing.box import SIDES, Axis, Box, Material, plane_axes
-from siggen.dynamics.housing.housing_modes import (
-    ALL,
-    BEYOND,
-    WAVES,
-    HousingModes,
-    housing_modes,
-    mixed_damping,
-    resolved_hz,
-)
-from siggen.dynamics.housing.layout import Contents, Proportions, layout
-from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, motion_at, seat_motions
-from siggen.dynamics.structure.body import ModalBody, Point
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import at, constant
+from siggen.config import Config, ModalHousing
 from siggen.planning.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
-from siggen.seeding import Stage, named_generator, named_uniforms
-from siggen.sensors.sensor import Sensor
-from siggen.specimen.gears import gear_pair
-from siggen.specimen.housing_layout import specimen_layout
-
-MODES_ON_BOLTS = 6
-COUPLED_HZ, MOST = 1500.0, 9
-"""Modes below this frequency move with the gears, at least the six on the bolts. With what all others give way in
-series with the bearings k_b |R - R_0| stays below 0.5 nearly everywhere (`python -m benchmarks.housing limits`)."""
-SETTLED_DECAYS = 7.0
-"""Decay times after which a mode has forgotten how it was started: 1e-3 of it is left."""
-LONGEST_S = 1.2
-AXES = {"horizontal": Axis.X, "vertical": Axis.Y, "axial": Axis.Z}
-EDGE_M = 8e-3
-"""Sensors stand at least so far from a plate's edge."""
-
-
-@dataclass(frozen=True, slots=True)
-class SpecimenHousing:
-    """A box with its modes.
-
-    Attributes
-    ----------
-    damping_ratio : (m,)
-    coupled : number of modes that move with the gears
-    seats, motions, entries : place/axis -> motion of bearings, of sensors, and of where other forces press
-    """
-
-    box: Box
-    modes: HousingModes
-    damping_ratio: FloatArray
-    coupled: int
-    seats: Mapping[str, Motion]
-    motions: Mapping[str, Motion]
-    entries: Mapping[str, Motion]
-
-    @property
-    def settle_s(self) -> float:
-        """Time over which its modes settle [s]."""
-        return _settle_s(self.modes, self.damping_ratio)
-
-    @property
-    def pairs(self) -> list[tuple[float, float]]:
-        """Natural frequencies [Hz] and damping ratios, ascending."""
-        return list(zip(self.modes.frequency_hz.tolist(), self.damping_ratio.tolist(), strict=True))
-
-    def seen(self, weights: Mapping[str, float]) -> Motion:
-        """Return what a channel sees: motions times factors."""
-        (name, weight), *others = weights.items()
-        total = Motion(weight * self.motions[name].even, weight * self.motions[name].odd)
-        for name, weight in others:
-            total = total.plus(self.motions[name], weight)
-        return total
-
-    def accelerance(
-        self, seen: Motion, inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
-    ) -> ComplexArray:
-        """Return the accelerance (inputs, k) [m/s² per N] from seats or entries, of some of the modes."""
-        places = {**self.seats, **self.entries}
-        motions = [places[name] for name in inputs]
-        return np.asarray(self.modes.accelerance([seen], motions, frequency_hz, self.damping_ratio, which)[0])
+from siggen.specimen.modal_housing import given_modes, modal_housing
+from siggen.specimen.plate_housing import damped_modes, plate_housing
+from siggen.specimen.specimen_housing import SpecimenHousing, modes_settle_s
 
 
 def specimen_housing(config: Config, specimen: Specimen) -> SpecimenHousing | None:
-    """Return the housing of a specimen; the same for all of its states and records; None for one without plates."""
-    damped = _damped(config, specimen)
-    if damped is None:
-        return None
-    box, modes, ratio = damped
-    pair, shafts = gear_pair(specimen.gears), specimen.dynamics.shafts
-    seats = _seats(box, modes, shafts)
-    uniform = named_uniforms(config.seed, Stage.PATH, specimen.specimen_id)
-    return SpecimenHousing(
-        box=box,
-        modes=modes,
-        damping_ratio=ratio,
-        coupled=min(max(MODES_ON_BOLTS, int((modes.frequency_hz < COUPLED_HZ).sum())), MOST),
-        seats={name: motion for name, motion in seats.items() if not name.endswith("axial")},
-        motions={**seats, **_sensors(box, modes, specimen.sensors, uniform)},
-        entries=_entries(box, modes, seats, pair, uniform),
-    )
+    """Return the housing of a specimen; the same for all of its states and records; None for one without modes."""
+    numbers = _giving_way(specimen)
+    match numbers:
+        case PlateNumbers():
+            return plate_housing(config, specimen, numbers)
+        case ModalHousing():
+            return modal_housing(specimen, numbers)
+    return None
 
 
 def housing_settle_s(config: Config, specimen: Specimen) -> float:
-    """Return the time over which the modes settle [s], which every record asks for; 0 without plates."""
-    damped = _damped(config, specimen)
-    return 0.0 if damped is None else _settle_s(*damped[1:])
+    """Return the time over which the modes settle [s], which every record asks for; 0 without any."""
+    numbers = _giving_way(specimen)
+    match numbers:
+        case PlateNumbers():
+            _, modes, ratio = damped_modes(config, specimen, numbers)
+            return modes_settle_s(modes.frequency_hz, ratio)
+        case ModalHousing():
+            table = given_modes(numbers)
+            return modes_settle_s(table.frequency_hz, table.damping_ratio)
+    return 0.0
 
 
-def _damped(config: Config, specimen: Specimen) -> tuple[Box, HousingModes, FloatArray] | None:
-    """Return box, modes and their damping ratios (m,)."""
-    numbers = specimen.housing
-    if specimen.dynamics.model != "casing" or not isinstance(numbers, PlateNumbers):
-        return None
-    made = specimen_layout(numbers, specimen.dynamics.shafts, gear_pair(specimen.gears))
-    box, modes = _made(*made, 0.5 * config.fs_hz)
-    rng = named_generator(config.seed, Stage.PATH, specimen.specimen_id, name="housing.damping_ratio")
-    plates = np.array([at(numbers.damping_ratio, float(u)) for u in rng.random(modes.frequency_hz.size)])
-    return box, modes, mixed_damping(modes, plates, constant(numbers.feet.damping_ratio))
-
-
-def _settle_s(modes: HousingModes, damping_ratio: FloatArray) -> float:
-    slowest = float((2.0 * pi * modes.frequency_hz * damping_ratio).min())
-    return min(SETTLED_DECAYS / slowest, LONGEST_S)
-
-
-def coupled_modes(housing: SpecimenHousing) -> ModalBody:
-    """Return the modes that move with the gears."""
-    modes, n = housing.modes, housing.coupled
-    seats = list(housing.seats.values())
-
-    def shapes(motions: Mapping[str, Motion]) -> dict[str, FloatArray]:
-        return dict(zip(motions, modes.shapes(list(motions.values()))[:, :n], strict=True)) if motions else {}
-
-    bolts = []
-    for bolt in housing.box.bolts:
-        place = _from_middle(housing.box, bolt.x_m)
-        of_bolt = shapes(bolt_motions(modes.halves, bolt))
-        for axis, number in (("horizontal", Axis.X), ("vertical", Axis.Y)):
-            for wall in ("front", "back"):
-                shape = of_bolt[f"{wall}/{number.name.lower()}"]
-                bolts.append((place, axis, bolt.stiffness_n_per_m[number], shape))
-    return ModalBody(
-        frequency_hz=modes.frequency_hz[:n],
-        damping_ratio=housing.damping_ratio[:n],
-        seats=shapes(housing.seats),
-        motions=shapes(housing.motions),
-        entries=shapes(housing.entries),
-        bolts=tuple(bolts),
-        flexibility_m_per_n=modes.flexibility_beyond(n, seats, seats),
-    )
-
-
-@lru_cache(maxsize=4)  # states and records of a gearbox share them
-def _made(
-    contents: Contents, proportions: Proportions, material: Material, highest_hz: float
-) -> tuple[Box, HousingModes]:
-    box = layout(contents, proportions, material)
-    return box, housing_modes(box, min(highest_hz, BEYOND * resolved_hz(box)), WAVES)
-
-
-def _seats(box: Box, modes: HousingModes, shafts: Shafts | None) -> dict[str, Motion]:
-    """Return the motion of both seats of every shaft, weighted with what each of them bears of a force on the gear."""
-    found = {}
-    for shaft in ("pinion", "gear"):
-        front = 0.5 if shafts is None else 1.0 - constant(getattr(shafts, shaft).gear_position)
-        of_walls = [seat_motions(modes.halves, box.seats[shaft], wall) for wall in ("front", "back")]
-        for axis, number in (("vertical", "y"), ("horizontal", "x"), ("axial", "z")):
-            first, second = (motions[number] for motions in of_walls)
-            none = Motion(0.0 * first.even, 0.0 * first.odd)
-            found[f"{shaft}_bearing/{axis}"] = none.plus(first, front).plus(second, 1.0 - front)
-    return found
-
-
-def _sensors(
-    box: Box, modes: HousingModes, sensors: tuple[Sensor, ...], uniform: Callable[[str], float]
-) -> dict[str, Motion]:
-    """Return the motions of all sensors on plates, along all axes."""
-    found = {}
-    for sensor in sensors:
-        if sensor.plate is not None:
-            plate, first, second = sensor_place(box, sensor, uniform)
-            for axis, number in AXES.items():
-                found[f"casing_{sensor.name}/{axis}"] = motion_at(modes.halves, Place(plate, first, second, number))
-    return found
-
-
-def sensor_place(box: Box, sensor: Sensor, uniform: Callable[[str], float]) -> tuple[str, float, float]:
-    """Return the plate and where on it a sensor stands: about its middle, or about a bolt."""
-    if sensor.plate == "floor":
-        bolt = box.bolts[-1]
-        return "floor", bolt.x_m, bolt.z_m
-    assert sensor.plate is not None
-    sizes = [box.size_m[axis] for axis in plane_axes(SIDES[sensor.plate][0])]
-    given = sensor.place_on_casing_mm
-    found = []
-    for i, size in enumerate(sizes):
-        away_mm = (
-            constant(given[i]) if given else SCATTER_MM * (2.0 * uniform(f"sensors.{sensor.name}.place.{i}") - 1.0)
-        )
-        found.append(min(max(0.5 * size + 1e-3 * away_mm, EDGE_M), size - EDGE_M))
-    return sensor.plate, found[0], found[1]
-
-
-SCATTER_MM = 15.0
-"""Largest distance of a sensor from the middle of its plate along either axis, where no place is given (assumed)."""
-
-
-def _entries(
-    box: Box, modes: HousingModes, seats: Mapping[str, Motion], pair: GearPair, uniform: Callable[[str], float]
-) -> dict[str, Motion]:
-    """Return where other machines press: a second mesh as opposed forces on the seats, another drive in the front wall.
-
-    Both forces of the second mesh lie along the line of action of the one that is simulated, which stands for its own.
-    The other drive has bearings of its own, whose radial forces act in the plane of the wall.
-    """
-    angle = pair.working_pressure_angle_rad
-    along = [
-        Motion(0.0 * seats[f"{s}_bearing/vertical"].even, 0.0 * seats[f"{s}_bearing/vertical"].odd)
-        .plus(seats[f"{s}_bearing/vertical"], cos(angle))
-        .plus(seats[f"{s}_bearing/horizontal"], sin(angle))
-        for s in ("pinion", "gear")
-    ]
-    length, height, _ = box.size_m
-    shares = [0.2 + 0.6 * uniform(f"housing.auxiliary_drive.{i}") for i in range(2)]
-    drive = {
-        f"auxiliary_drive/{axis}": motion_at(
-            modes.halves, Place("front", shares[0] * length, shares[1] * height, AXES[axis])
-        )
-        for axis in ("horizontal", "vertical")
-    }
-    return {"second_stage": along[0].plus(along[1], -1.0), **drive}
-
-
-def _from_middle(box: Box, x_m: float) -> Point:
-    """Return where a place of the floor lies from the middle between both shafts."""
-    first, second = box.seats["gear"], box.seats["pinion"]
-    return x_m - 0.5 * (first.x_m + second.x_m), -0.5 * (first.y_m + second.y_m)
+def _giving_way(specimen: Specimen) -> object:
+    return specimen.housing if specimen.dynamics.model == "casing" else None

@@ -28,8 +28,9 @@ from siggen.specimen.background import (
     specimen_background,
 )
 from siggen.specimen.block_responses import BlockResponses, block_responses
-from siggen.specimen.housing import SpecimenHousing, housing_settle_s, specimen_housing
+from siggen.specimen.housing import housing_settle_s, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
+from siggen.specimen.specimen_housing import SpecimenHousing
 
 CHAIN_HISTORY_S = 0.02
 """History for the resonances of sensors without a path; those above 1 kHz with 1 % damping have 0.1 % left after it."""
@@ -193,7 +194,7 @@ def _channel(
 
 
 def _of_model(shown: Mapping[Input, float], housing: SpecimenHousing | None) -> dict[Input, float]:
-    """Return what of the model's motion is shown as it is: nothing that a housing of plates gives, nothing axial."""
+    """Return what of the model's motion is shown as it is: nothing that the modes of a housing give, nothing axial."""
     motions = {} if housing is None else housing.motions
     return {
         one: weight

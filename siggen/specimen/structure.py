@@ -23,8 +23,9 @@ from siggen.planning.specimen import Specimen
 from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.housing import coupled_modes, specimen_housing
+from siggen.specimen.housing import specimen_housing
 from siggen.specimen.loaded_bearings import loaded_bearings, on_loaded_bearings
+from siggen.specimen.specimen_housing import coupled_modes
 
 CASING_GYRATION = 1.15
 """Radius of gyration of a casing over its centre distance: a box of even wall round the gears (derived)."""

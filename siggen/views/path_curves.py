@@ -14,9 +14,10 @@ from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.sensing.spectral_filter import frequencies
-from siggen.specimen.housing import SpecimenHousing, specimen_housing
+from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import ChannelInstrument, settle_s, specimen_instrument
 from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.specimen_housing import SpecimenHousing
 
 FILE_NUMBERS = 150_000
 """Of one sensor in a table that shall be read again: two sensors fit into the configuration of a set."""
@@ -78,7 +79,7 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
     channels = tuple(channel for channel in instrument.channels if channel.accelerance is not None)
     if not channels:
         raise UsageError(
-            "no sensor stands on a housing of plates or has a measured path: dynamics.model: casing has one"
+            "no sensor stands on a housing that gives way or has a measured path: dynamics.model: casing has one"
         )
     housing = specimen_housing(config, specimen)
     points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))

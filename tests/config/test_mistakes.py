@@ -98,7 +98,7 @@ MISTAKES = [
         "-80000000.0",
         "a number above 0",
     ),
-    ({"housing__kind": "ridgid"}, "housing.kind", "'ridgid'", "one of plates, rigid"),
+    ({"housing__kind": "ridgid"}, "housing.kind", "'ridgid'", "one of plates, modal, rigid"),
     ({"housing": 3}, "housing", "3", "a mapping with the keys kind, material"),
     ({"housing": None}, "housing", "null", "a mapping with the keys kind, material"),
     ({"housing__wall_mm": 0}, "housing.wall_mm", "0", "a number above 0 and of at most 10000"),
@@ -126,7 +126,7 @@ MISTAKES = [
         {"housing": {"kind": "rigid"}, "sensors__0__axes": ["axial"]},
         "sensors.0.axes",
         "axial",
-        "axial needs housing.kind: plates or a path",
+        "axial needs housing.kind: plates or modal, or a path",
     ),
     (
         {"sensors__0__place": "lid", "sensors__0__path": {"kind": "modal"}},

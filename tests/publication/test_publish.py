@@ -115,7 +115,7 @@ def test_the_card_says_what_is_on_what_was_assumed_and_who_says_so(published: Pa
     for line in (
         "| friction of the flanks | on |",
         "| contact across the face, damage as geometry | on |",
-        "| housing of plates that give way | on |",
+        "| housing that gives way | on |",
         "| background of a healthy machine | off |",
         "| `gears.module_mm` | 3 | configuration | normal module |",
         "| `dynamics.friction.pit_roughness_um` | 2 | default |",

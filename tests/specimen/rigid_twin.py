@@ -10,7 +10,8 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.housing import SpecimenHousing, sensor_place
+from siggen.specimen.plate_housing import sensor_place
+from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import spur_stage
 from tests.dynamics.housing.rigid_body import mass_points
 

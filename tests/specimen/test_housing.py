@@ -15,9 +15,10 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import MOTION
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.housing import SpecimenHousing, specimen_housing
+from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import specimen_instrument
 from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import specimen_body, structure
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 from tests.specimen.rigid_twin import rigid_twin

@@ -19,11 +19,11 @@ from math import pi, sqrt
 
 import numpy as np
 
-from siggen.arrays import ComplexArray, FloatArray, IntArray
+from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.housing.box import SIDES, Box, plane_axes
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.half_functions import HalfFunctions
-from siggen.dynamics.housing.modal_sum import modal_sum
+from siggen.dynamics.housing.modes import Modes
 from siggen.dynamics.housing.motion import Motion
 from siggen.dynamics.housing.ordered_sums import squares
 from siggen.dynamics.housing.plate_energy import sheet
@@ -37,7 +37,6 @@ FINER = 6
 IN_PLANE = 1
 """Bubbles of motion in the plane, polynomials of degree 4."""
 LEAST_BUBBLES = 4
-ALL = slice(None)
 REACH = 2.0
 """95 % of third octaves hold within 6 dB up to so many times `resolved_hz` (`python -m benchmarks.housing reach`)."""
 BEYOND = 3.0
@@ -45,7 +44,7 @@ BEYOND = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class HousingModes:
+class HousingModes(Modes):
     """Modes of a box in ascending order.
 
     Attributes
@@ -64,6 +63,11 @@ class HousingModes:
     order: IntArray
     resolved_hz: float
 
+    @property
+    def vibrating(self) -> int:
+        """How many of them may move with the gears: all."""
+        return self.frequency_hz.size
+
     def shapes(self, motions: Sequence[Motion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
         both = [squares(_columns(motions, h), self.found[h].shapes) for h in (0, 1)]
@@ -77,41 +81,11 @@ class HousingModes:
             total += squares(*(solve_lower(root, _columns(side, h)) for side in (outputs, inputs)))
         return total
 
-    def residual_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
-        """Return what all modes above the last one give way, (outputs, inputs) [m/N]."""
-        return self.flexibility_beyond(self.frequency_hz.size, outputs, inputs)
-
     def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
         """Return what all modes above the first so many give way, (outputs, inputs) [m/N]."""
         left, right = (np.ascontiguousarray(self.shapes(side).T[:modes]) for side in (outputs, inputs))
         omega = 2.0 * pi * self.frequency_hz[:modes, None]
         return self.static_flexibility(outputs, inputs) - squares(left / (omega * omega), right)
-
-    def accelerance(
-        self,
-        outputs: Sequence[Motion],
-        inputs: Sequence[Motion],
-        frequency_hz: FloatArray,
-        damping_ratio: FloatArray,
-        which: slice = ALL,
-    ) -> ComplexArray:
-        """Return accelerances (outputs, inputs, k) [m/s² per N] at frequencies (k,) with damping ratios (m,).
-
-        Of all modes, or of some; where these go up to the last one, with what stands for those above.
-        """
-        at_outputs, at_inputs = self.shapes(outputs)[:, which], self.shapes(inputs)[:, which]
-        residues = (at_outputs[:, None, :] * at_inputs[None, :, :]).reshape(-1, at_outputs.shape[1])
-        residual = np.zeros(len(residues))
-        if which.stop is None:
-            residual = self.residual_flexibility(outputs, inputs).reshape(-1)
-        total = modal_sum(
-            np.ascontiguousarray(residues),
-            2.0 * pi * self.frequency_hz[which],
-            damping_ratio[which],
-            residual,
-            2.0 * pi * frequency_hz,
-        )
-        return np.asarray(total.reshape(len(outputs), len(inputs), frequency_hz.size))
 
 
 def _columns(motions: Sequence[Motion], half: int) -> FloatArray:

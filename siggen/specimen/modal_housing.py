@@ -1,0 +1,62 @@
+"""A housing of one specimen from modes that its user gave: all gearboxes of the set have the same."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import pi
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import ModalHousing
+from siggen.dynamics.housing.modes import TableModes, table_motion
+from siggen.planning.specimen import Specimen
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.mode_table import BASE, DRIVE, SEATS, ModeTable, mode_table
+from siggen.specimen.specimen_housing import BoltMotions, SpecimenHousing, second_stage
+
+
+def given_modes(section: ModalHousing) -> ModeTable:
+    """Return the modes of a section whose file was read."""
+    assert section.modes is not None
+    return mode_table(section.modes)
+
+
+def modal_housing(specimen: Specimen, section: ModalHousing) -> SpecimenHousing:
+    """Return the housing of a specimen whose modes were given."""
+    table = given_modes(section)
+    places = {place: table_motion(shape) for place, shape in table.shapes.items()}
+    seats = {place: places[place] for place in SEATS}
+    still = np.zeros_like(table.frequency_hz)
+    drive = {place: places.get(place, table_motion(still)) for place in DRIVE}
+    angle = gear_pair(specimen.gears).working_pressure_angle_rad
+    return SpecimenHousing(
+        modes=TableModes(table.frequency_hz),
+        damping_ratio=table.damping_ratio,
+        seats=seats,
+        motions={seen_as(place): motion for place, motion in places.items()},
+        entries={"second_stage": second_stage(seats, angle), **drive},
+        bolts=lambda: _followed(table.frequency_hz, table.base),
+    )
+
+
+def seen_as(place: str) -> str:
+    """Return what sensors call the motion of a place/axis of a table."""
+    return place if place.split("/", maxsplit=1)[0] in {"pinion_bearing", "gear_bearing"} else f"casing_{place}"
+
+
+def _followed(frequency_hz: FloatArray, base: Mapping[str, FloatArray]) -> BoltMotions:
+    """Return what a base takes along, as bolts of 1 N/m that do just that.
+
+    Derived. A body on bolts follows its base at rest by g_r = φ_rᵀ K_b t/ω_r² = φ_rᵀ M t, since K moves no force where
+    the body goes with the base: these are the participation factors. Rocking is that of a bolt 1 m below the middle
+    less that of one in it.
+    """
+    if len(base) < len(BASE):
+        return ()
+    horizontal, vertical, rocking = (base[name] * (2.0 * pi * frequency_hz) ** 2 for name in BASE)
+    return (
+        ((0.0, 0.0), "horizontal", 1.0, table_motion(horizontal - rocking)),
+        ((0.0, 0.0), "vertical", 1.0, table_motion(vertical)),
+        ((0.0, -1.0), "horizontal", 1.0, table_motion(rocking)),
+    )

@@ -1,0 +1,157 @@
+"""A housing of plates of one specimen: a box from its geometry, its modes, and where it is pressed and seen.
+
+The box follows from the gears, the shafts and `siggen.planning.housing_numbers`. x runs from gear to pinion and is
+horizontal, y is vertical, z runs along the shafts. With `dynamics.shafts` the walls stand where the bearings are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Config, Shafts
+from siggen.dynamics.housing.box import SIDES, Axis, Box, Material, plane_axes
+from siggen.dynamics.housing.housing_modes import (
+    BEYOND,
+    WAVES,
+    HousingModes,
+    housing_modes,
+    mixed_damping,
+    resolved_hz,
+)
+from siggen.dynamics.housing.layout import Contents, Proportions, layout
+from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, motion_at, seat_motions
+from siggen.dynamics.structure.body import Point
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import at, constant
+from siggen.planning.housing_numbers import PlateNumbers
+from siggen.planning.specimen import Specimen
+from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.sensors.sensor import Sensor
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.housing_layout import specimen_layout
+from siggen.specimen.specimen_housing import BoltMotions, SpecimenHousing, second_stage
+
+AXES = {"horizontal": Axis.X, "vertical": Axis.Y, "axial": Axis.Z}
+EDGE_M = 8e-3
+"""Sensors stand at least so far from a plate's edge."""
+
+
+def plate_housing(config: Config, specimen: Specimen, numbers: PlateNumbers) -> SpecimenHousing:
+    """Return the box of plates of a specimen with its modes."""
+    box, modes, ratio = damped_modes(config, specimen, numbers)
+    pair, shafts = gear_pair(specimen.gears), specimen.dynamics.shafts
+    seats = _seats(box, modes, shafts)
+    uniform = named_uniforms(config.seed, Stage.PATH, specimen.specimen_id)
+    return SpecimenHousing(
+        modes=modes,
+        damping_ratio=ratio,
+        seats={name: motion for name, motion in seats.items() if not name.endswith("axial")},
+        motions={**seats, **_sensors(box, modes, specimen.sensors, uniform)},
+        entries=_entries(box, modes, seats, pair, uniform),
+        bolts=partial(_bolts, box, modes),
+        box=box,
+    )
+
+
+def damped_modes(config: Config, specimen: Specimen, numbers: PlateNumbers) -> tuple[Box, HousingModes, FloatArray]:
+    """Return box, modes and their damping ratios (m,)."""
+    made = specimen_layout(numbers, specimen.dynamics.shafts, gear_pair(specimen.gears))
+    box, modes = _made(*made, 0.5 * config.fs_hz)
+    rng = named_generator(config.seed, Stage.PATH, specimen.specimen_id, name="housing.damping_ratio")
+    plates = np.array([at(numbers.damping_ratio, float(u)) for u in rng.random(modes.frequency_hz.size)])
+    return box, modes, mixed_damping(modes, plates, constant(numbers.feet.damping_ratio))
+
+
+def _bolts(box: Box, modes: HousingModes) -> BoltMotions:
+    found = []
+    for bolt in box.bolts:
+        place = _from_middle(box, bolt.x_m)
+        of_bolt = bolt_motions(modes.halves, bolt)
+        for axis, number in (("horizontal", Axis.X), ("vertical", Axis.Y)):
+            for wall in ("front", "back"):
+                motion = of_bolt[f"{wall}/{number.name.lower()}"]
+                found.append((place, axis, bolt.stiffness_n_per_m[number], motion))
+    return tuple(found)
+
+
+@lru_cache(maxsize=4)  # states and records of a gearbox share them
+def _made(
+    contents: Contents, proportions: Proportions, material: Material, highest_hz: float
+) -> tuple[Box, HousingModes]:
+    box = layout(contents, proportions, material)
+    return box, housing_modes(box, min(highest_hz, BEYOND * resolved_hz(box)), WAVES)
+
+
+def _seats(box: Box, modes: HousingModes, shafts: Shafts | None) -> dict[str, Motion]:
+    """Return the motion of both seats of every shaft, weighted with what each of them bears of a force on the gear."""
+    found = {}
+    for shaft in ("pinion", "gear"):
+        front = 0.5 if shafts is None else 1.0 - constant(getattr(shafts, shaft).gear_position)
+        of_walls = [seat_motions(modes.halves, box.seats[shaft], wall) for wall in ("front", "back")]
+        for axis, number in (("vertical", "y"), ("horizontal", "x"), ("axial", "z")):
+            first, second = (motions[number] for motions in of_walls)
+            none = Motion(0.0 * first.even, 0.0 * first.odd)
+            found[f"{shaft}_bearing/{axis}"] = none.plus(first, front).plus(second, 1.0 - front)
+    return found
+
+
+def _sensors(
+    box: Box, modes: HousingModes, sensors: tuple[Sensor, ...], uniform: Callable[[str], float]
+) -> dict[str, Motion]:
+    """Return the motions of all sensors on plates, along all axes."""
+    found = {}
+    for sensor in sensors:
+        if sensor.plate is not None:
+            plate, first, second = sensor_place(box, sensor, uniform)
+            for axis, number in AXES.items():
+                found[f"casing_{sensor.name}/{axis}"] = motion_at(modes.halves, Place(plate, first, second, number))
+    return found
+
+
+def sensor_place(box: Box, sensor: Sensor, uniform: Callable[[str], float]) -> tuple[str, float, float]:
+    """Return the plate and where on it a sensor stands: about its middle, or about a bolt."""
+    if sensor.plate == "floor":
+        bolt = box.bolts[-1]
+        return "floor", bolt.x_m, bolt.z_m
+    assert sensor.plate is not None
+    sizes = [box.size_m[axis] for axis in plane_axes(SIDES[sensor.plate][0])]
+    given = sensor.place_on_casing_mm
+    found = []
+    for i, size in enumerate(sizes):
+        away_mm = (
+            constant(given[i]) if given else SCATTER_MM * (2.0 * uniform(f"sensors.{sensor.name}.place.{i}") - 1.0)
+        )
+        found.append(min(max(0.5 * size + 1e-3 * away_mm, EDGE_M), size - EDGE_M))
+    return sensor.plate, found[0], found[1]
+
+
+SCATTER_MM = 15.0
+"""Largest distance of a sensor from the middle of its plate along either axis, where no place is given (assumed)."""
+
+
+def _entries(
+    box: Box, modes: HousingModes, seats: Mapping[str, Motion], pair: GearPair, uniform: Callable[[str], float]
+) -> dict[str, Motion]:
+    """Return where other machines press: a second mesh on the seats, another drive in the front wall.
+
+    The other drive has bearings of its own, whose radial forces act in the plane of the wall.
+    """
+    length, height, _ = box.size_m
+    shares = [0.2 + 0.6 * uniform(f"housing.auxiliary_drive.{i}") for i in range(2)]
+    drive = {
+        f"auxiliary_drive/{axis}": motion_at(
+            modes.halves, Place("front", shares[0] * length, shares[1] * height, AXES[axis])
+        )
+        for axis in ("horizontal", "vertical")
+    }
+    return {"second_stage": second_stage(seats, pair.working_pressure_angle_rad), **drive}
+
+
+def _from_middle(box: Box, x_m: float) -> Point:
+    """Return where a place of the floor lies from the middle between both shafts."""
+    first, second = box.seats["gear"], box.seats["pinion"]
+    return x_m - 0.5 * (first.x_m + second.x_m), -0.5 * (first.y_m + second.y_m)

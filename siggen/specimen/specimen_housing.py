@@ -1,0 +1,117 @@
+"""SpecimenHousing: the housing of one specimen by its modes, and where it is pressed and seen.
+
+x runs from gear to pinion and is horizontal, y is vertical, z runs along the shafts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.dynamics.housing.box import Box
+from siggen.dynamics.housing.modes import ALL, Modes
+from siggen.dynamics.housing.motion import Motion
+from siggen.dynamics.structure.body import ModalBody, Point
+
+MODES_ON_BOLTS = 6
+COUPLED_HZ, MOST = 1500.0, 9
+"""Modes below this frequency move with the gears, at least the six on the bolts. With what all others give way in
+series with the bearings k_b |R - R_0| stays below 0.5 nearly everywhere (`python -m benchmarks.housing limits`)."""
+SETTLED_DECAYS = 7.0
+"""Decay times after which a mode has forgotten how it was started: 1e-3 of it is left."""
+LONGEST_S = 1.2
+BoltMotions = tuple[tuple[Point, str, float, Motion], ...]
+"""Place from the middle between both shafts, axis, stiffness [N/m] and motion of what a base takes along."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenHousing:
+    """A housing with its modes.
+
+    Attributes
+    ----------
+    damping_ratio : (m,)
+    seats, motions, entries : place/axis -> motion of bearings, of sensors, and of where other forces press
+    bolts : returns what a base under the housing moves
+    box : what the modes were computed from; None where they were given
+    """
+
+    modes: Modes
+    damping_ratio: FloatArray
+    seats: Mapping[str, Motion]
+    motions: Mapping[str, Motion]
+    entries: Mapping[str, Motion]
+    bolts: Callable[[], BoltMotions]
+    box: Box | None = None
+
+    @property
+    def coupled(self) -> int:
+        """Number of modes that move with the gears."""
+        least = min(MODES_ON_BOLTS, self.modes.vibrating)
+        return min(max(least, int((self.modes.frequency_hz < COUPLED_HZ).sum())), MOST)
+
+    @property
+    def pairs(self) -> list[tuple[float, float]]:
+        """Natural frequencies [Hz] and damping ratios, ascending."""
+        return list(zip(self.modes.frequency_hz.tolist(), self.damping_ratio.tolist(), strict=True))
+
+    def seen(self, weights: Mapping[str, float]) -> Motion:
+        """Return what a channel sees: motions times factors."""
+        (name, weight), *others = weights.items()
+        total = Motion(weight * self.motions[name].even, weight * self.motions[name].odd)
+        for name, weight in others:
+            total = total.plus(self.motions[name], weight)
+        return total
+
+    def accelerance(
+        self, seen: Motion, inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
+    ) -> ComplexArray:
+        """Return the accelerance (inputs, k) [m/s² per N] from seats or entries, of some of the modes."""
+        places = {**self.seats, **self.entries}
+        motions = [places[name] for name in inputs]
+        return np.asarray(self.modes.accelerance([seen], motions, frequency_hz, self.damping_ratio, which)[0])
+
+
+def modes_settle_s(frequency_hz: FloatArray, damping_ratio: FloatArray) -> float:
+    """Return the time over which modes settle [s]."""
+    slowest = float((2.0 * pi * frequency_hz * damping_ratio).min())
+    return min(SETTLED_DECAYS / slowest, LONGEST_S)
+
+
+def coupled_modes(housing: SpecimenHousing) -> ModalBody:
+    """Return the modes that move with the gears."""
+    modes, n = housing.modes, housing.coupled
+    seats = list(housing.seats.values())
+
+    def shapes(motions: Mapping[str, Motion]) -> dict[str, FloatArray]:
+        return dict(zip(motions, modes.shapes(list(motions.values()))[:, :n], strict=True)) if motions else {}
+
+    bolts = housing.bolts()
+    of_bolts = modes.shapes([motion for *_, motion in bolts])[:, :n] if bolts else ()
+    return ModalBody(
+        frequency_hz=modes.frequency_hz[:n],
+        damping_ratio=housing.damping_ratio[:n],
+        seats=shapes(housing.seats),
+        motions=shapes(housing.motions),
+        entries=shapes(housing.entries),
+        bolts=tuple((place, axis, k, shape) for (place, axis, k, _), shape in zip(bolts, of_bolts, strict=True)),
+        flexibility_m_per_n=modes.flexibility_beyond(n, seats, seats),
+    )
+
+
+def second_stage(seats: Mapping[str, Motion], pressure_angle_rad: float) -> Motion:
+    """Return where a second mesh presses: opposed forces on the seats of both shafts.
+
+    They lie along the line of action of the mesh that is simulated, which stands for its own.
+    """
+    pinion, gear = (
+        Motion(0.0 * seats[f"{s}_bearing/vertical"].even, 0.0 * seats[f"{s}_bearing/vertical"].odd)
+        .plus(seats[f"{s}_bearing/vertical"], cos(pressure_angle_rad))
+        .plus(seats[f"{s}_bearing/horizontal"], sin(pressure_angle_rad))
+        for s in ("pinion", "gear")
+    )
+    return pinion.plus(gear, -1.0)
