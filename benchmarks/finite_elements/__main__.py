@@ -11,6 +11,7 @@ from benchmarks.finite_elements import (
     face_kernel,
     face_losses,
     neighbour_face,
+    part_crack_comparison,
     single_pair,
 )
 
@@ -28,6 +29,7 @@ TABLES = {
     "spots": comparison.spots,
     "crack": crack_comparison.crack_table,
     "crack_convergence": crack_comparison.crack_convergence_table,
+    "part_crack": part_crack_comparison.part_crack_table,
     "face": face_kernel.kernel_table,
     "face_losses": face_losses.loss_table,
     "misalignment": face_losses.misalignment_table,

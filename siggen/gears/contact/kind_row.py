@@ -15,7 +15,7 @@ from siggen.gears.contact.pair_rest import PairRest, pair_rest
 from siggen.gears.contact.table_options import TableOptions, face_slices, half_width, reference_force_n
 from siggen.gears.damage.flank_chords import FlankChords, flank_chords
 from siggen.gears.damage.part_chip import standing_share
-from siggen.gears.damage.tooth_damage import Damage, goes_through, pits_of
+from siggen.gears.damage.tooth_damage import Damage, acts_unevenly, goes_through, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
@@ -79,17 +79,31 @@ def kind_row(
     if healthy is not None and not any(acting) and min(standing) == 1.0:
         rest = healthy.rest
     else:
-        teeth = [
-            tooth_compliance(pair, which, roll, stiffness, of_tooth)
-            for which, roll, of_tooth in zip(flanks, rolls, acting, strict=True)
-        ]
-        rest = pair_rest(pair, (teeth[0], teeth[1]), stiffness, (standing[0], standing[1]))
+        rest = _rest(pair, stiffness, rolls, (acting[0], acting[1]), (standing[0], standing[1]), slices)
     stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
     stated = stated[stated > 0.0]
     edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m
     window = slice(0, points) if healthy is None else _window(pair, chords, position)
     gaps = face_gaps(pair, chords[0], chords[1], position[window])
     return KindRow(position, gaps, window.start, gaps if healthy is None else healthy.elsewhere, rest, edge_radius)
+
+
+def _rest(
+    pair: GearPair,
+    stiffness: StiffnessOptions,
+    rolls: tuple[FloatArray, FloatArray],
+    acting: tuple[Damage, Damage],
+    standing: tuple[float, float],
+    slices: int,
+) -> PairRest:
+    """Return the rest of both teeth (points,): evenly what damage does over the whole face, uneven what it does not."""
+    teeth, added = [], np.zeros((2, rolls[0].size, slices))
+    for i, (which, roll, damage) in enumerate(zip(("pinion", "gear"), rolls, acting, strict=True)):
+        uneven = tuple(d for d in damage if acts_unevenly(d))
+        teeth.append(tooth_compliance(pair, which, roll, stiffness, (d for d in damage if d not in uneven)))
+        for one in uneven:
+            added[i] += one.slice_compliance_m_per_n(pair, roll, teeth[i].total, slices)
+    return pair_rest(pair, (teeth[0], teeth[1]), stiffness, standing, added if added.any() else None)
 
 
 def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray) -> slice:
@@ -109,7 +123,8 @@ def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray) -
 
 def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
     """Return at which fine points (points,) a kind differs from a healthy pair under the reference force."""
-    everywhere = not np.array_equal(row.rest.tooth_m_per_n, healthy.rest.tooth_m_per_n)
+    softer = not np.array_equal(row.rest.tooth_m_per_n, healthy.rest.tooth_m_per_n)
+    everywhere = softer or row.rest.uneven is not None
     found = np.full(row.position_m.size, everywhere)
     window = slice(row.first, row.first + len(row.gaps.left_m))
     left, right = row.gaps.left_m, row.gaps.right_m

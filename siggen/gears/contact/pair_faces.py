@@ -15,7 +15,7 @@ from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.contact.table_options import half_width, reference_force_n
-from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
+from siggen.gears.contact.tooth_kernel import ToothKernel, tooth_kernel, unit_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import centre_line_depth
 
@@ -100,7 +100,7 @@ def pair_faces(
             tips_m=(float(here.tips_m[0]), float(here.tips_m[1])),
             spread=spread,
             kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
-            teeth=tooth_kernel(unit, float(rest.tooth_m_per_n[i]), pair.face_width_m, kappa),
+            teeth=_teeth(unit, rest, i, pair.face_width_m, kappa),
             radius_m=float(radius[i]),
             rounding_m=options.edge_radius_m,
             kappa_per_pa=kappa,
@@ -109,6 +109,13 @@ def pair_faces(
         )
         out.append(slices)
     return out
+
+
+def _teeth(unit: ToothKernel, rest: PairRest, i: int, face_width_m: float, kappa_per_pa: float) -> ToothKernel:
+    """Return how the teeth give way at position i."""
+    if rest.uneven is not None:
+        return rest.uneven.kernel(unit, i, face_width_m, kappa_per_pa)
+    return tooth_kernel(unit, float(rest.tooth_m_per_n[i]), face_width_m, kappa_per_pa)
 
 
 @lru_cache(maxsize=8)

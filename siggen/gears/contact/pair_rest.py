@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.gears.contact.uneven_teeth import UnevenTeeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import ring_torsion
 from siggen.gears.stiffness.compliance import ToothCompliance
@@ -30,15 +31,20 @@ WIDE_MODULES, NARROW_MODULES = 1.75, 2.4
 
 
 class PairRest(NamedTuple):
-    """At positions (k,): `rigid_m_per_n`, and `tooth_m_per_n` that bends over `length_m` (one number)."""
+    """At positions (k,): `rigid_m_per_n`, and `tooth_m_per_n` that bends over `length_m` (one number).
+
+    `uneven`: what is softer in a part of the face, beside it; None: nothing is.
+    """
 
     rigid_m_per_n: FloatArray
     tooth_m_per_n: FloatArray
     length_m: float
+    uneven: UnevenTeeth | None = None
 
     def at(self, chosen: np.ndarray) -> PairRest:
         """Return it at some of the positions."""
-        return PairRest(self.rigid_m_per_n[chosen], self.tooth_m_per_n[chosen], self.length_m)
+        uneven = None if self.uneven is None else self.uneven.at(chosen)
+        return PairRest(self.rigid_m_per_n[chosen], self.tooth_m_per_n[chosen], self.length_m, uneven)
 
 
 def rigid_rest(compliance_m_per_n: FloatArray) -> PairRest:
@@ -51,13 +57,16 @@ def pair_rest(
     teeth: tuple[ToothCompliance, ToothCompliance],
     options: StiffnessOptions,
     standing: tuple[float, float] = (1.0, 1.0),
+    added_m_per_n: FloatArray | None = None,
 ) -> PairRest:
     """Return the rest of pinion and gear tooth (k,) each; without foundation no body twists.
 
-    `standing` is the share of the face, at its end, over which either tooth still stands.
+    `standing` is the share of the face, at its end, over which either tooth still stands; `added_m_per_n` (2, k, n)
+    what is added to slices of either tooth, beside its compliance.
     """
     whole = np.add(teeth[0].total, teeth[1].total)
     bends, softer = np.zeros_like(whole), np.zeros_like(whole)
+    alone = []
     for gear, tooth, share in zip((pair.pinion, pair.gear), teeth, standing, strict=True):
         twist = 0.0
         if options.foundation != "none":
@@ -66,7 +75,9 @@ def pair_rest(
         bends += own
         if share < 1.0:
             softer += (strip_factor(pair, share) - 1.0) * own
-    return PairRest(whole - bends, bends + softer, bending_length_m(pair))
+        alone.append(own)
+    uneven = None if added_m_per_n is None else UnevenTeeth(np.stack(alone), added_m_per_n)
+    return PairRest(whole - bends, bends + softer, bending_length_m(pair), uneven)
 
 
 def strip_factor(pair: GearPair, share: float) -> float:

@@ -2,7 +2,8 @@
 
 It leaves the chord of the root (`root_chord`) at an angle to the tooth's centre line and runs straight into the body.
 Its depth across the face is the same everywhere, or falls from one end, q = q_0 √(1 - w/w_0) (Chen and Shao 2011,
-memory). Slices of the face then stand in parallel, each with a crack of its own depth: k = (1/b) ∫ k(q(w)) dw.
+memory). Where the contact is solved across the face, each slice has the crack of its own depth, and the load moves to
+the other end (`siggen.gears.contact.uneven_teeth`). Elsewhere slices stand in parallel: k = (1/b) ∫ k(q(w)) dw.
 Under load it is open; the other flank closes it, and then the tooth is as it was.
 """
 
@@ -10,7 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from math import cos, degrees, inf, pi, sqrt
+from typing import TypeAlias
 
 import numpy as np
 
@@ -24,8 +27,10 @@ from siggen.gears.geometry.spur_gear import SpurGear
 
 SLACK = 1e-9
 """Of a share or an angle that was divided and multiplied again."""
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+Rule: TypeAlias = tuple[FloatArray, FloatArray]
+WHOLE: Rule = np.polynomial.legendre.leggauss(16)
 """Over the root of the rest of the run, in which compliances are smooth: exact to 1e-9 (tested against fine sums)."""
+SLICE: Rule = np.polynomial.legendre.leggauss(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,16 +69,38 @@ class RootCrack:
         per_unit = pair.youngs_modulus_pa * pair.face_width_m
         gear = pair.member(self.gear)
         share = self.depth_m / root_chord(gear).length_m
-        if self.run_m == inf:
+        if not self.is_uneven:
             return unit_compliance(gear, roll_rad, share, self.angle_rad) / per_unit
-        cracked = min(1.0, self.run_m / pair.face_width_m)
-        stiffness = (1.0 - cracked) / sound_m_per_n
-        end = sqrt(max(0.0, 1.0 - pair.face_width_m / self.run_m))
-        for node, weight in zip(0.5 * (1.0 + end) + 0.5 * (1.0 - end) * NODES, WEIGHTS, strict=True):
-            added = unit_compliance(gear, roll_rad, share * node, self.angle_rad) / per_unit
-            width = weight * (1.0 - end) * node * self.run_m / pair.face_width_m
-            stiffness = stiffness + width / (sound_m_per_n + added)
-        return np.asarray(1.0 / stiffness - sound_m_per_n)
+        return self._between(pair, roll_rad, sound_m_per_n, (0.0, pair.face_width_m), WHOLE)
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether its depth is not the same everywhere."""
+        return self.run_m < inf
+
+    def slice_compliance_m_per_n(
+        self, pair: GearPair, roll_rad: FloatArray, sound_m_per_n: FloatArray, slices: int
+    ) -> FloatArray:
+        """Return what it adds to a tooth that were everywhere as in a slice of the face, (k, n) [m/N]."""
+        edges = np.linspace(0.0, pair.face_width_m, slices + 1)
+        return np.stack([self._between(pair, roll_rad, sound_m_per_n, e, SLICE) for e in pairwise(edges)], axis=1)
+
+    def _between(
+        self, pair: GearPair, roll: FloatArray, sound: FloatArray, edges: tuple[float, float], rule: Rule
+    ) -> FloatArray:
+        """Return what it adds to a tooth that were as between two places across the face (k,): slices in parallel."""
+        low, high = (min(edge / self.run_m, 1.0) for edge in edges)
+        if low == high:
+            return np.zeros(roll.shape)
+        gear, per_unit = pair.member(self.gear), pair.youngs_modulus_pa * pair.face_width_m
+        first, last = sqrt(1.0 - high), sqrt(1.0 - low)
+        softer = np.zeros(roll.shape)
+        for node, weight in zip(0.5 * (last + first) + 0.5 * (last - first) * rule[0], rule[1], strict=True):
+            share = self.depth_m / root_chord(gear).length_m * node
+            added = unit_compliance(gear, roll, share, self.angle_rad) / per_unit
+            softer += weight * (last - first) * node * added / (sound + added)
+        softer *= self.run_m / (edges[1] - edges[0])
+        return np.asarray(sound * softer / (1.0 - softer))
 
     def profile_arc_m(self, gear: SpurGear) -> float:  # noqa: ARG002
         """Return 0: it shows on no flank."""

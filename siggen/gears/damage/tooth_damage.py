@@ -50,6 +50,18 @@ class ToothDamage(Part, Protocol):
         """Yield what is impossible on a pair; asked only where it has no problem of its own."""
 
 
+class UnevenDamage(ToothDamage, Protocol):
+    """Damage that softens its tooth in a part of the face, and says where."""
+
+    @property
+    def is_uneven(self) -> bool: ...  # noqa: D102
+
+    def slice_compliance_m_per_n(
+        self, pair: GearPair, roll_rad: FloatArray, sound_m_per_n: FloatArray, slices: int
+    ) -> FloatArray:
+        """Return what it adds to a tooth, sound (k,), that were everywhere as in a slice of the face, (k, n) [m/N]."""
+
+
 Damage: TypeAlias = tuple[ToothDamage, ...]
 
 
@@ -61,6 +73,11 @@ def on_teeth(parts: Iterable[Part]) -> Damage:
 def acts_on_tooth(part: Part) -> TypeGuard[ToothDamage]:
     """Whether a part answers for its tooth; any other acts elsewhere."""
     return hasattr(part, "tooth_compliance_m_per_n")
+
+
+def acts_unevenly(part: ToothDamage) -> TypeGuard[UnevenDamage]:
+    """Whether damage softens its tooth in a part of the face; any other does so evenly, or not at all."""
+    return bool(getattr(part, "is_uneven", False))
 
 
 @dataclass(frozen=True, slots=True)
