@@ -1,4 +1,4 @@
-"""Two stages in a row: motor, 18/47, a shaft, 18/47 again, load; gears on bearings of their own that stand on the ground."""
+"""Two stages in a row: motor, 18/47, a shaft, 18/47 again, load; every gear on a bearing of its own on the ground."""
 
 from __future__ import annotations
 
