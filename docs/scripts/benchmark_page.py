@@ -1,7 +1,7 @@
 """The measured part of docs/develop/benchmarks.md: `python docs/scripts/benchmark_page.py FILE [FILE ...] [--write]`.
 
-Prints one table per topic of files that `python -m benchmarks --json FILE` wrote: the rows with a goal, and all rows
-where a topic has none. With `--write` they take the place of what stands between the marks of the page.
+Prints one table of files that `python -m benchmarks --json FILE` wrote: the rows with a goal. With `--write` it takes
+the place of what stands between the marks of the page.
 """
 
 from __future__ import annotations
@@ -14,33 +14,23 @@ from typing import Any
 
 PAGE = Path(__file__).resolve().parents[1] / "develop" / "benchmarks.md"
 BEGIN, END = "<!-- benchmark_page.py: begin -->", "<!-- benchmark_page.py: end -->"
-SHOWN = {
-    "presets": "CPU time of a record, per second of signal; healthy, two middle and the severest state.",
-    "precision": "CPU time of the time loop at equal error, and errors of healthy and of severe records.",
-    "stiffness": "CPU time of curves and tables of mesh stiffness; every call has a new module and new pits.",
-    "background": "CPU time of the healthy background of `bench`.",
-    "sensing": "CPU time of paths, instrument and disturbances of `industrial`.",
-    "indicators": "All gear indicators of a synthetic record of 10 s, one channel.",
-    "pages": "`report` and `audit` of sets of `linear_pits`.",
-    "workers": "Wall time of one and of two workers in turn, median of five.",
-    "quickstart": "All 240 records of `linear_pits`.",
-    "loader": "Records read in shuffled windows, files in the system's cache.",
-    "memory": "Largest resident size of a process that makes one record.",
-    "startup": "Wall time of a command that needs no physics.",
-    "cold": "A first run in an empty cache.",
-}
-"""Topic that the page shows -> what its rows hold; results of the others stay in the files."""
+SHOWN = (
+    "presets", "precision", "stiffness", "background", "sensing", "indicators", "workers", "quickstart", "loader",
+    "memory", "startup", "cold",
+)  # fmt: skip
+"""Topics on the page; results of the others stay in the files."""
 LEFT_OUT = "by proportion, not measured"
 
 
 def printed(results: Sequence[Mapping[str, Any]]) -> str:
-    """Return the tables of some runs as markdown; a topic of a later run takes the place of an earlier one."""
+    """Return the table of some runs as markdown; a topic of a later run takes the place of an earlier one."""
     topics: dict[str, Mapping[str, Any]] = {}
     for result in results:
         topics |= result["topics"]
     machines = dict.fromkeys(line for result in results for line in result["machine"] if "others are using" not in line)
-    tables = (line for name in SHOWN if name in topics for line in _topic(name, topics[name]["rows"]))
-    return "\n".join((f"{'; '.join(machines)}.", *tables))
+    rows = (line for name in SHOWN if name in topics for line in _topic(name, topics[name]["rows"]))
+    head = ("", "| topic: what | measured | beside it (×ratio) | goal |", "|---|---|---|---|")
+    return "\n".join((f"{'; '.join(machines)}.", *head, *rows))
 
 
 def with_tables(page: str, tables: str) -> str:
@@ -60,15 +50,13 @@ def with_tables(page: str, tables: str) -> str:
 
 def _topic(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     kept = [row for row in rows if not _is_point(row) and LEFT_OUT not in row["what"]]
-    yield from ("", f"### {name}", "", SHOWN[name], "")
-    yield from ("| what | measured | beside it | ratio | goal |", "|---|---|---|---:|---|")
-    yield from map(_row, [row for row in kept if row["goal"]] or kept)
+    yield from (_row(name, row) for row in kept if row["goal"])
 
 
-def _row(row: Mapping[str, Any]) -> str:
-    ratio = "" if row["ratio"] is None else f"{row['ratio']:.3g}"
+def _row(topic: str, row: Mapping[str, Any]) -> str:
+    ratio = "" if row["ratio"] is None else f" (×{row['ratio']:.3g})"
     met = {None: "", True: ": met", False: ": **missed**"}[row["met"]]
-    cells = (row["what"], row["measured"], row["alternative"], ratio, row["goal"] + met)
+    cells = (f"{topic}: {row['what']}", row["measured"], row["alternative"] + ratio, row["goal"] + met)
     return f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |"
 
 

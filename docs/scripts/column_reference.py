@@ -69,10 +69,10 @@ NAMES = {
 HEAD = """# Columns of a set
 
 This page is printed by `make reference` from the columns that siggen writes; the files carry the same texts as metadata
-(`unit`, `meaning`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. A column needs the section of the YAML
-file that the last cell names; without an entry every set has it. Sets with numbers from files have besides
-`path_number_CHANNEL` (which file of its path a gearbox drew, from 0), `noise_spectrum_CHANNEL_m_s2` and
-`lines_CHANNEL_m_s2` (RMS).
+(`unit`, `meaning`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. In brackets stand unit, type (double
+where a unit stands alone) and the section of the YAML file that a column needs; without one every set has it. Sets with
+numbers from files have besides `path_number_CHANNEL` (which file of its path a gearbox drew, from 0),
+`noise_spectrum_CHANNEL_m_s2` and `lines_CHANNEL_m_s2` (RMS).
 """
 
 
@@ -113,9 +113,7 @@ def channels(full: pa.Schema) -> list[str]:
 
 
 def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable[str]) -> Iterator[str]:
-    """Yield one row for every column, channels together."""
-    yield "| column | meaning | unit | type | needs |"
-    yield "| --- | --- | --- | --- | --- |"
+    """Yield one line for every column, channels together."""
     seen = set()
     for field in fields:
         name = general(field.name, named)
@@ -125,13 +123,13 @@ def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable
         facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
         meaning = general(facts.get("meaning", "signal of the channel" if "sensor" in facts else ""), named)
         kind = re.sub(r"<element: (\w+)[^>]*>(\[\d+\])?", r" of \1", str(field.type)).replace("fixed_size_list", "list")
-        yield f"| `{name}` | {meaning} | {facts.get('unit', '')} | {kind} | {brought.get(field.name, '')} |"
+        unit, needed = facts.get("unit", ""), brought.get(field.name, "")
+        known = (unit, "" if unit and kind == "double" else kind, f"needs {needed}" if needed else "")
+        yield f"* `{name}`: {meaning} ({'; '.join(part for part in known if part)})"
 
 
 def internals() -> Iterator[str]:
-    """Yield one row for every internal quantity of a gearbox with casing, tooth pairs and oil friction."""
-    yield "| quantity | meaning | unit |"
-    yield "| --- | --- | --- |"
+    """Yield one line for every internal quantity of a gearbox with casing, tooth pairs and oil friction."""
     seen = set()
     for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml")):
         column = quantity_column(name)
@@ -142,7 +140,8 @@ def internals() -> Iterator[str]:
         spelled = column.meaning.startswith(name.replace("_", " "))
         note = column.meaning.removeprefix(name.replace("_", " ")) if spelled else ""
         meaning = next((text for pattern, text in NAMES.items() if re.fullmatch(pattern, shown)), "") if spelled else ""
-        yield f"| `{shown}` | {meaning + note if spelled else column.meaning} | {column.unit} |"
+        unit = f" ({column.unit})" if column.unit else ""
+        yield f"* `{shown}`: {meaning + note if spelled else column.meaning}{unit}"
 
 
 def page() -> str:
@@ -176,7 +175,7 @@ def page() -> str:
             "",
             "In `internals/*.parquet`, where the YAML file has `internals`, as float32 series beside the ids of "
             "the record.",
-            "`siggen simulate` writes them for one record. The table shows those of `configs/quickstart.yaml`; other "
+            "`siggen simulate` writes them for one record. The list shows those of `configs/quickstart.yaml`; other "
             "models",
             "have other motions and places. `pair_k` is a pair of teeth in reach of contact, k = 0, 1, ...",
             "",

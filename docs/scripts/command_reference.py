@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = {"siggen": "siggen/cli/app.py", "siggen-diagnostics": "diagnostics/cli/app.py"}
-OFTEN = 3
+OFTEN = 2
 """An option that so many commands describe in the same words stands once, in a table of its own."""
 OPTION = re.compile(r"^\* `([^`]*)`: (.*)\n", re.MULTILINE)
 NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
@@ -28,8 +28,8 @@ This page is printed by `make reference` from the help of the programs; `siggen 
 | 0 | done |
 | 1 | unexpected error; run again with `SIGGEN_TRACEBACK=1` for details |
 | 2 | wrong usage or configuration |
-| 3 | done, but some records failed; the set is usable and the manifest names them |
-| 4 | `verify` found a difference, or `audit --strict` found a trap or too few gearboxes |
+| 3 | some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run |
+| 4 | `verify` found a difference, `check` a change, `audit --strict` a trap or too few gearboxes |
 | 130 | interrupted; the same command goes on where it stopped |
 
 """
@@ -43,7 +43,10 @@ def helped(program: str, app: str) -> str:
     text = re.sub(r"^\* `--(install-completion|show-completion|help)`.*\n", "", text, flags=re.MULTILINE)
     text = re.sub(r"\*\*Commands\*\*:\n\n(\* .*\n)+", "", text)  # cut off in the middle of their sentences
     text = re.sub(r"\*\*Options\*\*:\n\n(?!\*)", "", text)
-    text = re.sub(r"\*\*Usage\*\*:\n\n```console\n\$ (.*)\n```", r"`\1`", text)
+    text = re.sub(r"\*\*Usage\*\*:\n\n```console\n\$ .*\n```\n\n", "", text)  # arguments and options are listed
+    text = re.sub(r" ?Exit codes: [^\n]*(\n[^\n]+)*\n", "\n", text)  # the page begins with them
+    text = re.sub(r"^(\* `[^`-][^`]*`: .*)  \[required\]$", r"\1", text, flags=re.MULTILINE)
+    text = re.sub(r"\n{3,}", "\n\n", text.replace(" range>", ">"))
     text = re.sub(r"\*\*Arguments\*\*:\n\n((?:\* .*\n)+)\n(?:\*\*Options\*\*:\n\n)?", r"\1", text)
     text = text.replace("**Options**:\n\n", "")
     return re.sub(r"^#", "##", text, flags=re.MULTILINE).strip()
@@ -54,7 +57,7 @@ def shared(text: str) -> dict[str, str]:
     counted = Counter(OPTION.findall(text))
     found: dict[str, str] = {}
     for (option, meaning), count in counted.most_common():
-        if count >= OFTEN and option.startswith("-") and name(option) not in map(name, found):
+        if count >= OFTEN and name(option) not in map(name, found):
             found[option] = meaning
     return found
 
@@ -62,7 +65,7 @@ def shared(text: str) -> dict[str, str]:
 def name(option: str) -> str:
     """Return the name of an option without its value: `--fs` of `--fs <float>`."""
     match = NAME.match(option)
-    return match[1] if match else option
+    return match[1] if match else option.partition(" <")[0]
 
 
 def with_references(text: str, options: Mapping[str, str]) -> str:

@@ -20,7 +20,8 @@ from typer.testing import CliRunner
 from siggen.cli.app import app
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
-NULL = {"type": "null"}
+SECTION_DEFAULT = "by its keys"
+SECTION_KIND = "section (kind: "
 
 HEAD = """# Keys of the YAML file
 
@@ -30,9 +31,10 @@ This page is printed by `make reference` from `siggen schema` and the files in `
 * **Number** may be a constant, or a distribution that siggen draws once per gearbox ([below](#distributions)).
 * **extends** names a preset or another file. Mappings are merged key by key; numbers, lists, null, and distributions are
   replaced. The set's own `config.yaml` holds the result.
-* **required**: no default. Where its section is optional, it is required only in that section.
+* The default stands last, in brackets. A key without brackets is required wherever its section stands.
 * **expert**: no shipped configuration sets the key.
-* A key that stands in several places with the same meaning has one row. Defaults that differ are divided by a slash.
+* A section that holds nothing but its keys has no line of its own.
+* A key of one meaning in several places has one line. Defaults that differ are divided by a slash.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
   `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
@@ -65,7 +67,7 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
     if "$ref" in value:
         found = schema.resolved(value)
         kind = found.get("properties", {}).get("kind", {}).get("const")
-        return f"section (kind: {kind})" if kind else "section"
+        return f"{SECTION_KIND}{kind})" if kind else "section"
     alternatives = value.get("anyOf") or value.get("oneOf")
     if alternatives is not None:
         # what may be listed too is described once
@@ -92,6 +94,9 @@ def several(schema: Schema, alternatives: list[Mapping[str, Any]]) -> str:
     if found.count("section") > 1:  # told apart by the keys that they need
         needed = [schema.resolved(part).get("required", ()) for part in rest if "$ref" in part]
         found = [f"section with {', '.join(f'`{key}`' for key in keys)}" for keys in needed] + found[len(needed) :]
+    kinds = [each.removeprefix(SECTION_KIND).rstrip(")") for each in found if each.startswith(SECTION_KIND)]
+    if len(kinds) > 1:
+        found = [f"section of kind {', '.join(kinds)}", *(each for each in found if not each.startswith(SECTION_KIND))]
     return " or ".join(dict.fromkeys(found))
 
 
@@ -106,12 +111,12 @@ def listing(schema: Schema, value: Mapping[str, Any]) -> str:
 def default(key: Key) -> str:
     """Return the default of a key; sections have theirs in their own rows."""
     if key.required:
-        return "required"
+        return ""
     if "default" not in key.schema:
         return "see meaning"
     value = key.schema["default"]
     if isinstance(value, dict) and value:
-        return f"`{mapping(value)}`" if "kind" in value else "by its keys"
+        return f"`{mapping(value)}`" if "kind" in value else SECTION_DEFAULT
     if isinstance(value, float):
         return f"`{digits(value)}`"
     return f"`{value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)}`"
@@ -182,14 +187,14 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class Entry:
-    """A key wherever it stands in one table with the same meaning and range: described once, counted once."""
+    """A key wherever it stands in one list with the same meaning and range: described once, counted once."""
 
     keys: tuple[Key, ...]
     start: str
 
     @property
     def names(self) -> list[str]:
-        """The key as it is written in each place, from the table's beginning on."""
+        """The key as it is written in each place, from the list's beginning on."""
         return list(dict.fromkeys(re.sub(BEGINNING.format(self.start), "", key.path) for key in self.keys))
 
     @property
@@ -208,7 +213,7 @@ BEGINNING = r"^{}(?:\[\])?(?: \(kind: \w+\))?(?:\.\w+ \(kind: \w+\))?\."
 
 
 def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
-    """Return the tables of one top-level key: its own keys, then those of every section with kinds."""
+    """Return the lists of one top-level key: its own keys, then those of every section with kinds."""
     found: dict[str, dict[tuple[str, ...], list[Key]]] = {}
     for key in keys:
         begins = re.match(BEGINNING.format(top), key.path)
@@ -216,21 +221,34 @@ def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
             place = re.sub(r" \(kind: \w+\)|\[\]", "", begins[0])
             meant = (key.path.rsplit(".", 1)[-1], described(schema, key.schema), allowed(schema, key.schema))
             found.setdefault(place, {}).setdefault(meant, []).append(key)
-    return [[Entry(tuple(same), top) for same in table.values()] for table in found.values()]
+    return [[Entry(tuple(same), top) for same in place.values()] for place in found.values()]
 
 
-def table(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]) -> Iterator[str]:
-    """Yield a table of keys."""
-    kinds = ["kind"] if len({kind for entry in rows for kind in entry.kinds}) > 1 else []
-    yield row("key", *kinds, "meaning", "allowed", "default", "use")
-    yield row(*["---"] * (5 + len(kinds)))
-    for entry in rows:
-        first, used = entry.keys[0], any(users[key.path] or key.path == "extends" for key in entry.keys)
-        # What a section cannot do without is never for experts, as in `siggen schema`.
-        marks = "" if used or "required" in entry.defaults else "expert"
-        shown = [", ".join(f"`{name}`" for name in entry.names), *([", ".join(entry.kinds)] if kinds else [])]
-        cells = described(schema, first.schema), allowed(schema, first.schema)
-        yield row(*shown, *cells, " / ".join(entry.defaults), marks)
+def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str | None:
+    """Return the line of a key, or nothing of a section that holds nothing but its keys."""
+    first, used = entry.keys[0], any(users[key.path] or key.path == "extends" for key in entry.keys)
+    values = allowed(schema, first.schema)
+    defaults = " / ".join(entry.defaults)
+    if values == "section" and defaults in ("", SECTION_DEFAULT):
+        return None
+    # What a section cannot do without is never for experts, as in `siggen schema`.
+    mark = "" if used or "" in entry.defaults else " (expert)"
+    names = ", ".join(f"`{name}`" for name in entry.names)
+    if defaults == "`null`":
+        values = values.removesuffix(" or `null`")
+    ending = f" ({defaults})" if defaults else ""
+    return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
+
+
+def listing_of(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]) -> Iterator[str]:
+    """Yield the lines of a section, those of the same kinds together."""
+    kinds = list(dict.fromkeys(tuple(entry.kinds) for entry in rows))
+    for group in kinds:
+        lines = [listed(schema, entry, users) for entry in rows if tuple(entry.kinds) == group]
+        if len(kinds) > 1:
+            yield from (f"Kind {', '.join(group)}:" if group else "All kinds:", "")
+        yield from (line for line in lines if line is not None)
+        yield ""
 
 
 def page() -> str:
@@ -246,7 +264,7 @@ def page() -> str:
     count = len(plain) + sum(len(rows) for _, tables in tops for rows in tables)
     lines = [HEAD, f"There are {count} keys in {len(keys)} places.", ""]
     alone = [Entry((key,), "") for key, tables in tops if not tables]
-    lines += ["## Top level", "", *table(schema, alone, users), ""]
+    lines += ["## Top level", "", *listing_of(schema, alone, users)]
     for top, tables in tops:
         text = described(schema, top.schema)
         listed = " A list; these are the keys of an entry." if top.schema.get("type") == "array" else ""
@@ -257,7 +275,7 @@ def page() -> str:
             else:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
                 lines += ["### " + re.sub(r" \(kind: \w+\)", "", place), ""]
-            lines += [*table(schema, rows, users), ""]
+            lines += [*listing_of(schema, rows, users)]
     lines += [DISTRIBUTION_TEXT, *distributions(schema)]
     return "\n".join(lines).rstrip() + "\n"
 

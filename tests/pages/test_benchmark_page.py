@@ -35,7 +35,7 @@ def test_rows_with_a_goal_become_lines_and_points_of_the_figure_none() -> None:
     topics = {"precision": {"rows": rows}, "storage": {"rows": [row("not on the page")]}}
     text = script().printed([{"machine": ["a machine"], "topics": topics}])
     assert text.startswith("a machine.")
-    assert "| a / b | 1 s |  | 2 | <= 2 s: met |" in text
+    assert "| precision: a / b | 1 s |  (×2) | <= 2 s: met |" in text
     assert not any(word in text for word in ("aside", "| c |", "not on the page"))
 
 
