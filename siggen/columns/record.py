@@ -108,7 +108,8 @@ LABEL_COLUMNS = (
         pa.float64(),
         "",
         "largest relative loss of mesh stiffness against healthy by potential energy: a pair without contact length "
-        "carries nothing; a measure of the damage alone, also where the simulation lets flanks sink instead",
+        "carries nothing; a measure of the damage alone, also where the simulation lets flanks sink instead; 0 for "
+        "wear, which takes neither section nor contact length: see mesh_stiffness_loss_as_simulated",
     ),
     Column("contact_loss_share", pa.float64(), "", "share of the time without tooth contact"),
     Column("status", pa.string(), "", "ok; records that failed are in the manifest, not among the rows"),

@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 
 SHAM_COLUMN = Column("sham", pa.bool_(), "", "whether its damage was drawn and passed on with nothing removed")
 
+PRIMARY_COLUMN = Column(
+    "primary_fault", pa.string(), "", "fault, and of a combined state what its first damage in the list is called"
+)
+
 CHANGED_COLUMN = Column(
     "changed_keys", list_of(pa.string()), "", "keys that differ from the healthy gearbox, besides damage"
 )
@@ -21,8 +25,10 @@ CHANGED_COLUMN = Column(
 def state_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns that sets have whose states need them."""
     sham = (SHAM_COLUMN,) if has_sham(config) else ()
-    kinds = (Column(f"has_{word}", pa.bool_(), "", f"whether it shows {word}") for word in combined_words(config))
-    return (*sham, *((CHANGED_COLUMN,) if has_changes(config) else ()), *kinds)
+    words = combined_words(config)
+    kinds = (Column(f"has_{word}", pa.bool_(), "", f"whether it shows {word}") for word in words)
+    primary = (PRIMARY_COLUMN,) if words else ()
+    return (*sham, *((CHANGED_COLUMN,) if has_changes(config) else ()), *primary, *kinds)
 
 
 def combined_words(config: Config) -> tuple[str, ...]:

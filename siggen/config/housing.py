@@ -67,12 +67,15 @@ class PlateHousing(Section):
 
 
 class Bolts(Section):
-    """The bolts between casing and ground, all alike."""
+    """The bolts between casing and ground, all alike but for a loose one."""
 
     shear_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8e7, description="horizontal, each")
     axial_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1.5e8, description="vertical, each")
     damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.04, description="of a bolt that carries its share of the casing's mass"
+    )
+    loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(
+        default=1.0, description="what the first bolt has left of both stiffnesses; 1: it is tight"
     )
     positions_mm: Annotated[tuple[Position, ...], Field(min_length=2)] = Field(
         default=((90.0, 0.0), (90.0, 0.0), (-90.0, 0.0), (-90.0, 0.0)),

@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, model_validator
 from siggen.config.changes import Change, Changes
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.registry import DAMAGE, FAULT_WORDS, HEALTHY, DamageSections, default_word
+from siggen.faults.registry import COMBINED, DAMAGE, FAULT_WORDS, HEALTHY, DamageSections, default_word
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -92,6 +92,11 @@ class State(Section):
     def damaged(self) -> bool:
         """Whether anything is removed."""
         return bool(self.damages) and not self.sham
+
+    @property
+    def primary_fault(self) -> str:
+        """One word for classifiers: its fault, and of a combined one that of the first section of its list."""
+        return self.damages[0].word if self.fault == COMBINED else self.fault
 
     @property
     def faulty(self) -> bool:

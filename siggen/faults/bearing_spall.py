@@ -45,6 +45,9 @@ class BearingSpalls(Fault):
         Column("bearing", pa.string(), "", "bearing with the spall: pinion_bearing or gear_bearing; else empty"),
         Column("element", pa.string(), "", "what of the bearing has it: outer, inner or ball; else empty"),
         Column("length_mm", pa.float64(), MILLIMETRE, "length of a bearing's spall along the path of the balls"),
+        Column(
+            "slip_share", pa.float64(), "", "share by which the cage of a spalled bearing lags in this record; else 0"
+        ),
     )
 
     kind: Literal["bearing_spall"] = "bearing_spall"

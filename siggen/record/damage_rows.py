@@ -11,6 +11,7 @@ from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
+from siggen.specimen.bearing_spalls import drawn_labels
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
 
@@ -20,7 +21,10 @@ def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
     record = planned_record(config, record_id)
     parts, shared = _damage(config, record.specimen_id, record.state_id)
     empty = {column.name: nothing_of(column) for column in (*DAMAGE_COLUMNS, *kind_columns(config))}
-    return [{**empty, "record_id": record_id, **shared, **one.table_row()} for one in parts]
+    return [
+        {**empty, "record_id": record_id, **shared, **one.table_row(), **drawn_labels(config, record, one)}
+        for one in parts
+    ]
 
 
 @lru_cache(maxsize=8)  # records of one specimen and state come one after the other

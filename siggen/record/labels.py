@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from siggen.arrays import FloatArray
 from siggen.columns.gearbox_columns import drawn_places, draws_oil
-from siggen.columns.state_columns import CHANGED_COLUMN, combined_words, has_changes, has_sham, shown_words
+from siggen.columns.state_columns import (
+    CHANGED_COLUMN,
+    PRIMARY_COLUMN,
+    combined_words,
+    has_changes,
+    has_sham,
+    shown_words,
+)
 from siggen.config import Config, State
 from siggen.gears.damage.part import Parts, teeth_of
 from siggen.gears.damage.tooth_damage import on_teeth
@@ -64,8 +71,9 @@ def state_labels(config: Config, state_id: int) -> dict[str, object]:
     """Return the labels of `siggen.columns.state_columns`."""
     sham = {"sham": config.states[state_id].sham} if has_sham(config) else {}
     keys = {CHANGED_COLUMN.name: [one.path for _, one in config.changes_of(state_id)]} if has_changes(config) else {}
-    shown = shown_words(config, state_id)
-    return {**sham, **keys, **{f"has_{word}": word in shown for word in combined_words(config)}}
+    shown, words = shown_words(config, state_id), combined_words(config)
+    primary = {PRIMARY_COLUMN.name: config.states[state_id].primary_fault} if words else {}
+    return {**sham, **keys, **primary, **{f"has_{word}": word in shown for word in words}}
 
 
 def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:

@@ -16,6 +16,7 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.errors import SolverFailure
+from siggen.gears.damage.flank_loss import from_all_teeth
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
@@ -120,7 +121,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         missing = made.missing(state_id)
         assembled = structure(config, specimen)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
-        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS)
+        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, from_all_teeth(teeth.parts))
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
             sham=config.states[state_id].sham,

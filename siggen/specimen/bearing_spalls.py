@@ -20,7 +20,7 @@ from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.external_forces import bearing_direction, shaft_direction, shaft_directions, turning_sense
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
-from siggen.gears.damage.part import Parts
+from siggen.gears.damage.part import Part, Parts
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, named_generator
@@ -99,9 +99,22 @@ def _transmitted(specimen: Specimen, structure: Structure, shaft: str) -> FloatA
     return np.asarray(np.array(crossed) @ np.array([[y, -xy], [-xy, x]]) / (x * y - xy * xy))
 
 
-def _cage(config: Config, record: PlannedRecord, rotation: Rotation, spall: BearingSpall, order: float) -> CageCourse:
+def drawn_labels(config: Config, record: PlannedRecord, part: Part) -> dict[str, object]:
+    """Return what a row of the table of damage tells of a part in this record alone: the slip of a spalled bearing."""
+    return {"slip_share": _slip_and_walk(config, record, part)[0]} if isinstance(part, BearingSpall) else {}
+
+
+def _slip_and_walk(
+    config: Config, record: PlannedRecord, spall: BearingSpall
+) -> tuple[float, float, np.random.Generator]:
+    """Return slip and walk of a bearing's cage in a record, and the generator of its steps."""
     owner = record.specimen_id, record.state_id, record.operating_point_id, record.repeat
     rng = named_generator(config.seed, Stage.DRIVE, *owner, name=f"bearing_spall.{spall.shaft}.cage")
     slip, walk = (low + (high - low) * rng.random() for low, high in (SLIP, WALK))
+    return slip, walk, rng
+
+
+def _cage(config: Config, record: PlannedRecord, rotation: Rotation, spall: BearingSpall, order: float) -> CageCourse:
+    slip, walk, rng = _slip_and_walk(config, record, spall)
     ends = rotation.angle_rad(np.array([-TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S]))
     return cage_course(spall.bearing, rng, slip, walk, (order * float(ends[0]), order * float(ends[1])))

@@ -11,6 +11,7 @@ from siggen.config import Dynamics
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.static_stiffness import largest_secant_loss, secant_stiffness_n_per_m
 from siggen.gears.contact.contact_table import ContactTable
+from siggen.gears.damage.flank_loss import Losses, with_losses
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.specimen.contact import ToothTables
@@ -33,12 +34,15 @@ class StaticMesh:
         With the state's damage, and the same without.
     contact : ContactTable or None
         Where it is solved across the face.
+    worn : bool
+        Whether flanks of all teeth alike miss material by the state's damage.
     """
 
     pair: GearPair
     law: PairLaw
     healthy: PairLaw
     contact: ContactTable | None = None
+    worn: bool = False
 
     def force_n(self, torque_nm: float) -> float:
         """Return the normal force of a torque on the pinion [N]."""
@@ -56,11 +60,13 @@ class StaticMesh:
         if torque_nm < 0.0:
             return 0.0
         force_n = self.force_n(torque_nm) if torque_nm > 0.0 else light_force_n(self.pair)
-        return largest_secant_loss(self.law, self.healthy, force_n)
+        return largest_secant_loss(self.law, self.healthy, force_n, worn=self.worn)
 
 
-def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int) -> StaticMesh:
+def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int, worn: Losses = ()) -> StaticMesh:
     """Return the static mesh of a drawn `dynamics` section; `points` as for the tables of missing material.
+
+    What is `worn` from the flanks of all teeth is missing beside the relief, which `healthy` has alone.
 
     The law linear knows neither relief nor corner contact: its pairs are springs along the path of contact, and their
     stiffness is the mesh stiffness.
@@ -79,7 +85,7 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
     )
     return StaticMesh(
         pair,
-        _law(pair, teeth, missing, contact),
+        _law(pair, teeth, with_losses(missing, pair, worn), contact),
         _law(
             pair,
             replace(teeth, tables=replace(alike, pair_stiffness_n_per_m=alike.pair_stiffness_n_per_m[:1])),
@@ -87,6 +93,7 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
             flush,
         ),
         contact,
+        bool(worn),
     )
 
 

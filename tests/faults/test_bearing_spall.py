@@ -215,6 +215,13 @@ def test_its_row_and_labels_name_the_bearing_and_no_gear() -> None:
     assert record.labels["damaged_area_mm2"] == 0.0
 
 
+def test_its_row_tells_the_slip_that_its_cage_has_in_this_record() -> None:
+    made = with_states(SPALL, None)
+    (row,), (source,) = damage_rows(made, 1), sources_of(made, 1)
+    assert SLIP[0] <= row["slip_share"] <= SLIP[1]
+    assert source.cage.order == pytest.approx(CAGE * (1.0 - row["slip_share"]), rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("damage", "changes", "path", "allowed"),
     [

@@ -11,8 +11,12 @@ from diagnostics.indicators.record import record_values
 from siggen.columns.record import Record
 from siggen.errors import ConfigError
 from siggen.gears.damage.wear import LABEL_POINTS, Wear
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
+from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import simulate
+from siggen.record.simulation import simulate, specimen_state, state_teeth
+from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.static_mesh import static_mesh
 from tests.faults.test_damage import config_with, damage_of
 
 WEAR: dict[str, Any] = {"kind": "wear", "depth_um": 20.0}
@@ -89,6 +93,29 @@ def test_worn_gears_that_are_perfect_otherwise_stay_on_mesh_lines() -> None:
         lines.append(mesh)
     # 20 µm are twice the deflection: mesh lines are others.
     assert np.abs(lines[1][:4] / lines[0][:4] - 1.0).max() > 0.2
+
+
+def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -> None:
+    """Closed form: a layer d off every flank adds d to the approach x at any load: F/x loses d/(x + d) at most."""
+    config = config_with(WEAR)
+    specimen = draw_specimen(config, 0)
+    state = specimen_state(config, specimen, 0)
+    layer = Wear("pinion", (5e-6,) * 9)
+    teeth = state_teeth(config, specimen, 0, MadeGears(config, specimen)).tables
+    worn = static_mesh(specimen.dynamics, state.pair, teeth, TABLE_POINTS, (layer,))
+    force_n = worn.force_n(60.0)
+    approach = force_n / state.static.stiffness_n_per_m(60.0, np.linspace(0.0, 1.0, 2001))
+    # 1e-4: 2001 angles do not meet the kink where the approach is least
+    assert worn.largest_loss(60.0) == pytest.approx(5e-6 / (approach.min() + 5e-6), rel=1e-4)
+
+
+def test_worn_records_tell_a_loss_of_stiffness_that_grows_and_a_sham_none() -> None:
+    config = config_with({**WEAR, "depth_um": 5.0}, WEAR, {**WEAR, "depth_um": 25.0})
+    states = (*config.states[:3], config.states[3].model_copy(update={"sham": True}))
+    config = config.model_copy(update={"states": states})
+    loss = [specimen_state(config, draw_specimen(config, 0), n).static.largest_loss(60.0) for n in range(4)]
+    assert loss[0] == loss[3] == 0.0
+    assert 0.05 < loss[1] < loss[2] < 1.0
 
 
 def test_fm4_of_worn_gears_is_that_of_healthy_ones_in_the_same_noise() -> None:

@@ -52,11 +52,12 @@ def test_two_faults_on_different_teeth_superpose() -> None:
     assert apart < 0.05 * np.std(found - base)
 
 
-def test_their_order_does_not_matter() -> None:
+def test_their_order_does_not_matter_but_for_the_primary_fault() -> None:
     one, other = config(state(PITS, SPALL)), config(state(SPALL, PITS))
     first, second = record(one), record(other)
     assert all(first.channels[name].tobytes() == second.channels[name].tobytes() for name in first.channels)
-    assert first.labels == second.labels
+    assert (first.labels["primary_fault"], second.labels["primary_fault"]) == ("pitting", "spalling")
+    assert {**first.labels, "primary_fault": ""} == {**second.labels, "primary_fault": ""}
     assert damage_rows(one, 1) == damage_rows(other, 1)
 
 
@@ -79,7 +80,40 @@ def test_labels_say_each_kind() -> None:
     assert labels["faulty_teeth_pinion"] == [3, 5]  # the milder state's too
     slight = record(chosen, 1).labels
     assert (slight["fault"], slight["has_pitting"], slight["has_spalling"]) == ("pitting", True, False)
-    assert not [name for name in record_schema(config(state(PITS))).names if name.startswith("has_")]
+    assert (labels["primary_fault"], slight["primary_fault"]) == ("spalling", "pitting")
+    assert record(chosen, 0).labels["primary_fault"] == "healthy"
+    alone = record_schema(config(state(PITS))).names
+    assert not [name for name in alone if name.startswith("has_") or name == "primary_fault"]
+
+
+def test_a_state_may_name_its_primary_fault_itself() -> None:
+    labels = record(config(state(PITS, SPALL, fault="spalling"))).labels
+    assert (labels["fault"], labels["primary_fault"], labels["has_pitting"]) == ("spalling", "spalling", True)
+
+
+def test_each_fault_has_its_rows_in_one_table() -> None:
+    chosen = load_config(
+        minimal(
+            dynamics={"model": "6dof", "mesh": {"law": "pairs"}},
+            states=[
+                {"name": "healthy"},
+                state(
+                    {"kind": "wear", "depth_um": 5.0},
+                    {"kind": "chip", "gear": "gear", "teeth": [7], "height_mm": 1.0},
+                    {"kind": "bearing_spall", "element": "outer", "length_mm": 2.0},
+                ),
+            ],
+        )
+    )
+    rows = damage_rows(chosen, 1)
+    found = {(row["kind"], row["gear"], row["tooth"], row["bearing"], row["element"]) for row in rows}
+    assert found == {
+        ("wear", "pinion", -1, "", ""),
+        ("wear", "gear", -1, "", ""),
+        ("chip", "gear", 7, "", ""),
+        ("bearing_spall", "none", -1, "pinion_bearing", "outer"),
+    }
+    assert len(rows) == len(found)
 
 
 def test_a_sham_may_have_several() -> None:

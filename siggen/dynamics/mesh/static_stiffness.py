@@ -91,7 +91,7 @@ def secant_stiffness_n_per_m(law: PairLaw, force_n: float, pitches: FloatArray) 
     return force_n / static_approaches_m(law, force_n, pitches)
 
 
-def largest_secant_loss(law: PairLaw, healthy: PairLaw, force_n: float) -> float:
+def largest_secant_loss(law: PairLaw, healthy: PairLaw, force_n: float, *, worn: bool = False) -> float:
     """Return max (K_healthy - K)/K_healthy of the secant stiffness at a force, over a whole hunting period.
 
     Parameters
@@ -100,6 +100,8 @@ def largest_secant_loss(law: PairLaw, healthy: PairLaw, force_n: float) -> float
         With and without damage, otherwise the same.
     force_n : float
         Normal force of the mesh [N].
+    worn : bool
+        Whether flanks of all teeth alike miss what those of `healthy` have.
 
     Raises
     ------
@@ -110,7 +112,9 @@ def largest_secant_loss(law: PairLaw, healthy: PairLaw, force_n: float) -> float
     """
     first, along = pairs_before_damage(law), np.linspace(0.0, 1.0, SCANNED)
     if not first.size:
-        return 0.0
+        if not worn:
+            return 0.0
+        first = np.zeros(1, dtype=np.int64)
     # All teeth of `healthy` are alike: one pitch stands for every other.
     whole = static_approaches_m(healthy, force_n, along)
     scanned = (first[:, np.newaxis] + along).ravel()

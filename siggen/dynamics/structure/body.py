@@ -52,12 +52,16 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Bolts:
-    """Bolts between casing and ground, all alike: horizontal stiffness by shear, vertical by the bolt's axis."""
+    """Bolts between casing and ground: horizontal stiffness by shear, vertical by the bolt's axis.
+
+    All are alike, but the first has a share of its stiffness left where it is loose: softer, and never off the ground.
+    """
 
     shear_stiffness_n_per_m: float
     axial_stiffness_n_per_m: float
     damping_ratio: float
     places_m: tuple[Point, ...]
+    loose_share: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,9 +141,10 @@ def bolt_elements(casing: Casing, angle_rad: float) -> tuple[Element, ...]:
     bolts = casing.bolts
     numbers = {"horizontal": bolts.shear_stiffness_n_per_m, "vertical": bolts.axial_stiffness_n_per_m}
     share = casing.mass_kg / len(bolts.places_m)
+    left = (bolts.loose_share, *(1.0 for _ in bolts.places_m[1:]))
     return tuple(
-        Element(on_body(place, axis, angle_rad), k, float(2.0 * bolts.damping_ratio * np.sqrt(k * share)))
-        for place in bolts.places_m
+        Element(on_body(place, axis, angle_rad), part * k, float(2.0 * bolts.damping_ratio * np.sqrt(part * k * share)))
+        for place, part in zip(bolts.places_m, left, strict=True)
         for axis, k in numbers.items()
     )
 

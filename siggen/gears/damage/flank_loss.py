@@ -45,6 +45,11 @@ def from_flanks(parts: Iterable[Part]) -> Losses:
     return tuple(one for one in parts if takes_from_flanks(one))
 
 
+def from_all_teeth(parts: Iterable[Part]) -> Losses:
+    """Return those of them that take from all teeth of a gear alike."""
+    return tuple(one for one in from_flanks(parts) if one.tooth == NO_TOOTH)
+
+
 def takes_from_flanks(part: Part) -> TypeGuard[FlankLoss]:
     """Whether a part takes material from whole flanks; any other acts elsewhere."""
     return hasattr(part, "missing_m")
