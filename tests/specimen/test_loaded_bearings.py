@@ -132,11 +132,7 @@ def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> No
             "states": [{"name": "healthy"}, {**LOOSE, "changes": {CLEARANCE: {"add": -30.0}}}]
         }),
         ("dynamics.gear.bearing.ball_diameter_mm", {"dynamics__gear__bearing": {"ball_diameter_mm": 15.0}}),
-        ("states.1.damage.geometry", {
-            "states": [{"name": "healthy"}, {"name": "spall", "severity": "slight", "damage": {
-                "kind": "bearing_spall", "element": "outer", "length_mm": 1.0, "geometry": {"balls": 8}
-            }}]
-        }),
+        ("dynamics.pinion.bearing.contact_angle_deg", {"dynamics__pinion__bearing": {"contact_angle_deg": 60}}),
     ],
 )  # fmt: skip
 def test_what_no_bearing_is_is_refused_with_its_path(path: str, change: dict[str, Any]) -> None:
