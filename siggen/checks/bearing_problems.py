@@ -13,6 +13,9 @@ from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.bearing_spall import BearingSpalls
 from siggen.keys.drawing import corners
 
+STIFFNESSES = ("bearing_stiffness_x_n_per_m", "bearing_stiffness_y_n_per_m")
+"""Keys of a shaft's section that its `bearing` replaces."""
+
 
 def bearing_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield the problems of both shafts at the bounds of all numbers."""
@@ -27,6 +30,8 @@ def bearing_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
             yield Problem(f"dynamics.{which}.bearing.ball_diameter_mm", received, allowed)
         else:
             yield from _spall_problems(sections, f"{which}_bearing", bearings)
+        if getattr(dynamics, which).bearing is not None:
+            yield from _change_problems(sections, f"dynamics.{which}")
 
 
 def _spall_problems(sections: Mapping[str, Any], place: str, bearings: list[BallBearing]) -> Iterator[Problem]:
@@ -36,3 +41,15 @@ def _spall_problems(sections: Mapping[str, Any], place: str, bearings: list[Ball
             if isinstance(damage, BearingSpalls) and damage.bearing == place:
                 for bearing in bearings:
                     yield from (replace(one, path=f"{path}.{one.path}") for one in damage.problems_in(bearing))
+
+
+def _change_problems(sections: Mapping[str, Any], at: str) -> Iterator[Problem]:
+    """Yield changes of states to a stiffness that a bearing replaces: such a state would be healthy by another name."""
+    unused = [f"{at}.{key}" for key in STIFFNESSES]
+    for index, state in sections.get("states", {}).items():
+        for change in state.changes:
+            if change.path in unused:
+                allowed = f"allowed: changes of {at}.bearing.clearance_um, or {at}.bearing: null"
+                yield Problem(
+                    f"states.{index}.changes.{change.path}", f"a key that {at}.bearing stands in place of", allowed
+                )
