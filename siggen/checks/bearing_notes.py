@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import degrees
 
+from siggen.checks.bearing_problems import STIFFNESSES
 from siggen.config import Config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
@@ -15,12 +16,25 @@ from siggen.specimen.structure import specimen_bearings
 def bearing_notes(config: Config) -> tuple[str, ...]:
     """Return the stiffness of both bearings of each such shaft of gearbox 0, and that of states that change it."""
     found = dict(_of(config))
-    notes = [f"{key}: {text}" for key, text in found.items()]
+    notes = [*_unused(config), *(f"{key}: {text}" for key, text in found.items())]
     for index, state in enumerate(config.states):
         if state.changes:
             changed = _of(state_config(config, 0, index))
             notes += [f"{key}, state {state.name}: {text}" for key, text in changed if found.get(key) != text]
     return tuple(notes)
+
+
+def _unused(config: Config) -> Iterator[str]:
+    """Yield given stiffnesses that a given bearing replaces; a preset that a file extends may have given them."""
+    for which in ("pinion", "gear"):
+        rotor = getattr(config.dynamics, which)
+        given = [key for key in STIFFNESSES if key in rotor.model_fields_set]
+        if rotor.bearing is not None and given:
+            at = f"dynamics.{which}"
+            yield (
+                f"{' and '.join(f'{at}.{key}' for key in given)}: not used: {at}.bearing has a stiffness by load; "
+                f"{at}.bearing: null takes the given one"
+            )
 
 
 def _of(config: Config) -> Iterator[tuple[str, str]]:

@@ -42,8 +42,8 @@ class Rotor(Section):
     )
     bearing: BallGeometry | None = Field(
         default=None,
-        description="null: the stiffnesses above, at any load; given: each of two such ball bearings, whose stiffness "
-        "follows load and clearance and takes their place",
+        description="null: the stiffnesses above, at any load (a spall is in one of the defaults); given: each of two "
+        "such ball bearings, whose stiffness follows load and clearance and takes their place",
     )
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar, Literal
 import pyarrow as pa
 from pydantic import Field
 
+from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.bearings.bearing_spall import BearingSpall, in_bearings
 from siggen.errors import Problem
 from siggen.faults.ball_geometry import BallGeometry
@@ -23,17 +24,12 @@ from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant
 from siggen.seeding import Stage, named_uniforms
 
-KEYS = {
-    "length_m": "length_mm",
-    "depth_m": "depth_mm",
-    "balls": "geometry.balls",
-    "ball_diameter_m": "geometry.ball_diameter_mm",
-}
+KEYS = {"length_m": "length_mm", "depth_m": "depth_mm"}
 """Key that a problem of the drawn spall is about."""
 
 
 class BearingSpalls(Fault):
-    """A spall in one of the two bearings of a shaft."""
+    """A spall in one of the two bearings of a shaft: `dynamics.<shaft>.bearing`; where that is null, its defaults."""
 
     words: ClassVar[tuple[str, ...]] = ("bearing",)
     acts: ClassVar[str] = (
@@ -52,7 +48,8 @@ class BearingSpalls(Fault):
 
     kind: Literal["bearing_spall"] = "bearing_spall"
     bearing: Literal["pinion_bearing", "gear_bearing"] = Field(
-        default="pinion_bearing", description="on whose shaft; one of its two bearings, which bears half of the load"
+        default="pinion_bearing",
+        description="one of the two on that shaft (dynamics.<shaft>.bearing)",
     )
     element: Literal["outer", "inner", "ball"] = Field(description="the spalled race, or a ball")
     length_mm: Annotated[Number, Within(above=0)] = Field(description="along the path of the balls")
@@ -64,7 +61,6 @@ class BearingSpalls(Fault):
         description="place on the outer race from the direction of the bearing's load, along the turn of the shaft; "
         "null: 0, where races break",
     )
-    geometry: BallGeometry = Field(default=BallGeometry(), description="the bearing")
 
     @property
     def position(self) -> str:
@@ -82,19 +78,16 @@ class BearingSpalls(Fault):
         (low, high), (low_before, high_before) = bounds(self.length_mm), bounds(milder.length_mm)
         return "length_mm" if low < low_before or high <= high_before else None
 
-    def contradictions(self, milder: Fault) -> Iterator[Problem]:
-        """Yield other numbers of a bearing that the milder state has too."""
-        if isinstance(milder, BearingSpalls) and milder.bearing == self.bearing and milder.geometry != self.geometry:
-            allowed = "allowed: the numbers of the milder state, whose bearing it is, or grows_from: none"
-            yield Problem("geometry", f"another {self.bearing}", allowed)
-
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:  # noqa: ARG002
         """Yield what cannot be in a bearing, whatever the gears."""
         if self.from_load_deg is not None and self.element != "outer":
             allowed = "allowed: null, or element: outer; inner races and balls turn"
             yield Problem("from_load_deg", f"{self.from_load_deg} with element: {self.element}", allowed)
+
+    def problems_in(self, bearing: BallBearing) -> Iterator[Problem]:
+        """Yield the first of what does not fit its element of a bearing."""
         for corner in corners(self):
-            for problem in corner._spall(0.0).own_problems():
+            for problem in corner._spall(bearing, 0.0).own_problems():
                 yield Problem(KEYS[problem.name], in_mm(problem.received), allowed_text(problem.allowed))
                 return
 
@@ -103,7 +96,7 @@ class BearingSpalls(Fault):
         began = [state for state, older in growth.milder if self._is_of(older)]
         uniform = named_uniforms(growth.seed, Stage.DAMAGE, growth.specimen_id, began[-1] if began else growth.state_id)
         name = f"bearing_spall.{self.bearing}.{self.element}"
-        spall = draw(self, uniform, name)._spall(uniform(f"{name}.place"))
+        spall = draw(self, uniform, name)._spall(BallGeometry().bearing(), uniform(f"{name}.place"))
         for older in in_bearings(growth.before):
             if (older.place, older.element) == (spall.place, spall.element):
                 # other distributions may rank a gearbox otherwise: what broke out does not come back
@@ -114,7 +107,7 @@ class BearingSpalls(Fault):
     def _is_of(self, older: object) -> bool:
         return isinstance(older, BearingSpalls) and (older.bearing, older.element) == (self.bearing, self.element)
 
-    def _spall(self, turn: float) -> BearingSpall:
+    def _spall(self, bearing: BallBearing, turn: float) -> BearingSpall:
         """Return the drawn spall; those of what turns stand at a share of a turn."""
         place_deg = 0.0 if self.from_load_deg is None else constant(self.from_load_deg)
         return BearingSpall(
@@ -122,6 +115,6 @@ class BearingSpalls(Fault):
             element=self.element,
             length_m=MM * constant(self.length_mm),
             depth_m=MM * constant(self.depth_mm),
-            bearing=self.geometry.bearing(),
+            bearing=bearing,
             place_rad=radians(place_deg if self.element == "outer" else 360.0 * turn),
         )

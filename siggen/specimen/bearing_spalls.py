@@ -2,7 +2,7 @@
 
 The force that loads a bearing is the mean one of this gearbox at this operating point: what the mean torque presses
 through the teeth, half of it on each of the two bearings of a shaft; weight too where `dynamics.<shaft>.bearing` says
-which bearing it is. Slip and walk of the cage belong to the record.
+which bearing it is. Else a spall is in one of the default numbers. Slip and walk of the cage belong to the record.
 """
 
 from __future__ import annotations

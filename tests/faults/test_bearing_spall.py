@@ -230,9 +230,8 @@ def test_its_row_tells_the_slip_that_its_cage_has_in_this_record() -> None:
         ({"element": "ball", "length_mm": 13.0}, {}, "length_mm", "half of the ball's girth"),
         ({"length_mm": {"kind": "uniform", "low": 1.0, "high": 40.0}}, {}, "length_mm", "the spacing of the balls"),
         ({"depth_mm": 4.0}, {}, "depth_mm", "below 3.97 mm, the radius of a ball"),
-        ({"geometry": {"contact_angle_deg": 60}}, {}, "geometry.contact_angle_deg", "to 45"),
-        ({"geometry": {"clearance_um": -1}}, {}, "geometry.clearance_um", "0"),
-        ({"geometry": {"balls": 20}}, {}, "geometry.ball_diameter_mm", "the distance of two balls' centres"),
+        ({"length_mm": 12.0}, {"dynamics__pinion__bearing": {"balls": 14}}, "length_mm", "the spacing of the balls"),
+        ({"geometry": {"balls": 8}}, {}, "geometry", "known keys: "),
         ({"element": "cage"}, {}, "element", "outer"),
         ({"element": "inner", "from_load_deg": 10}, {}, "from_load_deg", "element: outer"),
         ({}, {"dynamics__model": "torsional", "sensors": [{"name": "rim", "place": "pinion_rim"}]}, "kind", "casing"),
@@ -249,11 +248,22 @@ def test_what_cannot_be_is_refused_with_what_is_allowed(
     assert allowed in found[f"states.1.damage.{path}"].allowed
 
 
-def test_a_grown_bearing_is_the_same_bearing_and_its_spall_longer() -> None:
+def test_a_grown_spall_is_longer() -> None:
     states = [
         {"name": "slight", "damage": SPALL},
         {"name": "moderate", "damage": {**SPALL, "length_mm": 1.0}},
-        {"name": "severe", "damage": {**SPALL, "length_mm": 3.0, "geometry": {"balls": 8}}},
+        {"name": "severe", "damage": {**SPALL, "length_mm": 3.0}},
     ]
     problems = {problem.path: problem for problem in parse(minimal(states=states)).problems}
-    assert set(problems) == {"states.1.damage.length_mm", "states.2.damage.geometry"}
+    assert set(problems) == {"states.1.damage.length_mm"}
+
+
+def test_a_spall_is_in_the_bearing_of_its_shaft_and_else_in_a_6205() -> None:
+    bearing = {"balls": 8, "ball_diameter_mm": 12.3, "pitch_diameter_mm": 46.0, "clearance_um": 5.0}
+    made = with_states(SPALL, {**SPALL, "bearing": "gear_bearing"}, dynamics__gear__bearing=bearing)
+    (plain,), (given,) = sources_of(made, 1), sources_of(made, 2)
+    found, default = given.spall.bearing, plain.spall.bearing
+    assert default.balls == 9
+    assert default.outer_order == pytest.approx(9 * CAGE)
+    assert found.outer_order == pytest.approx(8 * 0.5 * (1.0 - 12.3 / 46.0))
+    assert found.clearance_m == pytest.approx(5e-6)

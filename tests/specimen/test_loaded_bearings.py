@@ -21,6 +21,7 @@ from siggen.specimen.structure import specimen_bearings, structure
 from tests.config.minimal import config, minimal
 
 CLEARANCE = "dynamics.pinion.bearing.clearance_um"
+STIFFNESS = "dynamics.gear.bearing_stiffness_y_n_per_m"
 LOOSE = {"name": "loose", "fault": "clearance", "severity": "slight", "changes": {CLEARANCE: {"times": 4.0}}}
 
 
@@ -124,6 +125,14 @@ def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> No
     assert "clearance 40 um" in notes[2]
 
 
+def test_plan_says_which_given_stiffness_a_bearing_replaces_and_which_it_does_not() -> None:
+    given = {"dynamics__gear__bearing_stiffness_y_n_per_m": 1e8}
+    (note,) = (note for note in shaft_notes(made(**given)) if "not used" in note)
+    assert note.startswith(f"{STIFFNESS}: not used")
+    assert "dynamics.gear.bearing: null" in note
+    assert not [note for note in shaft_notes(made(**given, dynamics__gear__bearing=None)) if "not used" in note]
+
+
 @pytest.mark.parametrize(
     ("path", "change"),
     [
@@ -132,11 +141,10 @@ def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> No
             "states": [{"name": "healthy"}, {**LOOSE, "changes": {CLEARANCE: {"add": -30.0}}}]
         }),
         ("dynamics.gear.bearing.ball_diameter_mm", {"dynamics__gear__bearing": {"ball_diameter_mm": 15.0}}),
-        ("states.1.damage.geometry", {
-            "states": [{"name": "healthy"}, {"name": "spall", "severity": "slight", "damage": {
-                "kind": "bearing_spall", "element": "outer", "length_mm": 1.0, "geometry": {"balls": 8}
-            }}]
+        (f"states.1.changes.{STIFFNESS}", {
+            "states": [{"name": "healthy"}, {**LOOSE, "changes": {STIFFNESS: {"times": 0.5}}}]
         }),
+        ("dynamics.pinion.bearing.contact_angle_deg", {"dynamics__pinion__bearing": {"contact_angle_deg": 60}}),
     ],
 )  # fmt: skip
 def test_what_no_bearing_is_is_refused_with_its_path(path: str, change: dict[str, Any]) -> None:

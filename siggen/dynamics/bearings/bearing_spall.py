@@ -74,13 +74,9 @@ class BearingSpall:
         return replace(self, length_m=0.0, depth_m=0.0, kind=SHAM)
 
     def own_problems(self) -> Iterator[Refusal]:
-        """Yield balls that do not fit between their neighbours, and a spall that does not fit its element."""
+        """Yield how a spall does not fit its element."""
         bearing = self.bearing
-        room_m = bearing.room_m
-        if bearing.ball_diameter_m >= room_m:
-            received = f"{bearing.balls} balls of {bearing.ball_diameter_m!r} m"
-            yield Refusal("ball_diameter_m", received, f"below {room_m!r} m, the distance of two balls' centres")
-        elif not self.length_m < self.largest_length_m:
+        if not self.length_m < self.largest_length_m:
             said = "half of the ball's girth" if self.element == "ball" else "the spacing of the balls"
             yield Refusal("length_m", f"{self.length_m!r} m", f"below {self.largest_length_m!r} m, {said}")
         elif not self.depth_m < 0.5 * bearing.ball_diameter_m:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -177,7 +176,7 @@ def seated_springs(
     held: Mapping[str, Sequence[Element]],
     seats: tuple[str, ...],
     flexibility_m_per_n: FloatArray | None,
-    crossing: Crossing = MappingProxyType({}),
+    crossing: Crossing | None = None,
 ) -> SeatedSprings:
     """Return bearings on seats that give way by (seats, seats), each by the forces on all of them.
 
@@ -190,7 +189,7 @@ def seated_springs(
     seat = [number for number, _ in elements]
     k, c = (np.array([getattr(e, name) for _, e in elements]) for name in ("stiffness", "damping"))
     stiff, damped = np.diag(k), np.diag(c)
-    for name, ties in crossing.items():
+    for name, ties in (crossing or {}).items():
         axes = [[i for i, place in enumerate(seat) if seats[place] == f"{name}/{axis}"] for axis in AXES]
         for i, j, tie in zip(*axes, ties, strict=True):
             stiff[i, j], damped[i, j] = stiff[j, i], damped[j, i] = tie
