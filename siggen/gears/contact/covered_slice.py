@@ -12,6 +12,7 @@ alone or of a gap alone keeps its own law, and between them the sink is continuo
 from __future__ import annotations
 
 from math import asinh
+from typing import NamedTuple
 
 from siggen.compiled import njit
 from siggen.gears.contact.line_kernel import ENERGY_WIDTH
@@ -28,28 +29,32 @@ def spread_of_cells(cell_widths: float) -> float:
     return 1.5 * asinh(x) - 0.5 * asinh(3.0 * x)
 
 
+class CoveredSlice(NamedTuple):
+    """A slice (a named tuple, since compiled code takes no dataclass).
+
+    `gap`: left_m, right_m, notch_m, floor_m of the covered part, as for `gap_sink`; `tips`: left_m and right_m of the
+    land; `covered`: c; `spread`: k; `radii`: radius_m and rounding_m, as for `gap_sink`.
+    """
+
+    gap: tuple[float, float, float, float]
+    tips: tuple[float, float]
+    covered: float
+    spread: float
+    radii: tuple[float, float]
+
+
 @njit(cache=True)
-def covered_sink(
-    gap: tuple[float, float, float, float],
-    tips: tuple[float, float],
-    covered: float,
-    spread: float,
-    radii: tuple[float, float],
-    load_m: float,
-) -> GapSink:
+def covered_sink(one: CoveredSlice, load_m: float) -> GapSink:
     """Return the sink of a slice, its slope, and the part of the gap's load on its left edge.
 
     Parameters
     ----------
-    gap : left_m, right_m, notch_m, floor_m of the covered part, as for `gap_sink`
-    tips : left_m and right_m of the land
-    covered : c, above 0 and below 1
-    spread : k
-    radii : radius_m and rounding_m, as for `gap_sink`
+    one : CoveredSlice, with c above 0 and below 1
     load_m : κq of the whole slice [m]; at 0 the rigid sink
     """
-    land, (radius, rounding) = 1.0 - covered, radii
-    apart = 0.0 if load_m <= 0.0 else load_apart(gap, tips, covered, spread, radii, load_m)
+    gap, tips, covered, spread, (radius, rounding) = one
+    land = 1.0 - covered
+    apart = 0.0 if load_m <= 0.0 else load_apart(one, load_m)
     on_land = gap_sink(tips[0], tips[1], 0.0, 0.0, radius, rounding, load_m + covered * apart)
     on_gap = gap_sink(gap[0], gap[1], gap[2], gap[3], radius, rounding, max(load_m - land * apart, 0.0))
     if load_m <= 0.0:
@@ -63,16 +68,10 @@ def covered_sink(
 
 
 @njit(cache=True)
-def load_apart(
-    gap: tuple[float, float, float, float],
-    tips: tuple[float, float],
-    covered: float,
-    spread: float,
-    radii: tuple[float, float],
-    load_m: float,
-) -> float:
+def load_apart(one: CoveredSlice, load_m: float) -> float:
     """Return u_l - u_g [m] of a slice under `load_m` > 0; parameters as for `covered_sink`."""
-    land, (radius, rounding) = 1.0 - covered, radii
+    gap, tips, covered, spread, (radius, rounding) = one
+    land = 1.0 - covered
     # between a land and a gap that carry nothing
     low, high = -load_m / covered, load_m / land
     on_land = gap_sink(tips[0], tips[1], 0.0, 0.0, radius, rounding, high)

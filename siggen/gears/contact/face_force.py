@@ -25,8 +25,9 @@ from typing import NamedTuple
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
+from siggen.gears.contact.covered_slice import CoveredSlice
 from siggen.gears.contact.exponential_matrix import add_row_products, products
-from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, part_sink, slice_sink
+from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_of, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import Answers, SolverRoom, add_low_rank, solve_local
 from siggen.gears.contact.own_width import MeanWidth, mean_width, own_law
@@ -124,7 +125,7 @@ def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatA
             return
     own = 4.0 + slices.teeth.sum + slices.compliance_m_per_n * slices.carrying_m / slices.kappa_per_pa
     for i in range(loads.size):
-        sunk = slice_sink(slices, i, 0.0).sink_m
+        sunk = slice_sink(slice_of(slices, i), 0.0).sink_m
         loads[i] = max(approach + tilt * slices.face_m[i] - slices.lead_m[i] - sunk, 0.0) / own
 
 
@@ -161,14 +162,14 @@ def _assemble(
         total += loads[i]
     rest = slices.compliance_m_per_n * per_load * total
     chosen, settled = 0, True
-    # One by one: to hand over the tuple costs more than the sink.
+    # Arrays one by one: to hand over all slices costs more than the sink.
     left, right, notch, floor = slices.left_m, slices.right_m, slices.notch_m, slices.floor_m
     covered, tips, spread = slices.covered, slices.tips_m, slices.spread
     radii = slices.radius_m, slices.rounding_m
     for i in range(loads.size):
         own = room.diagonal[i]
-        around = left[i], right[i], notch[i], floor[i]
-        gap = part_sink(around, tips, covered[i], spread, radii, loads[i])
+        one = CoveredSlice((left[i], right[i], notch[i], floor[i]), tips, covered[i], spread, radii)
+        gap = slice_sink(one, loads[i])
         wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
         if loads[i] == 0.0:
             if wanted <= gap.sink_m:
@@ -176,7 +177,7 @@ def _assemble(
             settled = False
             # small beside the neighbours but not 0, where sinks are infinitely soft
             loads[i] = min((wanted - gap.sink_m) / (own + 4.0), 0.05 * total / loads.size + 1e-15)
-            gap = part_sink(around, tips, covered[i], spread, radii, loads[i])
+            gap = slice_sink(one, loads[i])
             wanted -= own * loads[i]
         factor, slope = own_law(loads[i], laws.width)
         residual = wanted - (laws.beta + factor) * loads[i] - gap.sink_m

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
-from siggen.gears.contact.covered_slice import covered_sink
+from siggen.gears.contact.covered_slice import CoveredSlice, covered_sink
 from siggen.gears.contact.line_kernel import LineKernel, reckoned_width
 from siggen.gears.contact.tooth_kernel import ToothKernel
 from siggen.gears.contact.two_edges import GapSink, gap_sink
@@ -44,26 +44,19 @@ class FaceSlices(NamedTuple):
 
 
 @njit(cache=True)
-def slice_sink(slices: FaceSlices, i: int, load: float) -> GapSink:
-    """Return the sink of slice i under a load κq [m]."""
+def slice_of(slices: FaceSlices, i: int) -> CoveredSlice:
+    """Return slice i on its own."""
     gap = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
-    radii = slices.radius_m, slices.rounding_m
-    return part_sink(gap, slices.tips_m, slices.covered[i], slices.spread, radii, load)
+    return CoveredSlice(gap, slices.tips_m, slices.covered[i], slices.spread, (slices.radius_m, slices.rounding_m))
 
 
 @njit(cache=True)
-def part_sink(
-    gap: tuple[float, float, float, float],
-    tips: tuple[float, float],
-    covered: float,
-    spread: float,
-    radii: tuple[float, float],
-    load: float,
-) -> GapSink:
-    """Return the sink of a slice from its numbers one by one, as for `covered_sink`."""
-    if 0.0 < covered < 1.0:
-        return covered_sink(gap, tips, covered, spread, radii, load)
-    return gap_sink(gap[0], gap[1], gap[2], gap[3], radii[0], radii[1], load)
+def slice_sink(one: CoveredSlice, load: float) -> GapSink:
+    """Return the sink of a slice under a load κq [m]."""
+    if 0.0 < one.covered < 1.0:
+        return covered_sink(one, load)
+    gap, (radius, rounding) = one.gap, one.radii
+    return gap_sink(gap[0], gap[1], gap[2], gap[3], radius, rounding, load)
 
 
 @njit(cache=True)

@@ -6,7 +6,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.contact.face_force import face_force
-from siggen.gears.contact.face_slices import FaceSlices, slice_sink
+from siggen.gears.contact.face_slices import FaceSlices, slice_of, slice_sink
 from siggen.gears.contact.newton_matrix import solver_room
 
 CLOSE = 1e-6
@@ -26,7 +26,7 @@ def loads_under_force(slices: FaceSlices, force_n: float, tilt_rad: float = 0.0)
     if force_n <= 0.0:
         return loads
     # First touch by rigid flanks, then as if the whole pair were linear: both ends of a bracket, stretched if needed.
-    sinks = np.array([slice_sink(slices, i, 0.0).sink_m for i in range(loads.size)])
+    sinks = np.array([slice_sink(slice_of(slices, i), 0.0).sink_m for i in range(loads.size)])
     low = float((sinks + slices.lead_m - tilt_rad * slices.face_m).min())
     teeth = slices.teeth.sum * slices.kappa_per_pa / (slices.kernel.cell_m * loads.size)
     high, step = np.inf, 2.0 * (slices.compliance_m_per_n + teeth) * force_n + 1e-7

@@ -16,7 +16,7 @@ from siggen.compiled import njit
 from siggen.gears.contact.covered_slice import load_apart
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.edge_pressure import largest_edge_pressure
-from siggen.gears.contact.face_slices import FaceSlices, slice_sink
+from siggen.gears.contact.face_slices import FaceSlices, slice_of, slice_sink
 
 
 class SlicePressures(NamedTuple):
@@ -47,12 +47,11 @@ def _pressures(slices: FaceSlices, loads: FloatArray) -> tuple[FloatArray, Float
         load = loads[i]
         if load <= 0.0:
             continue
-        gap = slice_sink(slices, i, load)
+        one = slice_of(slices, i)
+        gap = slice_sink(one, load)
         land = load
         if 0.0 < slices.covered[i] < 1.0:
-            around = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
-            radii = radius, rounding
-            apart = load_apart(around, slices.tips_m, slices.covered[i], slices.spread, radii, load)
+            apart = load_apart(one, load)
             land, load = load + slices.covered[i] * apart, load - (1.0 - slices.covered[i]) * apart
         pressure[i] = np.sqrt(2.0 * max(land, load) / radius) / (np.pi * kappa)
         left, right = slices.left_m[i], slices.right_m[i]

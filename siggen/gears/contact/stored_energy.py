@@ -9,7 +9,7 @@ from siggen.compiled import njit
 from siggen.gears.contact.covered_slice import load_apart
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.exponential_matrix import add_row_products, products
-from siggen.gears.contact.face_slices import FaceSlices, contact_half_width
+from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_of
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import SolverRoom
 from siggen.gears.contact.own_width import mean_width, own_width
@@ -71,11 +71,11 @@ def stored_energy(
 @njit(cache=True)
 def _sink_energy(slices: FaceSlices, i: int, load: float, nodes: FloatArray) -> float:
     """Return ∫ e du of slice i: of gap and land one by one, since a gap comes to carry with a bend of the sink."""
-    gap = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
-    covered, radii = slices.covered[i], (slices.radius_m, slices.rounding_m)
+    one = slice_of(slices, i)
+    gap, covered, radii = one.gap, one.covered, one.radii
     if not 0.0 < covered < 1.0:
         return _gap_energy(gap, radii, load, nodes)
-    apart = load_apart(gap, slices.tips_m, covered, slices.spread, radii, load)
+    apart = load_apart(one, load)
     land = slices.tips_m[0], slices.tips_m[1], 0.0, 0.0
     on_land = _gap_energy(land, radii, load + covered * apart, nodes)
     on_gap = _gap_energy(gap, radii, max(load - (1.0 - covered) * apart, 0.0), nodes)

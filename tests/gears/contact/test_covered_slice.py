@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.contact.face_contact import FaceCase, approach_at, land_of_pits
-from siggen.gears.contact.covered_slice import covered_sink, spread_of_cells
+from siggen.gears.contact.covered_slice import CoveredSlice, covered_sink, spread_of_cells
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.two_edges import gap_sink
@@ -31,7 +31,7 @@ GAP, TIPS, RADII = (0.5e-3, 0.05e-3, 0.2e-3, 0.2e-3), (-NO_EDGE, -NO_EDGE), (RAD
 def test_a_slice_that_is_all_but_covered_or_free_has_the_law_of_gap_or_land() -> None:
     for load in (0.05e-6, 0.3e-6, 1e-6):
         plain = gap_sink(*GAP, *RADII, load)
-        nearly, hardly = (covered_sink(GAP, TIPS, c, 1.2, RADII, load) for c in (1.0 - 1e-9, 1e-9))
+        nearly, hardly = (covered_sink(CoveredSlice(GAP, TIPS, c, 1.2, RADII), load) for c in (1.0 - 1e-9, 1e-9))
         assert nearly.sink_m == pytest.approx(plain.sink_m, rel=1e-6)
         assert nearly.slope == pytest.approx(plain.slope, rel=1e-5)
         assert hardly.sink_m == pytest.approx(0.0, abs=1e-8 * load)
@@ -40,6 +40,7 @@ def test_a_slice_that_is_all_but_covered_or_free_has_the_law_of_gap_or_land() ->
 def test_the_sink_is_that_of_the_least_energy_and_its_slope_its_derivative() -> None:
     """Independent: the energy of land and gap summed finely and searched for its least value."""
     covered, spread = 0.4, spread_of_cells(1.28)
+    one = CoveredSlice(GAP, TIPS, covered, spread, RADII)
     grid = np.linspace(0.0, 2.5e-6, 20001)
     sinks = np.array([gap_sink(*GAP, *RADII, load).sink_m for load in grid])
     energy = np.concatenate([[0.0], np.cumsum(0.5 * (sinks[1:] + sinks[:-1]) * np.diff(grid))])
@@ -51,9 +52,9 @@ def test_the_sink_is_that_of_the_least_energy_and_its_slope_its_derivative() -> 
 
     for load in (0.1e-6, 0.3e-6, 0.8e-6):
         step = 0.02 * load
-        found = covered_sink(GAP, TIPS, covered, spread, RADII, load)
+        found = covered_sink(one, load)
         assert found.sink_m == pytest.approx((least(load + step) - least(load - step)) / (2.0 * step), rel=2e-3)
-        ahead, behind = (covered_sink(GAP, TIPS, covered, spread, RADII, load + s).sink_m for s in (1e-10, -1e-10))
+        ahead, behind = (covered_sink(one, load + s).sink_m for s in (1e-10, -1e-10))
         assert found.slope == pytest.approx((ahead - behind) / 2e-10, rel=1e-4)
 
 
