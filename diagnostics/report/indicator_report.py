@@ -253,7 +253,7 @@ def _write_page(
         indicator_tables.sensitivity_html(first, explorer),
         *([html.heading("Undefined values"), undefined] if undefined else []),
         html.heading("Definitions"),
-        indicator_tables.definition_html(),
+        indicator_tables.definition_html({channel.quantity for channel in dataset.channels}),
         html.heading("Notes"),
         *html.notes(_notes(dataset, evaluated)),
     ]
