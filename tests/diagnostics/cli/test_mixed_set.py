@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 import siggen
+from diagnostics.indicators.table import record_table
 from diagnostics.loader import WindowDataset
 from diagnostics.loader.windows import OrderRecords, order_records
 from diagnostics.training.cnn import WideKernelNetwork, _normalise
@@ -19,7 +21,7 @@ from siggen.errors import UsageError
 
 MIXED = """
 extends: quickstart
-specimens: 4
+specimens: 2
 duration_s: 0.5
 operating_points: [{speed_hz: 33.0, torque_nm: 40.0}]
 splits: {train: 10, validation: 5, test: 5}
@@ -82,3 +84,26 @@ def test_the_network_takes_every_channel_at_its_own_scale(mixed: Any) -> None:
     _normalise(network, OrderRecords(other, records.record_id, records.channels, records.settings), train)
     # float32 holds a speed of 207 rad/s to 1e-5 of its variation of 1 rad/s; ten layers add to that
     torch.testing.assert_close(network(windows * torch.from_numpy(factor)), before, rtol=5e-3, atol=5e-3)
+
+
+@pytest.mark.slow
+def test_indicators_explorer_and_audit_take_the_set_in_fresh_processes(folder: Path, mixed: Any) -> None:
+    out = folder.parent
+    ran("siggen-diagnostics", "indicators", str(folder), "--out", str(out / "ranking"))
+    ran("siggen-diagnostics", "explore", str(folder), "--out", str(out / "explorer.html"))
+    ran("siggen-diagnostics", "audit", str(folder), "--out", str(out / "audit"))
+    table = pq.read_table(out / "ranking" / "indicators.parquet")
+    speeds = [channel.name for channel in mixed.channels if channel.quantity == "angular speed"]
+    assert len(speeds) == 2
+    for name in speeds:
+        assert f"crest_factor__{name}" not in table.column_names
+        ripple = np.array(table.column(f"speed_ripple__{name}"))
+        assert np.isfinite(ripple).all()
+        assert 0.0 < ripple.max() < 0.02
+        # the mean speed of 207 rad/s on the pinion, 79 on the gear, is no vibration
+        assert max(table.column(f"rms_without_mean__{name}").to_pylist()) < 5.0
+    page = (out / "ranking" / "indicators.html").read_text(encoding="utf-8")
+    assert "Speed ripple" in page
+    assert "rad/s" in (out / "explorer.html").read_text(encoding="utf-8")
+    with pytest.raises(UsageError, match=r"holds angular speed.*acceleration alone.*side"):
+        record_table(mixed).values([f"crest_factor__{speeds[0]}"])
