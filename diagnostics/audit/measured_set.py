@@ -13,9 +13,11 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import check_table
+from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.table import PULSE_CONDITIONS, RecordTable, record_table
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.recording import TACHO_NAME
@@ -134,9 +136,16 @@ class MeasuredSet:
 
     def matrix(self) -> FeatureMatrix:
         """Return all indicators of all channels, one column each."""
-        names = tuple(f"{name}__{channel}" for channel in self.channels for name in self.indicators)
-        columns = [self.values[name][:, k] for k in range(len(self.channels)) for name in self.indicators]
+        taken = [(name, k) for k in range(len(self.channels)) for name in self.indicators if self.has(name, k)]
+        names = tuple(f"{name}__{self.channels[k]}" for name, k in taken)
+        columns = [self.values[name][:, k] for name, k in taken]
         return FeatureMatrix(np.stack(columns, axis=1), names, self.labels)
+
+    def has(self, indicator: str, channel: int) -> bool:
+        """Return whether an indicator is taken of what the channel of this place holds."""
+        known = BY_NAME.get(base_name(indicator))
+        held = self.other_quantities.get(self.channels[channel], RECORDED.word)
+        return known is None or known.is_taken_of(held)
 
 
 def measured_set(
@@ -163,8 +172,7 @@ def measured_set(
     labels = {name: _array(column) for name, column in _scalar_labels(dataset).items()}
     if not np.array_equal(table.labels()["record_id"], labels["record_id"]):
         raise DatasetError(f"{dataset.path}: labels and signals are not in the same order; `siggen verify` names why")
-    first = f"__{table.channels[0]}"
-    indicators = tuple(name.removesuffix(first) for name in table.names() if name.endswith(first))
+    indicators = _indicators(table)
     return MeasuredSet(
         labels=labels,
         channels=table.channels,
@@ -179,6 +187,13 @@ def measured_set(
     )
 
 
+def _indicators(table: RecordTable) -> tuple[str, ...]:
+    """Return the indicators of all channels, each once, in the order of the first channel that has them."""
+    ends = [f"__{channel}" for channel in table.channels]
+    found = [name.removesuffix(end) for end in ends for name in table.names() if name.endswith(end)]
+    return tuple(dict.fromkeys(found))
+
+
 def _values(table: RecordTable, indicators: Sequence[str]) -> dict[str, np.ndarray]:
     """Return everything by name, (records, channels)."""
     count = len(table.channels)
@@ -186,7 +201,11 @@ def _values(table: RecordTable, indicators: Sequence[str]) -> dict[str, np.ndarr
     for name in ("samples", *BYTES):
         found[name] = table.values([f"{name}.{channel}" for channel in table.channels])
     names = (*indicators, *LEVELS)
-    every = table.values([f"{name}__{channel}" for name in names for channel in table.channels])
+    wanted = [f"{name}__{channel}" for name in names for channel in table.channels]
+    present = {*table.names(), *(name for name in wanted if name.split("__")[0] in LEVELS)}
+    kept = [name in present for name in wanted]
+    every = np.full((table.rows, len(wanted)), np.nan)  # not taken of what that channel holds
+    every[:, kept] = table.values([name for name in wanted if name in present])
     return found | {name: every[:, k * count : (k + 1) * count] for k, name in enumerate(names)}
 
 

@@ -162,8 +162,11 @@ def phasor_bound(count: int) -> float:
 
 
 def healthy_sidebands(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if more than a fifth of the healthy channel-records has no visible sideband at mesh 1-3."""
-    strongest = measured.values["strongest_sideband_db"][measured.healthy]
+    """Return a finding if more than a fifth of the healthy channel-records has no visible sideband at mesh 1-3.
+
+    The bound was measured with accelerometers: channels of another quantity are not judged.
+    """
+    strongest = measured.values["strongest_sideband_db"][np.ix_(measured.healthy, measured.accelerations)]
     strongest = strongest[~np.isnan(strongest)]
     if strongest.size == 0:
         return []

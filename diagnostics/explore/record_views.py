@@ -22,7 +22,7 @@ from diagnostics.signal.spectrum import envelope_spectrum
 from diagnostics.signal.synchronous_average import hann_weights, synchronous_average, whole_revolutions
 
 MESH_HARMONICS = 8.5
-FLOOR_M_S2 = 1e-9
+FLOOR = 1e-9
 
 DECIBEL_STEP = 0.01
 
@@ -115,8 +115,8 @@ def highest_order(teeth: int, fs_hz: float, slowest_hz: float) -> float:
 
 
 def decibels(amplitude: np.ndarray) -> np.ndarray:
-    """Return levels over 1 m/s^2; what is below 1e-9 m/s^2 counts as that."""
-    return np.asarray(20.0 * np.log10(np.maximum(amplitude, FLOOR_M_S2)))
+    """Return levels over one unit of the channel; what is below 1e-9 of it counts as that."""
+    return np.asarray(20.0 * np.log10(np.maximum(amplitude, FLOOR)))
 
 
 @dataclass(frozen=True, slots=True)

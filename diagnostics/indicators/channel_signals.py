@@ -2,8 +2,8 @@
 
 Names that a formula may take: of the record `signal`, `spectral_kurtosis`; of a shaft `average`, `regular`, `residual`,
 `difference`, `lines`, `sideband_lines`, `revolutions`, `modulation`, `residual_band`, `teeth`, `log_spectrum`,
-`period_steps`; and the fields of its columns (`harmonic`, `sideband` ...). A column that belongs to no shaft is the
-record's or the pinion's.
+`period_steps`, `shaft_lines`; of the record over angle `angle_signal`, `ripple_bins`; and the fields of its columns
+(`harmonic`, `sideband` ...). A column that belongs to no shaft is the record's or the pinion's.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_baseband
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signal
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
+from diagnostics.signal.shaft_lines import ripple_bins, shaft_lines
 from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES, spectral_kurtosis
 
@@ -128,6 +129,8 @@ class ChannelSignals:
         """Return what a formula takes by this name."""
         if name in ("signal", "spectral_kurtosis"):
             return getattr(self, name)
+        if name == "angle_signal":
+            return self._angle_signal
         if name in SHAFT_SIGNALS:
             return getattr(self.shaft(shaft), name)
         if name in PARTS:
@@ -140,6 +143,8 @@ class ChannelSignals:
             "residual_band": self._residual_band,
             "log_spectrum": self._shaft_log_spectrum,
             "period_steps": self._period_steps,
+            "shaft_lines": self._shaft_lines,
+            "ripple_bins": self._ripple_bins,
         }[name](shaft, field)
 
     def _revolutions(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002 - one signature for all
@@ -177,6 +182,22 @@ class ChannelSignals:
     def _period_steps(self, shaft: str, field: dict[str, Any]) -> float:  # noqa: ARG002
         """Return one revolution of a shaft in steps of the cepstrum: the gear takes z2/z1 pinion revolutions."""
         return 2.0 * self._highest_order * self._shaft(shaft).teeth / self.shafts[0].teeth
+
+    @property
+    def _angle_signal(self) -> np.ndarray:
+        if not self.steps.size:
+            raise UndefinedSignalError
+        return self.steps
+
+    def _shaft_lines(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002
+        mine, other = self._shaft(shaft), next(found for found in self.shafts if found.name != shaft)
+        if mine.revolutions < 1:
+            raise UndefinedSignalError
+        return shaft_lines(self.steps, mine.teeth, other.teeth, self.settings.samples_per_tooth)
+
+    def _ripple_bins(self, shaft: str, field: dict[str, Any]) -> tuple[int, int]:  # noqa: ARG002
+        teeth = (self.shafts[0].teeth, self.shafts[1].teeth)
+        return ripple_bins(self.steps.size / (teeth[0] * self.settings.samples_per_tooth), teeth)
 
     def _half_width(self, teeth: int) -> int:
         """Return the sidebands on each side that a band round a mesh harmonic holds: as set, or as many as fit."""

@@ -52,6 +52,8 @@ class Indicator:
         When it has no value.
     source : str
         Where it comes from; with MATLAB's convention where there is one.
+    quantities : tuple of str
+        What a channel has to hold for it, in the words of the set's files; empty: anything.
     """
 
     column: str
@@ -63,6 +65,11 @@ class Indicator:
     known: str
     undefined: str
     source: str
+    quantities: tuple[str, ...] = ()
+
+    def is_taken_of(self, quantity: str) -> bool:
+        """Return whether channels that hold this have its columns."""
+        return not self.quantities or quantity in self.quantities
 
     @property
     def history(self) -> bool:
@@ -114,11 +121,13 @@ def indicator(
     undefined: str,
     source: str,
     unit: str = "",
+    quantities: tuple[str, ...] = (),
 ) -> Callable[[Formula], Formula]:
     """Return a decorator that puts a formula among the indicators; the arguments are those of `Indicator`."""
 
     def keep(function: Formula) -> Formula:
-        INDICATORS.append(Indicator(column, function, title, signal, formula, unit, known, undefined, source))
+        facts = (title, signal, formula, unit, known, undefined, source, quantities)
+        INDICATORS.append(Indicator(column, function, *facts))
         return function
 
     return keep

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from diagnostics.indicators.indicator import BOOK, OF_CHANNEL, STILL, indicator
+from diagnostics.records.channel_quantities import RECORDED
 
 UNDEFINED_BELOW = 1e-9
 """A standard deviation below this share of the rms of the signal (or of a reference) is numerical dust."""
@@ -84,6 +85,7 @@ def kurtosis(signal: np.ndarray, reference_rms: float | None = None) -> float:
     known="sine √2",
     undefined="the signal is zero",
     source=BOOK,
+    quantities=(RECORDED.word,),  # of a speed it tells the mean alone
 )
 def crest_factor(signal: np.ndarray) -> float:
     """Return max |x| / rms(x); NaN for a signal of zeros.

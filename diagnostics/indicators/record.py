@@ -9,14 +9,17 @@ import math
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from diagnostics.indicators.channel_signals import ChannelSignals
+from diagnostics.indicators.indicator import Indicator
 from diagnostics.indicators.line_levels import LEVELS, record_levels
-from diagnostics.indicators.registry import ALL
+from diagnostics.indicators.registry import taken_of
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.record_problems import RecordProblem, clipped_channels, record_problems
 from diagnostics.records.recording import Recording
 from diagnostics.records.sample_bytes import sample_bytes
@@ -124,6 +127,7 @@ def record_values(
     fs_hz: float,
     teeth: tuple[int, int],
     settings: IndicatorSettings | None = None,
+    quantities: Mapping[str, str] = MappingProxyType({}),
 ) -> RecordValues:
     """Return the indicators of a record that is not one of a set: a window, or a piece of a recording.
 
@@ -139,9 +143,15 @@ def record_values(
         Teeth of pinion and gear.
     settings : IndicatorSettings, optional
         Default: `IndicatorSettings()`.
+    quantities : mapping of str to str
+        What channels hold that hold no acceleration.
     """
     signals, shafts = record_signals(channels, tacho_s, fs_hz, teeth, settings or IndicatorSettings())
-    values = {f"{name}__{channel}": v for channel, own in signals.items() for name, v in own.values(ALL).items()}
+    values = {
+        f"{name}__{channel}": value
+        for channel, own in signals.items()
+        for name, value in own.values(taken_of(quantities.get(channel, RECORDED.word))).items()
+    }
     turns = (shafts[0].revolutions, shafts[1].revolutions)
     waveforms = {}
     if turns[0] >= FEWEST_AUDIT_TURNS:
@@ -183,13 +193,17 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
     if usable:
         signals, shafts = record_signals(usable, pulses, record.fs_hz, _teeth(record), chosen)
         turns, notes = (shafts[0].revolutions, shafts[1].revolutions), shaft_notes(shafts)
-        channels |= {name: _channel_result(own, record.channels[name], pulses) for name, own in signals.items()}
+        for name, own in signals.items():
+            taken = taken_of(record.quantities.get(name, RECORDED.word))
+            channels[name] = _channel_result(own, taken, record.channels[name], pulses)
     conditions = _pulse_conditions(pulses)
     return RecordResult(record.labels, channels, pulses, turns, conditions, notes, problems, refused, clipped)
 
 
-def _channel_result(signals: ChannelSignals, raw: np.ndarray, pulses: np.ndarray) -> ChannelResult:
-    values = signals.values(ALL)
+def _channel_result(
+    signals: ChannelSignals, taken: tuple[Indicator, ...], raw: np.ndarray, pulses: np.ndarray
+) -> ChannelResult:
+    values = signals.values(taken)
     conditions, grid = _channel_conditions(raw), signals.grid
     if grid is None or grid.revolutions < FEWEST_AUDIT_TURNS:
         return ChannelResult(values | dict.fromkeys(LEVELS, math.nan), signals.moments(), conditions=conditions)

@@ -5,13 +5,16 @@ What people call the columns of indicators: `sideband_pinion_h2_upper1` is a sid
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cache
 from itertools import product
 from typing import Any
 
-from diagnostics.indicators import average, cepstrum, history, level, sidebands
-from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator
+from diagnostics.indicators import angle, average, cepstrum, history, level, sidebands
+from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator, base_name
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
+from siggen.errors import UsageError
 
 WORDS = {
     "shaft": "{}",
@@ -19,13 +22,47 @@ WORDS = {
     "harmonics": "mesh harmonics 1 to {}",
     "demodulated_harmonic": "mesh harmonic {}",
     "ratio_sidebands": "sidebands 1 to {}",
+    "shaft_order": "order {}",
 }
 
-FILES = (level, cepstrum, average, history, sidebands)
+FILES = (level, cepstrum, average, history, sidebands, angle)
 ALL: tuple[Indicator, ...] = tuple(
     entry for file in FILES for entry in INDICATORS if entry.function.__module__ == file.__name__
 )
 BY_NAME = {entry.name: entry for entry in ALL}
+
+
+@cache
+def taken_of(quantity: str) -> tuple[Indicator, ...]:
+    """Return the indicators that a channel has which holds this quantity."""
+    return tuple(entry for entry in ALL if entry.is_taken_of(quantity))
+
+
+def check_quantity(column: str, quantities: Mapping[str, str]) -> None:
+    """Check that a column with its channel is taken of what the channel holds; other columns pass.
+
+    Parameters
+    ----------
+    column : str
+        Such as `crest_factor__bearing_vertical`.
+    quantities : mapping of str to str
+        What channels hold.
+
+    Raises
+    ------
+    UsageError
+        If the indicator is taken of other quantities.
+    """
+    _, _, channel = column.partition("__")
+    entry, held = BY_NAME.get(base_name(column)), quantities.get(channel)
+    if entry is None or held is None or entry.is_taken_of(held):
+        return
+    fitting = [name for name, quantity in quantities.items() if entry.is_taken_of(quantity)]
+    there = f"a channel that holds it ({', '.join(fitting)})" if fitting else "a set with such a channel"
+    raise UsageError(
+        f"{column}: received channel {channel!r}, which holds {held}; {entry.name} is taken of "
+        f"{' or '.join(entry.quantities)} alone. Name {there}, or another indicator: `table.names()` lists them."
+    )
 
 
 def indicator_titles(settings: IndicatorSettings, channel_unit: str = RECORDED.unit) -> dict[str, str]:
@@ -75,11 +112,11 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def columns(settings: IndicatorSettings) -> tuple[str, ...]:
+def columns(settings: IndicatorSettings, quantity: str = RECORDED.word) -> tuple[str, ...]:
     """Return the columns of one channel that a record alone gives, without the channel's name."""
     return tuple(
         entry.column.format(**dict(zip(entry.fields, chosen, strict=True)))
-        for entry in ALL
+        for entry in taken_of(quantity)
         if not entry.history
         for chosen in product(*(settings.choices(field) for field in entry.fields))
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH
+from diagnostics.signal.shaft_lines import LINE_ORDERS
 from diagnostics.signal.shaft_signals import SHAFT_ORDERS, SIDEBANDS
 from diagnostics.signal.spectral_kurtosis import FRAME_SAMPLES
 
@@ -54,5 +55,6 @@ class IndicatorSettings:
             "side": ("lower", "upper"),
             "sideband": tuple(range(1, self.sidebands + 1)),
             "ratio_sidebands": (self.ratio_sidebands,),
+            "shaft_order": LINE_ORDERS,
             "band": tuple(band_name(*band) for band in ORDER_BANDS),
         }[field]

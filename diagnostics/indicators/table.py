@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
@@ -28,9 +28,10 @@ import pyarrow.parquet as pq
 from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.own_indicator import OwnIndicator, all_own, own_columns
 from diagnostics.indicators.record import RecordResult, record_result
-from diagnostics.indicators.registry import columns
+from diagnostics.indicators.registry import check_quantity, columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import mapped
+from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.record_problems import RecordProblem
 from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.records.sample_bytes import BYTES
@@ -140,6 +141,8 @@ class RecordTable:
         Where those failed.
     note : str
         Why the table could not be kept on disk, or empty.
+    quantities : dict of str to str
+        What channels hold.
     """
 
     source: pa.Table | Path
@@ -148,6 +151,7 @@ class RecordTable:
     own: dict[str, np.ndarray] = field(default_factory=dict)
     own_problems: tuple[RecordProblem, ...] = ()
     note: str = ""
+    quantities: dict[str, str] = field(default_factory=dict)
 
     def select(self, names: Sequence[str]) -> pa.Table:
         """Return the named columns."""
@@ -160,7 +164,15 @@ class RecordTable:
         return {name: np.asarray(column.to_pylist()) for name, column in _named(self.select(LABEL_NAMES)).items()}
 
     def values(self, names: Sequence[str]) -> np.ndarray:
-        """Return the named columns as numbers, (records, columns), the user's among them; NaN where undefined."""
+        """Return the named columns as numbers, (records, columns), the user's among them; NaN where undefined.
+
+        Raises
+        ------
+        UsageError
+            If an indicator is not taken of what its channel holds.
+        """
+        for name in names:
+            check_quantity(name, self.quantities)
         table = _named(self.select([name for name in names if name not in self.own]))
         found = [self.own[name] if name in self.own else _numbers(table[name]) for name in names]
         return np.stack(found, axis=1) if found else np.empty((self.rows, 0))
@@ -191,7 +203,11 @@ class RecordTable:
 
     def names(self) -> tuple[str, ...]:
         """Return all indicators of one record by column, the user's last."""
-        per_channel = [f"{name}__{channel}" for channel in self.channels for name in columns(self.settings)]
+        per_channel = [
+            f"{name}__{channel}"
+            for channel in self.channels
+            for name in columns(self.settings, self.quantities.get(channel, RECORDED.word))
+        ]
         return (*per_channel, *self.own)
 
 
@@ -242,11 +258,12 @@ def record_table(
     if kept is None:
         source = _computed(dataset, chosen, channels, workers, advance)
         note = keep_table(source, files[-1]) if files and files[-1] is not None else ""
-    table = RecordTable(source, chosen, channels, note=note)
+    held = {channel.name: channel.quantity for channel in dataset.channels}
+    table = RecordTable(source, chosen, channels, note=note, quantities=held)
     pulses = [np.asarray(row.values, np.float64) for row in table.select(["pulses_s"]).column("pulses_s")]
     refused = table.texts("refused")
     found, problems = own_columns(dataset, mine, pulses, refused, workers=workers, advance=advance if kept else None)
-    return RecordTable(source, chosen, channels, found, tuple(problems), note)
+    return replace(table, own=found, own_problems=tuple(problems))
 
 
 def _computed(
@@ -255,7 +272,8 @@ def _computed(
     results = list(_results(dataset, settings, workers, advance))
     if not results:
         raise DatasetError(f"{dataset.path}: no records to take indicators of; received splits {list(dataset.splits)}")
-    return _as_table(results, settings, channels)
+    held = {channel.name: channel.quantity for channel in dataset.channels}
+    return _as_table(results, settings, {name: held[name] for name in channels})
 
 
 def _results(
@@ -272,7 +290,7 @@ def _record_result(settings: IndicatorSettings, record: Recording) -> RecordResu
     return record_result(record, settings)
 
 
-def _as_table(results: list[RecordResult], settings: IndicatorSettings, channels: tuple[str, ...]) -> pa.Table:
+def _as_table(results: list[RecordResult], settings: IndicatorSettings, held: Mapping[str, str]) -> pa.Table:
     found: dict[str, Any] = {name: [result.labels[name] for result in results] for name in LABEL_NAMES}
     found |= {
         "revolutions_pinion": [result.revolutions[0] for result in results],
@@ -284,15 +302,16 @@ def _as_table(results: list[RecordResult], settings: IndicatorSettings, channels
         "pulses_s": pa.array([result.pulses_s for result in results], pa.list_(pa.float64())),
         **{name: [float(result.conditions[name]) for result in results] for name in PULSE_CONDITIONS},
     }
-    for channel in channels:
-        found |= _channel_columns([result.channels[channel] for result in results], settings, channel)
+    for channel, quantity in held.items():
+        names = columns(settings, quantity)
+        found |= _channel_columns([result.channels[channel] for result in results], names, channel)
     return pa.table(found)
 
 
-def _channel_columns(results: list[Any], settings: IndicatorSettings, channel: str) -> dict[str, Any]:
+def _channel_columns(results: list[Any], names: Sequence[str], channel: str) -> dict[str, Any]:
     found: dict[str, Any] = {
         f"{name}__{channel}": _finite([own.values.get(name, np.nan) for own in results], keep_infinite=name in LEVELS)
-        for name in (*columns(settings), *LEVELS)
+        for name in (*names, *LEVELS)
     }
     moments = dict.fromkeys(name for own in results for name in own.moments)
     found |= {f"moment.{name}__{channel}": [own.moments.get(name, np.nan) for own in results] for name in moments}

@@ -20,6 +20,7 @@ from torch.utils.data import Sampler
 from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.loader.window_sample import RowGroupSignals, Sample, Transform, transformed, window_sample
+from diagnostics.records.usable_records import of_quantity
 from siggen.dataset.reading import Dataset
 
 KEPT_RECORDS = 32
@@ -49,11 +50,14 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         Of these generators.
     cache : Path, optional
         Folder for decoded records, read through memory mapping.
+    quantity : str, optional
+        Channels that hold this, such as "acceleration"; default all. Every channel comes in its own unit, so a network
+        that takes several quantities has to standardise them.
 
     Raises
     ------
     UsageError
-        If a label is unknown or a number is out of range.
+        If a label is unknown, a number is out of range, or no channel holds the quantity.
     DatasetError
         If no record of the split holds a whole window.
     """
@@ -68,8 +72,9 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         transform: Transform | None = None,
         seed: int = 0,
         cache: Path | None = None,
+        quantity: str | None = None,
     ) -> None:
-        chosen = settings or StreamSettings()
+        chosen, dataset = settings or StreamSettings(), of_quantity(dataset, quantity)
         self.index = window_index(dataset, split, chosen, labels)
         self.signals = RowGroupSignals(dataset, split, dataset.row_groups(split), chosen, self.index, cache)
         self.transform, self.seed = transform, seed

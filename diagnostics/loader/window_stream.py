@@ -25,6 +25,7 @@ from torch.utils.data._utils.collate import default_collate_fn_map
 from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks, rank_windows
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.loader.window_sample import RowGroupSignals, Sample, Transform, transformed, window_sample
+from diagnostics.records.usable_records import of_quantity
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
@@ -81,11 +82,14 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
     transform : callable, optional
         Takes a single window with its labels and a generator, and returns what is batched. The generator depends on
         seed, epoch and window alone.
+    quantity : str, optional
+        Channels that hold this, such as "acceleration"; default all. Every channel comes in its own unit, so a network
+        that takes several quantities has to standardise them.
 
     Raises
     ------
     UsageError
-        If a number is out of range.
+        If a number is out of range, or no channel holds the quantity.
     DatasetError
         If no record of the split holds a whole window.
     """
@@ -101,10 +105,11 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         cache: Path | None = None,
         labels: Sequence[str] = (),
         transform: Transform | None = None,
+        quantity: str | None = None,
     ) -> None:
         if batch is not None and batch < 1:
             raise UsageError(f"batch: received {batch}; allowed are 1 or more windows, or None for single ones")
-        chosen = settings or StreamSettings()
+        chosen, dataset = settings or StreamSettings(), of_quantity(dataset, quantity)
         self.batch = batch
         self.shuffling = shuffling or Shuffling()
         self.index = window_index(dataset, split, chosen, labels)

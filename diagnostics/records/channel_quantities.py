@@ -17,6 +17,9 @@ class ShownQuantity(NamedTuple):
 RECORDED = ShownQuantity("acceleration", "m/s²")
 """What recordings are turned into when they are read."""
 
+ANGULAR_SPEED, TRANSMISSION_ERROR = "angular speed", "transmission error"
+"""Words of what encoders give, as the files of a set say them."""
+
 
 def channel_quantities(dataset: Dataset) -> dict[str, ShownQuantity]:
     """Return channel name -> what it holds."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -25,12 +25,16 @@ BATCH_ROWS = 16
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """One record: labels by column name, signals (n,) float32 by channel name, pulse times (k,) [s]."""
+    """One record: labels by column name, signals (n,) float32 by channel name, pulse times (k,) [s].
+
+    `quantities` says what channels hold; those it does not name hold accelerations.
+    """
 
     labels: Mapping[str, Any]
     channels: Mapping[str, np.ndarray]
     tacho_s: np.ndarray
     fs_hz: float
+    quantities: Mapping[str, str] = field(default_factory=dict)
 
 
 def recordings(
@@ -65,6 +69,7 @@ def _rows(batch: Any, dataset: Dataset) -> Iterator[Recording]:
         for channel in dataset.channels
     }
     tacho = batch.column(TACHO_NAME)
+    held = {channel.name: channel.quantity for channel in dataset.channels}
     for row in range(batch.num_rows):
         channels = {name: signal[row] for name, signal in signals.items()}
-        yield Recording(labels[row], channels, np.asarray(tacho[row].values), dataset.fs_hz)
+        yield Recording(labels[row], channels, np.asarray(tacho[row].values), dataset.fs_hz, held)

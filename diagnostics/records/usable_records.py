@@ -44,6 +44,23 @@ def with_channels(dataset: Dataset, names: Sequence[str]) -> Dataset:
     return view
 
 
+def of_quantity(dataset: Dataset, quantity: str | None) -> Dataset:
+    """Return the set with the channels that hold a quantity, such as "acceleration"; all where None is asked for.
+
+    Raises
+    ------
+    UsageError
+        If no channel holds it.
+    """
+    if quantity is None:
+        return dataset
+    held = {channel.name: channel.quantity for channel in dataset.channels}
+    if quantity not in held.values():
+        has = ", ".join(dict.fromkeys(held.values()))
+        raise UsageError(f"quantity: received {quantity!r}; channels of {dataset.path} hold {has}. Name one of these")
+    return with_channels(dataset, [name for name, what in held.items() if what == quantity])
+
+
 class RecordCheck:
     """Collects what is wrong with the records of a set, one after the other, and refuses them together."""
 

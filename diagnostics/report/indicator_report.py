@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ from diagnostics.page.provenance import provenance
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.tables import indicator_links, records_line, set_table
 from diagnostics.page.wording import joined, percent
+from diagnostics.records.channel_quantities import ShownQuantity, channel_quantities
 from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
 from diagnostics.report.indicator_figures import column_title
@@ -125,7 +126,8 @@ def write_indicator_report(
     numbers = report_numbers(dataset, evaluated, sentences)
     (folder / NUMBERS).write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     with stage("figures", 1) as advance, styled():
-        pictures = {name: (png_bytes(drawn), text) for name, (drawn, text) in figures(evaluated).items()}
+        drawn_figures = figures(evaluated, channel_quantities(dataset))
+        pictures = {name: (png_bytes(drawn), text) for name, (drawn, text) in drawn_figures.items()}
         advance()
     (folder / "figures").mkdir(exist_ok=True)
     for name, (png, _) in pictures.items():
@@ -158,7 +160,7 @@ def _noise_curves(evaluated: Evaluated) -> dict[str, dict[str, NoiseCurve]]:
     return curves
 
 
-def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
+def figures(evaluated: Evaluated, held: Mapping[str, ShownQuantity]) -> dict[str, tuple[Figure, str]]:
     """Return all figures by file name with their captions; those without data are left out."""
     names = evaluated.records.states
     if not names or not evaluated.shown:
@@ -167,7 +169,7 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
     intact = tuple(state for state in ordered_states(matrix.labels) if state not in names)
     drawn: dict[str, tuple[Figure | None, str]] = {
         "severity": (
-            indicator_figures.severity_figure(matrix, evaluated.shown, names, intact),
+            indicator_figures.severity_figure(matrix, evaluated.shown, names, intact, held),
             "Indicators over the severity of damage: median (red), 5 to 95 % of the records (blue), specimens (grey).",
         ),
         "detection": (
@@ -253,7 +255,7 @@ def _write_page(
         indicator_tables.sensitivity_html(first, explorer),
         *([html.heading("Undefined values"), undefined] if undefined else []),
         html.heading("Definitions"),
-        indicator_tables.definition_html(),
+        indicator_tables.definition_html({channel.quantity for channel in dataset.channels}),
         html.heading("Notes"),
         *html.notes(_notes(dataset, evaluated)),
     ]

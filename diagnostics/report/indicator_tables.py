@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.registry import ALL, BY_NAME
@@ -211,8 +211,8 @@ def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, floa
     return table(head, rows, caption=caption, sortable=True, tall=True, text=True) if rows else ""
 
 
-def definition_html() -> str:
-    """Return the definitions of all indicators."""
+def definition_html(held: Collection[str]) -> str:
+    """Return the definitions of the indicators that are taken of these quantities."""
     head = [
         "Column starts with",
         "Indicator",
@@ -229,5 +229,6 @@ def definition_html() -> str:
             *(Cell(t) for t in (d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)),
         ]
         for d in ALL
+        if any(d.is_taken_of(quantity) for quantity in held)
     ]
     return table(head, rows, caption="Definitions of the indicators.", tall=True, text=True)

@@ -155,7 +155,7 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Indicators": [*_indicators(reported), grid(drawing.indicators)],
         "Signals": [grid(drawing.vibration)],
         "Damage": [grid(drawing.damage)],
-        "Definitions of the indicators": [definition_html()],
+        "Definitions of the indicators": [definition_html({channel.quantity for channel in reported.dataset.channels})],
         "Notes": html.notes(notes),
     }
 

@@ -57,7 +57,9 @@ def window_matrix(
     for record in recordings(dataset):
         teeth = (int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"]))
         for window in windows_of(record):
-            rows.append(record_values(window.channels, window.tacho_s, window.fs_hz, teeth).values)
+            rows.append(
+                record_values(window.channels, window.tacho_s, window.fs_hz, teeth, None, record.quantities).values
+            )
             labels.append(dict(record.labels))
         if advance:
             advance()
@@ -86,7 +88,9 @@ def by_channel(matrix: FeatureMatrix) -> FeatureMatrix:
     """Return one row per window and channel, features without the channel's name, and a label `channel`."""
     channels = tuple(dict.fromkeys(name.split("__")[1] for name in matrix.names))
     names = tuple(dict.fromkeys(name.split("__")[0] for name in matrix.names))
-    values = np.concatenate([matrix.columns([f"{name}__{c}" for name in names]).values for c in channels])
+    place = {name: k for k, name in enumerate(matrix.names)}
+    padded = np.column_stack([matrix.values, np.full(len(matrix.values), np.nan)])  # what a channel does not have
+    values = np.concatenate([padded[:, [place.get(f"{name}__{c}", -1) for name in names]] for c in channels])
     labels = {name: np.tile(column, len(channels)) for name, column in matrix.labels.items()}
     return FeatureMatrix(values, names, {**labels, "channel": np.repeat(channels, matrix.values.shape[0])})
 

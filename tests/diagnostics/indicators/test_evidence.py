@@ -14,8 +14,9 @@ from diagnostics.indicators.cepstrum import BAND_SHARE
 from diagnostics.indicators.channel_signals import ChannelSignals
 from diagnostics.indicators.history import history_indicators
 from diagnostics.indicators.indicator import base_name
-from diagnostics.indicators.registry import ALL, BY_NAME
+from diagnostics.indicators.registry import taken_of
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
 
@@ -25,6 +26,8 @@ TURNS = TEETH[1]
 ANGLE = 2 * np.pi * np.arange(PER_TURN) / PER_TURN
 SETTINGS = IndicatorSettings()
 PINION = Shaft("pinion", Z, 1, np.ones(6, dtype=bool), "")
+TAKEN = taken_of(RECORDED.word)
+"""Indicators of accelerations; those of angles: test_angle_indicators.py."""
 NO_GEAR = Shaft("gear", TEETH[1], 0, np.zeros(6, dtype=bool), "")
 
 
@@ -40,7 +43,7 @@ def over_angle(steps: np.ndarray) -> ChannelSignals:
 
 
 def column(name: str, steps: np.ndarray) -> float:
-    return over_angle(steps).values(ALL)[name]
+    return over_angle(steps).values(TAKEN)[name]
 
 
 # --- closed forms -----------------------------------------------------------------------------------------------------
@@ -119,7 +122,7 @@ def test_closed_form_of_the_noise_share() -> None:
 
 def raw(name: str, signal: np.ndarray) -> float:
     shafts = record_shafts(None, TEETH, PER_TOOTH, 6)
-    return ChannelSignals(signal, FS_HZ, None, shafts, SETTINGS).values(ALL)[name]
+    return ChannelSignals(signal, FS_HZ, None, shafts, SETTINGS).values(TAKEN)[name]
 
 
 SINE = 1.7 * np.cos(2 * np.pi * np.arange(25_600) / 64)
@@ -156,7 +159,7 @@ def test_closed_form_of_the_cepstral_peaks() -> None:
     for share, name, delay in ((0.4, "pinion", 1280), (0.6, "gear", round(1280 * 47 / 18))):
         echo = noise.copy()
         echo[delay:] += share * noise[:-delay]
-        found = whole_record(echo, np.arange(0.01, 2.39, 0.05)).values(ALL)  # 1,280 samples per pinion revolution
+        found = whole_record(echo, np.arange(0.01, 2.39, 0.05)).values(TAKEN)  # 1,280 samples per pinion revolution
         other = "gear" if name == "pinion" else "pinion"
         assert found[f"cepstral_peak_{name}"] == pytest.approx(share / 2, abs=0.04)
         assert abs(found[f"cepstral_peak_{other}"]) < 0.03
@@ -253,7 +256,7 @@ def second_computation(seed: int) -> dict[str, float]:
 
 def test_every_column_by_a_second_computation() -> None:
     record, pulses, _ = record_and_truth(3)
-    found, expected = whole_record(record, pulses).values(ALL), second_computation(3)
+    found, expected = whole_record(record, pulses).values(TAKEN), second_computation(3)
     found = {name: value for name, value in found.items() if not name.startswith("band_")}  # empty of lines here
     assert set(found) == set(expected)
     for name, value in expected.items():
@@ -268,7 +271,7 @@ def test_every_band_by_a_second_computation() -> None:
     lines = [(o, rng.uniform(0.1, 1.0), rng.uniform(0.0, 6.3)) for o in orders]
     time_s = np.arange(round(1.61 * FS_HZ)) / FS_HZ
     record = written_out(lines, START * time_s)
-    found = whole_record(record, np.arange(1, TURNS + 2) / START).values(ALL)
+    found = whole_record(record, np.arange(1, TURNS + 2) / START).values(TAKEN)
     steps = written_out(lines, 1 + np.arange(TURNS * PER_TURN) / PER_TURN)
     expected = {}
     for name, teeth in zip(("pinion", "gear"), TEETH, strict=True):
@@ -310,8 +313,8 @@ SEPARATE = {"spectral_kurtosis_maximum", "cepstral_peak", "noise_share"}
 
 def test_every_definition_has_a_closed_form_and_a_second_computation() -> None:
     tables = (CLOSED_ON_AVERAGES, CLOSED_ON_RECORDS, CLOSED_OF_HISTORIES)
-    assert {base_name(name) for table in tables for name in table} | SEPARATE == set(BY_NAME)
+    assert {base_name(name) for table in tables for name in table} | SEPARATE == {entry.name for entry in TAKEN}
     record, pulses, _ = record_and_truth(3)
-    by_column = {base_name(name) for name in whole_record(record, pulses).values(ALL)}
+    by_column = {base_name(name) for name in whole_record(record, pulses).values(TAKEN)}
     assert base_name("band_kurtosis_gear_o75_150__lid") == "band_kurtosis"
-    assert by_column | set(CLOSED_OF_HISTORIES) == set(BY_NAME)
+    assert by_column | set(CLOSED_OF_HISTORIES) == {entry.name for entry in TAKEN}

@@ -14,9 +14,10 @@ from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.own_indicator import Gears, OwnIndicator, own_values, register, unregister
 from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
 from diagnostics.indicators.record import record_result, record_values
-from diagnostics.indicators.registry import ALL, BY_NAME
+from diagnostics.indicators.registry import ALL, BY_NAME, taken_of
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
+from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.record_problems import clipped_share
 from diagnostics.records.recording import Recording, recordings
 from diagnostics.signal.mesh_band import mesh_baseband
@@ -49,7 +50,7 @@ def column(table: IndicatorTable, name: str) -> np.ndarray:
 
 
 def test_every_definition_has_columns_and_every_column_a_definition(table: IndicatorTable) -> None:
-    assert {base_name(name) for name in table.matrix.names} == set(BY_NAME)
+    assert {base_name(name) for name in table.matrix.names} == {entry.name for entry in taken_of(RECORDED.word)}
     assert len(BY_NAME) == len(ALL)
     channels = {name.split("__")[1] for name in table.matrix.names}
     assert channels == set(table.channels)

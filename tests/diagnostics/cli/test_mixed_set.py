@@ -1,0 +1,109 @@
+"""A set of accelerations, speeds and a transmission error through the commands, as a user runs them."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+import siggen
+from diagnostics.indicators.table import record_table
+from diagnostics.loader import WindowDataset
+from diagnostics.loader.windows import OrderRecords, order_records
+from diagnostics.training.cnn import WideKernelNetwork, _normalise
+from siggen.errors import UsageError
+
+MIXED = """
+extends: quickstart
+specimens: 2
+duration_s: 0.5
+operating_points: [{speed_hz: 33.0, torque_nm: 40.0}]
+splits: {train: 10, validation: 5, test: 5}
+sensors:
+  - {kind: accelerometer, name: side}
+  - {kind: encoder, name: first, place: pinion, pulses_per_turn: 1800}
+  - {kind: encoder, name: second, place: gear, pulses_per_turn: 1800}
+  - {kind: transmission_error, name: error, pinion_encoder: first, gear_encoder: second}
+"""
+
+
+def ran(command: str, *options: str) -> str:
+    program = str(Path(sys.executable).with_name(command))
+    found = subprocess.run([program, *options], capture_output=True, text=True, timeout=600, check=False)
+    assert found.returncode == 0, found.stderr
+    return found.stdout + found.stderr
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("mixed")
+    (place / "mixed.yaml").write_text(MIXED, encoding="utf-8")
+    ran("siggen", "generate", str(place / "mixed.yaml"), "--out", str(place / "set"))
+    return place / "set"
+
+
+@pytest.fixture(scope="module")
+def mixed(folder: Path) -> Any:
+    return siggen.open(folder)
+
+
+@pytest.mark.slow
+def test_windows_come_by_quantity(mixed: Any) -> None:
+    every, speeds = WindowDataset(mixed, "train"), WindowDataset(mixed, "train", quantity="angular speed")
+    held = [channel.quantity for channel in mixed.channels]
+    chosen = [k for k, quantity in enumerate(held) if quantity == "angular speed"]
+    assert len(chosen) == 2 < len(held)
+    np.testing.assert_array_equal(speeds[0]["windows"], every[0]["windows"][chosen])
+    with pytest.raises(UsageError, match=r"'pressure'.*acceleration, angular speed, transmission error"):
+        WindowDataset(mixed, "train", quantity="pressure")
+
+
+@pytest.mark.slow
+def test_the_network_takes_every_channel_at_its_own_scale(mixed: Any) -> None:
+    import torch
+
+    records = order_records(mixed)
+    train = np.arange(len(records.signals))
+    network = WideKernelNetwork(len(records.channels), 2, records.settings.samples_per_tooth).eval()
+    windows = torch.from_numpy(np.stack([signal[:, : records.settings.samples] for signal in records.signals]))
+    raw = windows.std(dim=(0, 2))
+    assert raw.max() / raw.min() > 10.0  # scales are mixed indeed
+    _normalise(network, records, train)
+    standard = (windows - network.mean) / network.scale
+    assert standard.abs().amax(dim=(0, 2)).max() < 30.0
+    before = network(windows)
+    # the same record in other units: rad/s as rpm, µm as m, with another zero
+    factor = np.array([30.0 / math.pi if "first" in name else 1e-2 for name in records.channels], np.float32)[:, None]
+    other = tuple((factor * signal).astype(np.float32) for signal in records.signals)
+    _normalise(network, OrderRecords(other, records.record_id, records.channels, records.settings), train)
+    # float32 holds a speed of 207 rad/s to 1e-5 of its variation of 1 rad/s; ten layers add to that
+    torch.testing.assert_close(network(windows * torch.from_numpy(factor)), before, rtol=5e-3, atol=5e-3)
+
+
+@pytest.mark.slow
+def test_indicators_explorer_and_audit_take_the_set_in_fresh_processes(folder: Path, mixed: Any) -> None:
+    out = folder.parent
+    ran("siggen-diagnostics", "indicators", str(folder), "--out", str(out / "ranking"))
+    ran("siggen-diagnostics", "explore", str(folder), "--out", str(out / "explorer.html"))
+    ran("siggen-diagnostics", "audit", str(folder), "--out", str(out / "audit"))
+    table = pq.read_table(out / "ranking" / "indicators.parquet")
+    speeds = [channel.name for channel in mixed.channels if channel.quantity == "angular speed"]
+    assert len(speeds) == 2
+    for name in speeds:
+        assert f"crest_factor__{name}" not in table.column_names
+        ripple = np.array(table.column(f"speed_ripple__{name}"))
+        assert np.isfinite(ripple).all()
+        assert 0.0 < ripple.max() < 0.02
+        # the mean speed of 207 rad/s on the pinion, 79 on the gear, is no vibration
+        assert max(table.column(f"rms_without_mean__{name}").to_pylist()) < 5.0
+    page = (out / "ranking" / "indicators.html").read_text(encoding="utf-8")
+    assert "Speed ripple" in page
+    assert "rad/s" in (out / "explorer.html").read_text(encoding="utf-8")
+    with pytest.raises(UsageError, match=r"holds angular speed.*acceleration alone.*side"):
+        record_table(mixed).values([f"crest_factor__{speeds[0]}"])
