@@ -35,7 +35,7 @@ class RootCracks(Fault):
     words: ClassVar[tuple[str, ...]] = ("crack",)
     acts: ClassVar[str] = (
         "Cracks in roots soften their teeth, by a law fitted to finite elements, and leave contact and mass as "
-        "they are; loads on the back flank close them."
+        "they are; loads on the back flank close them, except under dynamics.mesh.law: linear."
     )
     columns: ClassVar[tuple[Column, ...]] = (
         Column("crack_angle_deg", pa.float64(), "deg", "of a crack, between it and the tooth's centre line"),

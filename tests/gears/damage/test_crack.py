@@ -11,6 +11,7 @@ import pytest
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_columns import FORCE
 from siggen.gears.contact.table_options import TableOptions
+from siggen.gears.damage import crack_law
 from siggen.gears.damage.crack import RootCrack
 from siggen.gears.damage.crack_law import unit_compliance
 from siggen.gears.damage.flank_damage import damage_problems
@@ -53,14 +54,30 @@ def test_it_is_the_same_for_every_module_and_halves_on_twice_the_face():
     assert 2.0 * added(crack(), wide) == pytest.approx(added(crack()), rel=1e-12)
 
 
-@pytest.mark.parametrize("gear", [spur_gear(18), spur_gear(47), spur_gear(80)])
-@pytest.mark.parametrize("angle_deg", [35.0, 50.0, 70.0])
+STEEP = replace(spur_gear(200), pressure_angle_rad=radians(28.0), clearance_coefficient=0.2)
+"""Its lowest loads pass the chord so close that the opening changes its sign with the depth."""
+
+
+@pytest.mark.parametrize("gear", [spur_gear(17, profile_shift=0.5), spur_gear(18), spur_gear(80), STEEP])
+@pytest.mark.parametrize("angle_deg", [35.0, 50.0, 60.0, 70.0])
 def test_a_deeper_one_adds_more_wherever_the_load_is(gear, angle_deg):
     roll = np.linspace(gear.involute_start_roll_rad, gear.tip_roll_rad, 33)
-    shares = np.linspace(0.005, 0.45, 90)
+    # Beyond the deepest that is allowed, 0.45, too.
+    shares = np.linspace(0.005, 0.6, 120)
     found = np.array([unit_compliance(gear, roll, share, radians(angle_deg)) for share in shares])
     assert np.all(np.diff(found, axis=0) > 0.0)
     assert np.all(found[0] > 0.0)
+    assert np.all(np.isfinite(found))
+
+
+@pytest.mark.parametrize("gear", [spur_gear(18), spur_gear(80), STEEP])
+def test_six_depths_are_enough_for_what_growing_releases(gear, monkeypatch):
+    roll = np.linspace(gear.involute_start_roll_rad, gear.tip_roll_rad, 9)
+    own = [unit_compliance(gear, roll, share, 1.0) for share in (0.1, 0.45)]
+    monkeypatch.setattr(crack_law, "RULE", np.polynomial.legendre.leggauss(40))
+    fine = [unit_compliance(gear, roll, share, 1.0) for share in (0.1, 0.45)]
+    # A hundredth of what the mesh of the fit errs by.
+    assert np.array(own) == pytest.approx(np.array(fine), rel=1e-4)
 
 
 def test_a_short_one_adds_in_proportion_to_its_square_and_none_of_it_nothing():
