@@ -9,7 +9,7 @@ import pytest
 
 from tests.house.source_tree import ROOT
 
-MOST_KEYS = 299
+MOST_KEYS = 298
 """Rows of docs/reference/yaml.md. A new key is worth more than one that can go: lower this with every one that goes."""
 PAGES = [path for path in (ROOT / "docs").rglob("*.md") if path.parent.name != "reference"]
 TESTS = [path for path in (ROOT / "tests").rglob("*.py") if path.parent.name != "house"]
