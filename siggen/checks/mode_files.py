@@ -9,12 +9,12 @@ from typing import Any
 from siggen.config import Background, ModalHousing
 from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.errors import Problem
-from siggen.keys.problems import nearest, received_text
+from siggen.keys.problems import nearest
 from siggen.sensing.inputs import MOTION
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.mode_table import BASE, DRIVE, SEATS, ModesRefusal, ModeTable, mode_table, shape_column
 
-KEY = "housing.file"
+KEY = "housing.modes"
 
 
 def with_mode_file(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[str, Any], list[Problem]]:
@@ -26,19 +26,19 @@ def with_mode_file(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[str, A
     folder : Path from which the file's path counts
     """
     housing = raw.get("housing")
-    if not isinstance(housing, Mapping) or housing.get("kind") != "modal" or housing.get("modes") is not None:
+    if not isinstance(housing, Mapping) or housing.get("kind") != "modal":
+        return raw, []
+    name = housing.get("modes")
+    if not isinstance(name, str) or "\n" in name:  # no path: nothing, or what a file held
         return raw, []
     try:
-        # the folder is no part of the set: the same modes elsewhere give the same identity
-        read = {"modes": _read(housing.get("file"), folder).text, "file": Path(str(housing["file"])).name}
+        # neither name nor folder is part of the set: the same modes elsewhere give the same identity
+        return {**raw, "housing": {**housing, "modes": _read(name, folder).text}}, []
     except ModesRefusal as refused:
         return raw, [Problem(KEY, refused.received, refused.allowed)]
-    return {**raw, "housing": {**housing, **read}}, []
 
 
-def _read(name: object, folder: Path) -> ModeTable:
-    if not isinstance(name, str):
-        raise ModesRefusal(received_text(name), "allowed: the path of a CSV file with a line per mode")
+def _read(name: str, folder: Path) -> ModeTable:
     try:
         return mode_table(data_file_bytes(folder / name).decode("utf-8-sig"))
     except OSError as error:
@@ -51,12 +51,12 @@ def _read(name: object, folder: Path) -> ModeTable:
 def mode_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield what the modes of valid sections lack for their records."""
     housing = sections.get("housing")
-    if not isinstance(housing, ModalHousing) or housing.modes is None:
+    if not isinstance(housing, ModalHousing) or "\n" not in housing.modes:  # a file that was not read
         return
     try:
         table = mode_table(housing.modes)
     except ModesRefusal as refused:
-        yield Problem("housing.modes", refused.received, refused.allowed)
+        yield Problem(KEY, refused.received, refused.allowed)
         return
     present = (*map(shape_column, table.shapes), *table.base)
     sensors = tuple(sections.get("sensors", {}).values())

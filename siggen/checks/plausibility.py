@@ -222,7 +222,7 @@ def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
     if isinstance(housing, ModalHousing):
         what, hint = "mass that a seat feels over both discs", "are shapes in 1/sqrt(kg), not of unit length?"
         masses = [mass / gears for mass in given_modes(housing).seat_masses_kg]
-        yield Quantity("housing.file", what, _ends(masses), 0.5, 500.0, hint)
+        yield Quantity("housing.modes", what, _ends(masses), 0.5, 500.0, hint)
         return
     if isinstance(housing, RigidHousing):
         bolts, name = housing.bolts, "bolts"

@@ -107,11 +107,9 @@ class ModalHousing(Section):
     """A housing by natural modes from finite elements or a modal test; all gearboxes have the same."""
 
     kind: Literal["modal"] = Field(description="a body whose modes are known")
-    file: str | None = Field(
-        default=None, description="CSV, a line per mode; its path counts from the folder of the configuration"
-    )
-    modes: str | None = Field(
-        default=None, description="the content of `file`, filled in when it is read, so that the set needs no file"
+    modes: str = Field(
+        description="a CSV file, a line per mode; its path counts from the folder of the configuration, and its "
+        "content takes its place, so that the set needs no file"
     )
 
 

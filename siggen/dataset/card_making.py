@@ -191,9 +191,19 @@ def drive_text(config: Config) -> str:
 def _path_text(config: Config) -> str:
     """Say how vibrations come to the sensors."""
     measured = [sensor.name for sensor in config.sensors if sensor.through is not None]
-    plates = "Bearing forces reach the sensors through a box of plates on bolts, new for every specimen (`housing`). "
     behind = f"{_some(measured, config)} stand behind a measured accelerance (`path`). " if measured else ""
-    return (plates if config.has_plates and len(measured) < len(config.sensors) else "") + behind
+    shown = len(measured) < len(config.sensors) and config.gives_way
+    return (_housing_text(config) if shown else "") + behind
+
+
+def _housing_text(config: Config) -> str:
+    from siggen.specimen.modal_housing import mode_count  # not for those who read: it loads the model of a housing
+
+    through = "Bearing forces reach the sensors through"
+    if config.has_plates:
+        return f"{through} a box of plates on bolts, new for every specimen (`housing`). "
+    modes = counted(mode_count(config.housing), "mode")
+    return f"{through} a housing of which {modes} were given, the same for every specimen (`housing.modes`). "
 
 
 def _some(names: list[str], config: Config) -> str:

@@ -121,7 +121,7 @@ class Accelerometer(SourceKeys, Sensor):
     def _position_problems(self, model: str) -> Iterator[Problem]:
         """Yield a position that a rigid casing needs, or that given modes know already."""
         if model == MODAL and self.position_mm is not None:
-            allowed = f"allowed: null; housing.file says how the place {self.name} moves"
+            allowed = f"allowed: null; housing.modes says how the place {self.name} moves"
             yield Problem("position_mm", received_text(self.position_mm), allowed)
         if model != MODAL and self.place == "casing" and self.path is None and self.position_mm is None:
             allowed = "allowed: a position [horizontal, vertical] from the centre of gravity; or a measured path"

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import ModalHousing
+from siggen.config import Housing, ModalHousing
 from siggen.dynamics.housing.modes import TableModes, table_motion
 from siggen.planning.specimen import Specimen
 from siggen.specimen.gears import gear_pair
@@ -18,8 +18,12 @@ from siggen.specimen.specimen_housing import BoltMotions, SpecimenHousing, secon
 
 def given_modes(section: ModalHousing) -> ModeTable:
     """Return the modes of a section whose file was read."""
-    assert section.modes is not None
     return mode_table(section.modes)
+
+
+def mode_count(section: Housing) -> int:
+    """Return how many modes were given; 0 for another housing."""
+    return given_modes(section).frequency_hz.size if isinstance(section, ModalHousing) else 0
 
 
 def modal_housing(specimen: Specimen, section: ModalHousing) -> SpecimenHousing:

@@ -15,6 +15,7 @@ from siggen.checks.plausibility import quantities
 from siggen.cli.app import app
 from siggen.columns.record import Record
 from siggen.config import Config, parse_yaml, yaml_text
+from siggen.dataset.card_making import making
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
@@ -38,7 +39,7 @@ PAGE = Path("docs/understand/housing.md")
 def written(folder: Path, text: str, **changes: Any) -> Path:
     """Write modes and a configuration that reads them, and return its file."""
     (folder / "modes.csv").write_text(text)
-    housing = {"kind": "modal", "file": "modes.csv"}
+    housing = {"kind": "modal", "modes": "modes.csv"}
     changes = {"dynamics__model": "casing", "duration_s": 0.1, "housing": housing, "sensors": [LID], **changes}
     source = folder / "set.yaml"
     source.write_text(yaml_text(minimal(**changes)))
@@ -58,7 +59,7 @@ def test_a_box_of_plates_read_back_from_its_modes_gives_the_same_record(tmp_path
     result = CliRunner().invoke(app, ["inspect", "path", "quickstart", "--modes", str(file), "--set", plates[0]])
     assert result.exit_code == 0, result.output
     computed = load_config("quickstart", plates)
-    given = load_config("quickstart", [*plates, "housing.kind=modal", f"housing.file={file}"])
+    given = load_config("quickstart", [*plates, "housing.kind=modal", f"housing.modes={file}"])
     file.unlink()
     first, second = record(computed).channels, record(load_config(parse_yaml(yaml_text(given.canonical())))).channels
     for name, values in first.items():
@@ -100,7 +101,7 @@ def test_the_example_of_the_page_is_read(tmp_path: Path) -> None:
     (text,) = re.findall(r"```csv\n(.*?)```", PAGE.read_text(), re.DOTALL)
     config = load_config(written(tmp_path, text))
     assert record(config).channels["lid_vertical"].std() > 0.0
-    assert not [one for one in quantities(config) if one.path == "housing.file" and one.implausible]
+    assert not [one for one in quantities(config) if one.path == "housing.modes" and one.implausible]
 
 
 BAD = {
@@ -128,7 +129,7 @@ def test_what_is_wrong_with_a_file_is_said_with_its_line(tmp_path: Path, receive
     with pytest.raises(ConfigError) as refused:
         load_config(written(tmp_path, "\n".join(lines)))
     (problem,) = refused.value.problems
-    assert (problem.path, problem.received) == ("housing.file", received)
+    assert (problem.path, problem.received) == ("housing.modes", received)
     assert allowed in problem.allowed
 
 
@@ -136,7 +137,7 @@ def test_shapes_of_another_scale_are_implausible(tmp_path: Path) -> None:
     """As of a model in tonnes: shapes in 1/sqrt(t) are 32 times as large."""
     rows = [",".join([*row.split(",")[:2], *(str(31.6 * float(x)) for x in row.split(",")[2:])]) for row in ROWS]
     config = load_config(written(tmp_path, "\n".join([HEAD, *rows])))
-    assert [one for one in quantities(config) if one.path == "housing.file" and one.implausible]
+    assert [one for one in quantities(config) if one.path == "housing.modes" and one.implausible]
 
 
 def test_a_base_needs_participation_factors(tmp_path: Path) -> None:
@@ -145,3 +146,10 @@ def test_a_base_needs_participation_factors(tmp_path: Path) -> None:
     assert {one.received for one in refused.value.problems} == {
         f"no column base_{name}" for name in ("horizontal_sqrt_kg", "vertical_sqrt_kg", "rocking_sqrt_kg_m")
     }
+
+
+def test_the_card_of_a_set_says_where_its_housing_is_from(tmp_path: Path) -> None:
+    config = load_config(written(tmp_path, "\n".join([HEAD, *ROWS])))
+    assert "through a housing of which 2 modes were given, the same for every specimen" in " ".join(
+        making(config).split()
+    )

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
+from typing import Protocol
 
 import numpy as np
 
@@ -24,23 +25,20 @@ VIBRATING_HZ = 1e6
 """What lies above in a table is a residual vector: it only gives way."""
 
 
-class Modes:
-    """Natural modes in ascending order; `frequency_hz` (m,)."""
+class Modes(Protocol):
+    """Natural modes in ascending order; `frequency_hz` (m,). To be derived from."""
 
     frequency_hz: FloatArray
 
     @property
     def vibrating(self) -> int:
         """How many of them may move with the gears."""
-        raise NotImplementedError
 
     def shapes(self, motions: Sequence[Motion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
-        raise NotImplementedError
 
     def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
         """Return what all modes above the first so many give way, (outputs, inputs) [m/N]."""
-        raise NotImplementedError
 
     def residual_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
         """Return what all modes above the last one give way, (outputs, inputs) [m/N]."""
