@@ -27,6 +27,8 @@ from siggen.seeding import Stage, generator, named_generator, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread
 from siggen.specimen.bearing_spalls import spall_sources
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.lost_mass import lost_mass_sources
 from siggen.specimen.shaft_forces import force_sources
 
 MARGIN_S = 1.0
@@ -67,6 +69,7 @@ def record_drive(
     rotation = record_rotation(config, point, record, start_angle_rad)
     forces = (
         *force_sources(config, specimen, structure),
+        *lost_mass_sources(gear_pair(specimen.gears), structure, parts),
         *spall_sources(config, specimen, structure, point, record, rotation, parts),
     )
     if not config.variation.active:

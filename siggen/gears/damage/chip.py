@@ -7,7 +7,7 @@ gear lags by the gap at which both touch, so corners are followed as far as that
 
 Material above a contact carries no load, so what is left of the tooth is as stiff as before; a corner is taken to be as
 stiff as the flank at the pair's nominal position. The back flank of a chipped tooth counts as whole, that of a tooth
-that is gone does not exist. Lost mass is left out.
+that is gone does not exist. Without the metal its gear is out of balance (`siggen.gears.damage.lost_mass`).
 """
 
 from __future__ import annotations
@@ -70,6 +70,14 @@ class Chip:
     def reach_pitches(self, pair: GearPair) -> float:
         """Return how far beside the path of contact corners of its neighbours may carry [base pitches]."""
         return corner_reach_pitches(pair, self.gear, self.height_m)
+
+    def lost_from_m(self, gear: SpurGear) -> float:
+        """Return the radius above which it is gone [m]."""
+        return max(gear.tip_radius_m - self.height_m, gear.root_radius_m)
+
+    def lost_width_m(self, gear: SpurGear, radius_m: FloatArray, face_width_m: float) -> FloatArray:  # noqa: ARG002
+        """Return the face width (k,) at any radii (k,) [m]."""
+        return np.full(radius_m.shape, face_width_m)
 
     def hides(self, other: Part) -> bool:
         """Return whether less is left than of the same tooth before; where nothing is, nothing else is to be seen."""

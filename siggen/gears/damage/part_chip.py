@@ -85,6 +85,18 @@ class PartChip:
         """Return 0: no flank sinks into it."""
         return 0.0
 
+    def lost_from_m(self, gear: SpurGear) -> float:
+        """Return the radius above which it is gone [m]."""
+        return max(gear.tip_radius_m - self.height_m, gear.root_radius_m)
+
+    def lost_width_m(self, gear: SpurGear, radius_m: FloatArray, face_width_m: float) -> FloatArray:  # noqa: ARG002
+        """Return over which width it is gone at radii (k,) above its line [m]."""
+        (line, _), (far, _) = self.outline.corners_m[:2]
+        if far == line:
+            return np.full(radius_m.shape, self.width_m)
+        height = [line_height_m(gear, gear.tip_radius_m - radius) for radius in radius_m.tolist()]
+        return np.interp(height, (line, far), (0.0, self.width_m))
+
     def hides(self, other: Part) -> bool:
         """Return whether `other` lies wholly on what is gone of the same tooth; False where it is unsure."""
         if (other.gear, other.tooth) != (self.gear, self.tooth) or not acts_on_tooth(other) or other.outline is None:

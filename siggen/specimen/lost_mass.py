@@ -1,0 +1,51 @@
+"""Unbalance of shafts whose gears have lost metal: chipped and missing teeth.
+
+Derived. The first moments of what the teeth of a gear have lost add up as vectors; what is left is out of balance the
+other way. With e from the centre to where the line of action touches the base circle, pair n stands at s in the line
+of action, and the centre line of its driving tooth at s/R_b - α_b from e in the sense of its rotation, α_b the
+half angle of the tooth on the base circle; that of the driven tooth at α_b - s/R_b, with s from its own end.
+"""
+
+from __future__ import annotations
+
+from cmath import exp, phase
+from math import pi
+
+from siggen.dynamics.drive.external_forces import Unbalance, shaft_directions, turning_sense
+from siggen.dynamics.structure.structure import Structure
+from siggen.gears.damage.lost_mass import LostMetals, lost_moment_kg_m, without_metal
+from siggen.gears.damage.part import Parts
+from siggen.gears.geometry.gear_pair import GearPair
+
+
+def lost_mass_sources(pair: GearPair, structure: Structure, parts: Parts) -> tuple[Unbalance, ...]:
+    """Return the unbalance of each gear that has lost metal, by all of its teeth together.
+
+    In a model of rotations alone no shaft can shake, so there is none.
+    """
+    lost = without_metal(parts) if structure.bearing_directions else ()
+    gears = [which for which in ("pinion", "gear") if any(one.gear == which for one in lost)]
+    return tuple(_unbalance(pair, structure, which, tuple(one for one in lost if one.gear == which)) for which in gears)
+
+
+def tooth_angle_rad(pair: GearPair, which: str, tooth: int) -> float:
+    """Return where a tooth's centre line is while the pinion's angle is 0, from e in the sense of rotation [rad]."""
+    gear = pair.member(which)
+    behind = 2.0 * pi * tooth / gear.teeth
+    if which == "pinion":
+        return pair.contact_start_m / gear.base_radius_m - gear.base_half_angle_rad - behind
+    own_end = pair.line_of_action_m - pair.contact_start_m
+    return gear.base_half_angle_rad - own_end / gear.base_radius_m - behind
+
+
+def _unbalance(pair: GearPair, structure: Structure, which: str, lost: LostMetals) -> Unbalance:
+    gear, place = pair.member(which), f"{which}_bearing"
+    sense, directions = turning_sense(structure, place), shaft_directions(structure, place)
+    moment = -sum(
+        lost_moment_kg_m(gear, one, pair.face_width_m) * exp(1j * sense * tooth_angle_rad(pair, which, one.tooth))
+        for one in lost
+    )
+    # A gear that moves along -e slides its flank forwards over its mate's.
+    horizontal, vertical = -(directions @ structure.sliding_vectors[0])
+    order = sense * pair.pinion.teeth / gear.teeth
+    return Unbalance(directions, abs(moment), order, phase(moment) + phase(complex(horizontal, vertical)))
