@@ -46,6 +46,6 @@ def _unbalance(pair: GearPair, structure: Structure, which: str, lost: LostMetal
         for one in lost
     )
     # A gear that moves along -e slides its flank forwards over its mate's.
-    horizontal, vertical = -(directions @ structure.sliding_vectors[0])
+    horizontal, vertical = -(directions @ structure.mesh.sliding[0])
     order = sense * pair.pinion.teeth / gear.teeth
     return Unbalance(directions, abs(moment), order, phase(moment) + phase(complex(horizontal, vertical)))
