@@ -120,7 +120,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         missing = made.missing(state_id)
         assembled = structure(config, specimen)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
-        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS)
+        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, teeth.parts)
         mesh = SpecimenMesh(
             pair,
             assembled,

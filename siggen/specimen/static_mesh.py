@@ -11,6 +11,8 @@ from siggen.config import Dynamics
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.static_stiffness import largest_secant_loss, secant_stiffness_n_per_m
 from siggen.gears.contact.contact_table import ContactTable
+from siggen.gears.damage.flank_loss import from_flanks, reach_pitches, with_losses
+from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.specimen.contact import ToothTables
@@ -59,8 +61,10 @@ class StaticMesh:
         return largest_secant_loss(self.law, self.healthy, force_n)
 
 
-def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int) -> StaticMesh:
+def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int, parts: Parts = ()) -> StaticMesh:
     """Return the static mesh of a drawn `dynamics` section; `points` as for the tables of missing material.
+
+    `parts` are those of the state's damage: of those that take whole flanks, chips of single teeth count.
 
     The law linear knows neither relief nor corner contact: its pairs are springs along the path of contact, and their
     stiffness is the mesh stiffness.
@@ -69,6 +73,10 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
         missing = missing_material(pair, None, corner_contact=False, points=2)
     else:
         missing = teeth_missing(dynamics, pair, points)
+    losses = tuple(one for one in from_flanks(parts) if one.tooth != NO_TOOTH)
+    chipped = missing
+    if losses:
+        chipped = with_losses(teeth_missing(dynamics, pair, points, reach_pitches(pair, losses)), pair, losses)
     alike = replace(teeth.tables, table_of_pair=np.zeros_like(teeth.tables.table_of_pair), coupled=None)
     # Sinks count from where the flanks of a misaligned pair touch first, or its offset would count as approach.
     contact = None if teeth.contact is None else teeth.contact._replace(lead_m=0.0)
@@ -79,7 +87,7 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
     )
     return StaticMesh(
         pair,
-        _law(pair, teeth, missing, contact),
+        _law(pair, teeth, chipped, contact),
         _law(
             pair,
             replace(teeth, tables=replace(alike, pair_stiffness_n_per_m=alike.pair_stiffness_n_per_m[:1])),
