@@ -13,8 +13,8 @@ from siggen.columns.state_columns import (
     shown_words,
 )
 from siggen.config import Config, State
+from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.part import Parts, teeth_of
-from siggen.gears.damage.tooth_damage import on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
@@ -45,7 +45,7 @@ def damage_labels(
     nothing, though in motion its flank sinks by `sink_depth_m` [m] and then rests on the edges of the damage: that is
     what mesh_stiffness_loss_as_simulated tells, which depends on the torque (`operating_labels`).
     """
-    damage = on_teeth(parts)
+    damage = with_outlines(parts, pair)
     summary = damage_summary(pair, damage)
     shown = () if state.sham else parts
     return {

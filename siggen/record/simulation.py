@@ -16,7 +16,6 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.errors import SolverFailure
-from siggen.gears.damage.flank_loss import from_all_teeth
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
@@ -121,16 +120,14 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         missing = made.missing(state_id)
         assembled = structure(config, specimen)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
-        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, from_all_teeth(teeth.parts))
+        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, teeth.parts)
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
             sham=config.states[state_id].sham,
         )  # fmt: skip
-        most_n = largest_force_n(config.operating_points, pair)
-        mesh = with_back_flanks(
-            mesh, specimen.dynamics, teeth.options, most_n, lead_of(teeth.errors),
-            made.missing_before_chips(state_id), teeth.parts,
-        )  # fmt: skip
+        loads = largest_force_n(config.operating_points, pair), lead_of(teeth.errors)
+        before = made.missing_before_chips(state_id)
+        mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
     return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
 
 

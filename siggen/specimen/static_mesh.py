@@ -11,7 +11,8 @@ from siggen.config import Dynamics
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.static_stiffness import largest_secant_loss, secant_stiffness_n_per_m
 from siggen.gears.contact.contact_table import ContactTable
-from siggen.gears.damage.flank_loss import Losses, with_losses
+from siggen.gears.damage.flank_loss import from_flanks, reach_pitches, with_losses
+from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.specimen.contact import ToothTables
@@ -63,10 +64,10 @@ class StaticMesh:
         return largest_secant_loss(self.law, self.healthy, force_n, worn=self.worn)
 
 
-def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int, worn: Losses = ()) -> StaticMesh:
+def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int, parts: Parts = ()) -> StaticMesh:
     """Return the static mesh of a drawn `dynamics` section; `points` as for the tables of missing material.
 
-    What is `worn` from the flanks of all teeth is missing beside the relief, which `healthy` has alone.
+    What `parts` of the damage take from whole flanks is missing beside the relief, which `healthy` has alone.
 
     The law linear knows neither relief nor corner contact: its pairs are springs along the path of contact, and their
     stiffness is the mesh stiffness.
@@ -75,6 +76,9 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
         missing = missing_material(pair, None, corner_contact=False, points=2)
     else:
         missing = teeth_missing(dynamics, pair, points)
+    losses, without = from_flanks(parts), missing
+    if losses:
+        without = with_losses(teeth_missing(dynamics, pair, points, reach_pitches(pair, losses)), pair, losses)
     alike = replace(teeth.tables, table_of_pair=np.zeros_like(teeth.tables.table_of_pair), coupled=None)
     # Sinks count from where the flanks of a misaligned pair touch first, or its offset would count as approach.
     contact = None if teeth.contact is None else teeth.contact._replace(lead_m=0.0)
@@ -85,7 +89,7 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
     )
     return StaticMesh(
         pair,
-        _law(pair, teeth, with_losses(missing, pair, worn), contact),
+        _law(pair, teeth, without, contact),
         _law(
             pair,
             replace(teeth, tables=replace(alike, pair_stiffness_n_per_m=alike.pair_stiffness_n_per_m[:1])),
@@ -93,7 +97,7 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
             flush,
         ),
         contact,
-        bool(worn),
+        any(one.tooth == NO_TOOTH for one in losses),
     )
 
 

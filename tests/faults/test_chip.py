@@ -12,8 +12,10 @@ from siggen.columns.record import Record
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gears.damage.chip import Chip
+from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import simulate
+from siggen.record.simulation import simulate, specimen_state
+from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import config_with, damage_of
 
 CHIP: dict[str, Any] = {"kind": "chip", "height_mm": 1.5}
@@ -143,3 +145,31 @@ def test_a_missing_tooth_is_missing_under_either_torque() -> None:
         losses.append([float(one.labels["contact_loss_share"]) for one in found])  # type: ignore[arg-type]
     assert [healthy for healthy, _ in losses] == [0.0, 0.0]
     assert all(0.01 < broken < 0.2 for _, broken in losses)
+
+
+def measured(damage: dict[str, Any], state: int = 1) -> tuple[dict[str, Any], float]:
+    """Return the labels of a damage alone, and the loss of stiffness at 60 N m."""
+    config = quick({**damage, "teeth": [4]})
+    found = specimen_state(config, draw_specimen(config, 0), state)
+    return found.labels, found.static.largest_loss(60.0)
+
+
+def test_labels_of_a_chip_over_the_face_are_its_area_and_its_stiffness() -> None:
+    """Of the involute above a radius R the area is b (R_a² - R²)/(2 R_b); of nearly all of the face nearly as much."""
+    deep = {"kind": "chip", "height_mm": 3.0}
+    (whole, lost), (_, nearly), (_, sound) = measured(deep), measured({**deep, "face_share": 0.999}), measured(deep, 0)
+    pair = gear_pair(draw_specimen(quick(deep), 0).gears)
+    tip = pair.pinion.tip_radius_m
+    area = pair.face_width_m * (tip**2 - (tip - 3e-3) ** 2) / (2.0 * pair.pinion.base_radius_m)
+    assert whole["damaged_area_mm2"] == pytest.approx(1e6 * area, rel=1e-6)
+    assert whole["mesh_stiffness_loss"] == 1.0  # above the line its pair is the only one
+    assert sound == 0.0
+    # What stands at the end sinks in and carries a little: 2 % were found.
+    assert lost == pytest.approx(nearly, rel=0.05)
+
+
+def test_a_missing_tooth_has_lost_all_of_its_flank() -> None:
+    gone, lost = measured(BROKEN)
+    assert gone["damaged_area_share"] == pytest.approx(1.0)
+    assert gone["mesh_stiffness_loss"] == 1.0
+    assert 0.5 < lost < 1.0  # the corners beside it carry

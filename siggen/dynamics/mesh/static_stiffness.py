@@ -135,6 +135,10 @@ def pairs_before_damage(law: PairLaw) -> IntArray:
     teeth = (int(head[at.TEETH_1]), int(head[at.TEETH_2]))
     first = int(head[at.TABLE_AT])
     rows = head[first : first + teeth[0] * teeth[1]].reshape(teeth)
+    # Pairs of one row differ where single teeth have lost their tips.
+    kinds = [head[head[k] : head[k] + z] for k, z in zip((at.KIND_1_AT, at.KIND_2_AT), teeth, strict=True)]
+    several = int(kinds[1].max()) + 1
+    rows = rows + (int(rows.max()) + 1) * (kinds[0][:, np.newaxis] * several + kinds[1])
     # With corner contact the next pair is in reach too, and older ones longer.
     number = np.arange(lcm(*teeth))[:, np.newaxis] - np.arange(-1, law.slots + 1)
     runs, shown = np.unique(rows[number % teeth[0], number % teeth[1]], axis=0, return_index=True)

@@ -21,8 +21,9 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.part import Part, Refusal
-from siggen.gears.damage.part_chip import PartChip
+from siggen.gears.damage.part_chip import PartChip, lost_outline
 from siggen.gears.damage.sham import SHAM
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
@@ -70,6 +71,15 @@ class Chip:
     def reach_pitches(self, pair: GearPair) -> float:
         """Return how far beside the path of contact corners of its neighbours may carry [base pitches]."""
         return corner_reach_pitches(pair, self.gear, self.height_m)
+
+    def outlined(self, pair: GearPair) -> Damage:
+        """Return it as a chip over a part of the face that is all of it; nothing for a sham."""
+        gear, width_m = pair.member(self.gear), pair.face_width_m
+        if self.kind == SHAM:
+            return ()
+        height_m = min(self.height_m, tooth_height_m(gear))
+        outline = lost_outline(gear, height_m, width_m, corner=False)
+        return (PartChip(self.gear, self.tooth, height_m, width_m, outline, self.whole_tooth),)
 
     def lost_from_m(self, gear: SpurGear) -> float:
         """Return the radius above which it is gone [m]."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.part import NO_TOOTH, Part
+from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, MissingMaterial, ToothTables
 
@@ -35,6 +36,9 @@ class FlankLoss(Part, Protocol):
     def reach_pitches(self, pair: GearPair) -> float:
         """Return how far beside the path of contact corners may carry [base pitches]."""
 
+    def outlined(self, pair: GearPair) -> Damage:
+        """Return what shows on flanks inside an outline, as labels count it: areas, lengths, stiffness."""
+
 
 Losses: TypeAlias = tuple[FlankLoss, ...]
 SomePart = TypeVar("SomePart", bound=Part)
@@ -45,9 +49,10 @@ def from_flanks(parts: Iterable[Part]) -> Losses:
     return tuple(one for one in parts if takes_from_flanks(one))
 
 
-def from_all_teeth(parts: Iterable[Part]) -> Losses:
-    """Return those of them that take from all teeth of a gear alike."""
-    return tuple(one for one in from_flanks(parts) if one.tooth == NO_TOOTH)
+def with_outlines(parts: Iterable[Part], pair: GearPair) -> Damage:
+    """Return the parts on single teeth as labels count them, with what takes single whole flanks inside outlines."""
+    parts = tuple(parts)
+    return (*on_teeth(parts), *(shown for one in from_flanks(parts) for shown in one.outlined(pair)))
 
 
 def takes_from_flanks(part: Part) -> TypeGuard[FlankLoss]:

@@ -21,6 +21,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.gears.damage.part import NO_TOOTH, Part, Refusal
 from siggen.gears.damage.sham import SHAM
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 
@@ -75,6 +76,10 @@ class Wear:
         """Return what is worn at positions s (k,) [m]."""
         places = np.linspace(pair.contact_start_m, pair.contact_end_m, len(self.depths_m))
         return np.interp(position_m, places, self.depths_m)
+
+    def outlined(self, pair: GearPair) -> Damage:  # noqa: ARG002
+        """Return nothing: it has no outline."""
+        return ()
 
     def reach_pitches(self, pair: GearPair) -> float:  # noqa: ARG002
         """Return what holds for whole tips."""
