@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from diagnostics.indicators.indicator import BOOK, OF_CHANNEL, indicator
+from diagnostics.indicators.indicator import BOOK, OF_CHANNEL, indicator, only_of
 from diagnostics.records.channel_quantities import ANGULAR_SPEED, TRANSMISSION_ERROR
 from diagnostics.signal.shaft_lines import band_rms
 from diagnostics.signal.spectrum import HANN_HALF_WIDTH_BINS
@@ -17,6 +17,7 @@ from diagnostics.signal.spectrum import HANN_HALF_WIDTH_BINS
 OF_ANGLES = (ANGULAR_SPEED, TRANSMISSION_ERROR)
 
 
+@only_of(*OF_ANGLES)
 @indicator(
     "rms_without_mean",
     "RMS about the mean",
@@ -26,13 +27,13 @@ OF_ANGLES = (ANGULAR_SPEED, TRANSMISSION_ERROR)
     known="mean and sine: A/√2",
     undefined="never",
     source=BOOK,
-    quantities=OF_ANGLES,
 )
 def rms_without_mean(signal: np.ndarray) -> float:
     """Return the standard deviation of a record: the rms of a speed is its mean. Source: standard literature."""
     return float(signal.std())
 
 
+@only_of(*OF_ANGLES)
 @indicator(
     "shaft_amplitude_{shaft}_k{shaft_order}",
     "Amplitude at a shaft order",
@@ -42,13 +43,13 @@ def rms_without_mean(signal: np.ndarray) -> float:
     known="A cos(k θ): A; white noise over n steps: σ √(6/n) in rms",
     undefined="the mean or an order 1 to 3 of the other shaft lies within 2/M orders",
     source=BOOK,
-    quantities=OF_ANGLES,
 )
 def shaft_amplitude(shaft_lines: np.ndarray, shaft_order: int) -> float:
     """Return the amplitude at a whole order of a shaft, as of `shaft_lines`; NaN where it is not resolved."""
     return float(shaft_lines[shaft_order])
 
 
+@only_of(ANGULAR_SPEED)
 @indicator(
     "speed_ripple",
     "Speed ripple",
@@ -57,7 +58,6 @@ def shaft_amplitude(shaft_lines: np.ndarray, shaft_order: int) -> float:
     known="mean times 1 + m cos(k θ): m/√2",
     undefined="the speed has no mean, or the slower shaft turns less than four times",
     source=BOOK,
-    quantities=(ANGULAR_SPEED,),
 )
 def speed_ripple(angle_signal: np.ndarray, ripple_bins: tuple[int, int]) -> float:
     """Return the rms of the speed's variation in the band over its mean; NaN where drift would reach into the band.

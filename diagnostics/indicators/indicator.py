@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from string import Formatter
 
@@ -121,13 +121,22 @@ def indicator(
     undefined: str,
     source: str,
     unit: str = "",
-    quantities: tuple[str, ...] = (),
 ) -> Callable[[Formula], Formula]:
     """Return a decorator that puts a formula among the indicators; the arguments are those of `Indicator`."""
 
     def keep(function: Formula) -> Formula:
-        facts = (title, signal, formula, unit, known, undefined, source, quantities)
-        INDICATORS.append(Indicator(column, function, *facts))
+        INDICATORS.append(Indicator(column, function, title, signal, formula, unit, known, undefined, source))
+        return function
+
+    return keep
+
+
+def only_of(*quantities: str) -> Callable[[Formula], Formula]:
+    """Return a decorator, above that of an indicator, that leaves it to channels that hold one of the quantities."""
+
+    def keep(function: Formula) -> Formula:
+        place = next(k for k, entry in enumerate(INDICATORS) if entry.function is function)
+        INDICATORS[place] = replace(INDICATORS[place], quantities=quantities)
         return function
 
     return keep

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from diagnostics.indicators.indicator import BOOK, OF_CHANNEL, STILL, indicator
+from diagnostics.indicators.indicator import BOOK, OF_CHANNEL, STILL, indicator, only_of
 from diagnostics.records.channel_quantities import RECORDED
 
 UNDEFINED_BELOW = 1e-9
@@ -77,6 +77,7 @@ def kurtosis(signal: np.ndarray, reference_rms: float | None = None) -> float:
     return moment_ratio(signal, 4, reference_rms)
 
 
+@only_of(RECORDED.word)  # of a speed it tells the mean alone
 @indicator(
     "crest_factor",
     "Crest factor",
@@ -85,7 +86,6 @@ def kurtosis(signal: np.ndarray, reference_rms: float | None = None) -> float:
     known="sine √2",
     undefined="the signal is zero",
     source=BOOK,
-    quantities=(RECORDED.word,),  # of a speed it tells the mean alone
 )
 def crest_factor(signal: np.ndarray) -> float:
     """Return max |x| / rms(x); NaN for a signal of zeros.

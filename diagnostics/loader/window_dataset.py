@@ -50,9 +50,6 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         Of these generators.
     cache : Path, optional
         Folder for decoded records, read through memory mapping.
-    quantity : str, optional
-        Channels that hold this, such as "acceleration"; default all. Every channel comes in its own unit, so a network
-        that takes several quantities has to standardise them.
 
     Raises
     ------
@@ -72,9 +69,9 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         transform: Transform | None = None,
         seed: int = 0,
         cache: Path | None = None,
-        quantity: str | None = None,
     ) -> None:
-        chosen, dataset = settings or StreamSettings(), of_quantity(dataset, quantity)
+        chosen = settings or StreamSettings()
+        dataset = of_quantity(dataset, chosen.quantity)
         self.index = window_index(dataset, split, chosen, labels)
         self.signals = RowGroupSignals(dataset, split, dataset.row_groups(split), chosen, self.index, cache)
         self.transform, self.seed = transform, seed

@@ -128,6 +128,9 @@ class StreamSettings:
     samples_per_revolution : int or None
         Equal angle steps per revolution; None keeps the samples as they were taken, in windows as long as the
         slowest `revolutions` of the split.
+    quantity : str or None
+        Channels that hold this, such as "acceleration"; None: all. Every channel comes in its own unit, so a network
+        that takes several quantities has to standardise them.
 
     Raises
     ------
@@ -138,6 +141,7 @@ class StreamSettings:
     revolutions: int = FEWEST_REVOLUTIONS
     hop_revolutions: int = 4
     samples_per_revolution: int | None = 288
+    quantity: str | None = None
 
     def __post_init__(self) -> None:
         if self.revolutions < FEWEST_REVOLUTIONS:

@@ -97,7 +97,8 @@ class RowGroupSignals:
             "identity": self.dataset.manifest["identity"],
             "channels": [channel.name for channel in self.dataset.channels],
             "windows": self.index.fingerprint(),
-            **asdict(self.settings),
+            # the channels say what the quantity says
+            **{name: value for name, value in asdict(self.settings).items() if name != "quantity"},
         }
         return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:16]
 

@@ -82,9 +82,6 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
     transform : callable, optional
         Takes a single window with its labels and a generator, and returns what is batched. The generator depends on
         seed, epoch and window alone.
-    quantity : str, optional
-        Channels that hold this, such as "acceleration"; default all. Every channel comes in its own unit, so a network
-        that takes several quantities has to standardise them.
 
     Raises
     ------
@@ -105,11 +102,11 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         cache: Path | None = None,
         labels: Sequence[str] = (),
         transform: Transform | None = None,
-        quantity: str | None = None,
     ) -> None:
         if batch is not None and batch < 1:
             raise UsageError(f"batch: received {batch}; allowed are 1 or more windows, or None for single ones")
-        chosen, dataset = settings or StreamSettings(), of_quantity(dataset, quantity)
+        chosen = settings or StreamSettings()
+        dataset = of_quantity(dataset, chosen.quantity)
         self.batch = batch
         self.shuffling = shuffling or Shuffling()
         self.index = window_index(dataset, split, chosen, labels)

@@ -14,7 +14,7 @@ import pytest
 
 import siggen
 from diagnostics.indicators.table import record_table
-from diagnostics.loader import WindowDataset
+from diagnostics.loader import StreamSettings, WindowDataset
 from diagnostics.loader.windows import OrderRecords, order_records
 from diagnostics.training.cnn import WideKernelNetwork, _normalise
 from siggen.errors import UsageError
@@ -55,13 +55,13 @@ def mixed(folder: Path) -> Any:
 
 @pytest.mark.slow
 def test_windows_come_by_quantity(mixed: Any) -> None:
-    every, speeds = WindowDataset(mixed, "train"), WindowDataset(mixed, "train", quantity="angular speed")
+    every, speeds = (WindowDataset(mixed, "train", StreamSettings(quantity=q)) for q in (None, "angular speed"))
     held = [channel.quantity for channel in mixed.channels]
     chosen = [k for k, quantity in enumerate(held) if quantity == "angular speed"]
     assert len(chosen) == 2 < len(held)
     np.testing.assert_array_equal(speeds[0]["windows"], every[0]["windows"][chosen])
     with pytest.raises(UsageError, match=r"'pressure'.*acceleration, angular speed, transmission error"):
-        WindowDataset(mixed, "train", quantity="pressure")
+        WindowDataset(mixed, "train", StreamSettings(quantity="pressure"))
 
 
 @pytest.mark.slow
