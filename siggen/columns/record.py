@@ -138,10 +138,9 @@ INTEGRATION_COLUMNS = (
         "integration_error",
         pa.float64(),
         "",
-        f"estimated relative rms error of the simulated motion (of at least {STILL_M_S2:g} m/s^2) by the steps of "
-        "integration, from a stretch of "
-        "the record with twice as many; above the set's tolerance where the motion depends on every rounding or the "
-        "finest steps do not suffice, inf where it diverges",
+        f"estimated relative rms error of the simulated motion (of at least {STILL_M_S2:g} in SI units) by the steps "
+        "of integration, from a stretch of the record with twice as many; above the set's tolerance where the motion "
+        "depends on every rounding or the finest steps do not suffice, inf where it diverges",
     ),
 )
 """Columns of sets of the law pairs."""

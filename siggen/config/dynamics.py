@@ -42,7 +42,7 @@ class Rotor(Section):
     )
     bearing: BallGeometry | None = Field(
         default=None,
-        description="null: the stiffnesses above, at any load (a spall is in one of the defaults); given: each of two "
+        description="null: the stiffnesses above, at any load (damage is in one of the defaults); given: each of two "
         "such ball bearings, whose stiffness follows load and clearance and takes their place",
     )
 

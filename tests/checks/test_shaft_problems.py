@@ -141,7 +141,7 @@ def test_a_tilt_in_motion_at_which_an_end_of_the_face_meets_the_other_flank_is_r
     for share, refused in ((0.99, False), (1.01, True)):
         states = np.zeros((2, 2 * turn.size))
         states[1, : turn.size] = share * room_m / motion.law.half_face_m * turn / (turn @ turn)
-        approach = states[1, : turn.size] @ motion.equations.mesh_vector
+        approach = states[1, : turn.size] @ motion.equations.mesh_vector[0]
         assert abs(approach) < 1e-9 * room_m
         if not refused:
             motion.refuse_outside(states)

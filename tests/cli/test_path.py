@@ -45,4 +45,4 @@ def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> N
 def test_a_set_without_paths_says_how_to_add_one() -> None:
     result = runner.invoke(app, ["inspect", "path", "configs/linear_pits.yaml"])
     assert isinstance(result.exception, UsageError)
-    assert "housing of plates" in str(result.exception)
+    assert "housing that gives way" in str(result.exception)

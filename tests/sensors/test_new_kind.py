@@ -80,7 +80,7 @@ def test_its_channel_holds_its_quantity_with_its_own_noise(folder: Path) -> None
 def test_the_plan_takes_it_and_mistakes_in_it_are_named(folder: Path) -> None:
     doubted = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", "sensors.0.range_um_m=0.5")
     assert "seat_vertical" in doubted
-    assert "range [um/m]" in doubted
+    assert "range [µm/m]" in doubted
     changes = {
         "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
         "sensors.0.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
@@ -126,9 +126,9 @@ def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path)
 
 def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:
     command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
-    assert '"seat_vertical":{"word":"strain","unit":"um/m"}' in (folder / "explorer.html").read_text("utf-8")
+    assert '"seat_vertical":{"word":"strain","unit":"µm/m"}' in (folder / "explorer.html").read_text("utf-8")
     said = words_of(folder / "explorer.html")
-    assert "RMS [um/m]" in said
+    assert "RMS [µm/m]" in said
     assert not OTHER_QUANTITY.search(said)
 
 

@@ -70,7 +70,10 @@ def moved(config: Config, state: SpecimenState, torque_nm: float, internals: boo
 def mirror(config: Config, state: SpecimenState) -> FloatArray:
     """Return (n, n): what both sides' exchange makes of displacements, by a mirror across the centre line."""
     stage, other = state.mesh.structure, str.maketrans("ml12", "lm21")
-    names, reflected = list(stage.coordinates), np.eye(2) - 2.0 * np.outer(stage.centre_line, stage.centre_line)
+    names, reflected = (
+        list(stage.coordinates),
+        np.eye(2) - 2.0 * np.outer(stage.mesh.centre_line, stage.mesh.centre_line),
+    )
     found = np.zeros((len(names), len(names)))
     for i, name in enumerate(names):
         kind, _, side = name.rpartition("_")

@@ -102,7 +102,7 @@ def test_missing_teeth_push_away_from_each_other_when_they_would_meet_at_the_pit
         rows = [found.coordinates.index(f"{axis}_{1 if which == 'pinion' else 2}") for axis in "xy"]
         shown = np.array([found.bearing_directions[f"{place}/{axis}"][rows] for axis in ("horizontal", "vertical")])
         # Flanks move along the line of action: 90° in front of the way to the mate, less α (driving) or more (driven).
-        along = shown @ (found.mesh_vector[rows] * (1.0 if which == "pinion" else -1.0))
+        along = shown @ (found.mesh.vector[rows] * (1.0 if which == "pinion" else -1.0))
         to_mate = atan2(along[1], along[0]) - sense * (0.5 * pi + side * alpha)
         tooth = to_mate + sense * side * 0.5 * pi / teeth
         unit = pulls[which] / np.hypot(*pulls[which])

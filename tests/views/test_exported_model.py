@@ -69,7 +69,8 @@ def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
     assert max(coarse) > 2.0 * max(fine)
 
 
-MATRICES = ("mass", "damping", "stiffness", "mesh_vector", "sliding_vectors")
+MATRICES = ("mass", "damping", "stiffness")
+VECTORS = ("mesh_vector", "sliding_vectors")
 Change = Callable[[np.ndarray], np.ndarray]
 
 
@@ -100,7 +101,8 @@ def beginning(
     driven = record_drive(loaded, specimen, state.mesh.structure, point, planned, angle)
     built = state.mesh.structure
     matrices = {name: change(getattr(built, name)) for name in MATRICES}
-    mesh = replace(state.mesh, structure=replace(built, **matrices))
+    vectors = replace(built.mesh, vector=change(built.mesh.vector), sliding=change(built.mesh.sliding))
+    mesh = replace(state.mesh, structure=replace(built, meshes=(vectors,), **matrices))
     motion = specimen_motion(specimen.dynamics, mesh, point, 1.0 / (loaded.fs_hz * steps), driven)
     buffer = io.BytesIO()
     np.savez(buffer, **{name: np.asarray(value) for name, value in exported_model(loaded, record).items()})
@@ -115,7 +117,7 @@ def beginning(
     inner = motion.internals(states[::steps], pitches[::steps], inputs[::steps])
     names = [name for name in ("approach_m", "mesh_force_n", "mesh_tilt_rad") if name in motion.internal_names]
     own = [inner[:, motion.internal_names.index(name)] for name in names]
-    return model | {name: change(model[name]) for name in MATRICES}, own
+    return model | {name: change(model[name]) for name in (*MATRICES, *VECTORS)}, own
 
 
 def by_scipy(model: dict, own: list, rtol: float) -> list:

@@ -61,7 +61,7 @@ def test_from_a_drawing_to_a_loaded_training_set(rig: Path) -> None:
     loaded = [line.split() for line in walk(rig, "python load.py").splitlines()]
     records = {split: sum(int(rows) for name, rows, *_ in loaded if name == split) for split, *_ in loaded}
     assert records == {
-        name: 5 * int(gearboxes)
+        name: 6 * int(gearboxes)
         for name, gearboxes in zip(("train", "validation", "test"), counts.groups(), strict=True)
     }
     assert {(samples, varies) for _, _, samples, varies in loaded} == {("15360", "True")}
@@ -137,7 +137,7 @@ def test_from_a_set_to_a_published_folder_that_opens_again(rig: Path) -> None:
     )
     walk(rig, "siggen publish set --to upload --facts publication.yaml")
     walk(rig, "siggen verify upload")
-    assert walk(rig, "python reopen.py").split() == ["True", "30"]
+    assert walk(rig, "python reopen.py").split() == ["True", "36"]
     assert "cc-by-4.0" in (rig / "upload" / "README.md").read_text()
 
 

@@ -36,7 +36,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import equations_about, external_push, mesh_springs
 from siggen.dynamics.time.motion import APPROACH_LIMIT_PITCHES
 from siggen.dynamics.time.pair_equations import APPROACH, TILT, PairEquations, pair_equations
-from siggen.dynamics.time.pair_rate import at_speed, load_pairs, pair_rate
+from siggen.dynamics.time.pair_rate import at_speed, load_pairs, pair_rate, steps_apart
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
 from siggen.dynamics.time.transient import transient_s
 
@@ -210,8 +210,8 @@ class PairMotion:
 
     def steps_apart(self, states: FloatArray, pitches: FloatArray) -> NDArray[np.int64]:
         """Return at how many states no pair of each mesh carries (meshes,)."""
-        apart = [(pairs[:, :, columns.FLANK] == 0.0).all(axis=1).sum() for pairs in self.pairs(states, pitches)]
-        return np.array(apart)
+        parts = enumerate(zip(self.laws, self._pairs, strict=True))
+        return np.array([steps_apart(self.pair_equations, m, law, pairs, states, pitches) for m, (law, pairs) in parts])
 
     def _refuse_soft_shafts(self) -> None:
         """Raise where the static deflection alone is beyond the model."""

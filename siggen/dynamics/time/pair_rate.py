@@ -87,3 +87,19 @@ def pair_rate(
         displacement, velocity = state[j], state[n + j]
         for i in range(n):
             rate[n + i] += rows[j, i] * displacement + rows[n + j, i] * velocity
+
+
+@njit(cache=True)
+def steps_apart(
+    equations: PairEquations, mesh: int, law: PairLaw, pairs: FloatArray, states: FloatArray, pitches: FloatArray
+) -> int:
+    """Return at how many states (k, 2n) no pair of a mesh touches."""
+    count = 0
+    for i in range(states.shape[0]):
+        load_pairs(equations, mesh, law, pairs, states[i], pitches[i])
+        touching = False
+        for j in range(pairs.shape[0]):
+            touching = touching or pairs[j, columns.FLANK] != 0.0
+        if not touching:
+            count += 1
+    return count

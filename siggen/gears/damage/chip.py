@@ -6,7 +6,8 @@ its pair does not exist: for 2 - ε base pitches the corners of the pairs before
 gear lags by the gap at which both touch, so corners are followed as far as that.
 
 Material above a contact carries no load, so what is left of the tooth is as stiff as before; a corner is taken to be as
-stiff as the flank at the pair's nominal position. Both flanks of a tooth lose their tip. Without the metal its gear is out of balance (`siggen.gears.damage.lost_mass`).
+stiff as the flank at the pair's nominal position. Both flanks of a tooth lose their tip. Without the metal its gear is
+out of balance (`siggen.gears.damage.lost_mass`).
 """
 
 from __future__ import annotations

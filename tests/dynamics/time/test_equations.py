@@ -32,7 +32,7 @@ def test_the_start_is_an_equilibrium_at_the_actual_stiffness(
     torque: float, structure: Structure, sharp_tables: MeshTables
 ) -> None:
     equations, law, start = model(structure, sharp_tables, torque=torque)
-    approach, approach_rate = approach_of(equations, start)
+    approach, approach_rate = approach_of(equations, 0, start)
     penetration = approach - np.sign(torque) * 40e-6
     assert mesh_stiffness(law, FIRST_PITCHES) * penetration == pytest.approx(torque / BASE_RADIUS_1, rel=1e-9)
     assert approach_rate == 0.0

@@ -70,7 +70,7 @@ def test_contact_loss_agrees_with_small_runge_kutta_steps(structure: Structure) 
     start[8 + 3] = -3.0
     states = trajectory(ProductIntegration, equations, law, start, STEP, STEPS)
     fine = trajectory(RungeKutta, equations, law, start, STEP / 128, STEPS * 128)[::128]
-    approach = np.array([approach_of(equations, state)[0] for state in fine])
+    approach = np.array([approach_of(equations, 0, state)[0] for state in fine])
     assert (approach < -2e-6).any()
     assert (np.abs(approach) < 2e-6).mean() > 0.05
     # Both meet the flank's edge at first order: the substep of 0.3 µs against the free flight of 0.1 ms.
