@@ -98,7 +98,7 @@ def test_modes_are_part_of_the_set_and_the_folder_is_not(tmp_path: Path) -> None
 
 
 def test_the_example_of_the_page_is_read(tmp_path: Path) -> None:
-    (text,) = re.findall(r"```text\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    (text,) = re.findall(r"```text\n(# a box.*?)```", PAGE.read_text(), re.DOTALL)
     config = load_config(written(tmp_path, text))
     assert record(config).channels["lid_vertical"].std() > 0.0
     assert not [one for one in quantities(config) if one.path == "housing.modes" and one.implausible]
