@@ -23,7 +23,7 @@ from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response
 from siggen.errors import SolverFailure
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.record.simulation import SpecimenState, refused_as, specimen_state
+from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.motion import specimen_motion
 from siggen.specimen.step_choice import stepped_motion

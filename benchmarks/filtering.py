@@ -15,7 +15,7 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.time.decimation import Decimator, second_difference_taps, value_taps
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import specimen_state
+from siggen.record.specimen_state import specimen_state
 from siggen.sensing.inputs import FORCE
 from siggen.sensors.sensor import needs
 from siggen.specimen.instrument import specimen_instrument

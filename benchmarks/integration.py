@@ -23,7 +23,8 @@ from siggen.dynamics.time.transient import transient_s
 from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
+from siggen.record.simulation import start_angle_rad
+from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.motion import specimen_motion
 
 SEVERE = 3
@@ -59,7 +60,7 @@ class _Case:
             step_s=1.0 / (grid.fs_hz * steps),
             integrator=integrator,
         )
-        drive = Drive(self.point.speed_hz, start_angle_rad(self.config, self.state.pair, self.planned))
+        drive = Drive(self.point.speed_hz, start_angle_rad(self.config, self.specimen, self.planned))
         response = response_of(motion, drive, grid)
         return response.acceleration_m_s2[CHANNEL]
 

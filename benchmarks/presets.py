@@ -22,7 +22,8 @@ from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.planning.plan import planned_record, record_ids_of
 from siggen.planning.specimen import draw_specimen
 from siggen.record.channels import measured_channels
-from siggen.record.simulation import record_response, simulate_specimen, specimen_state
+from siggen.record.simulation import record_response, simulate_specimen
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.instrument import specimen_instrument
 from siggen.specimen.made_gears import MadeGears
 

@@ -18,7 +18,8 @@ from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.planning.plan import planned_record, record_ids_of
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.channels import measured_channels
-from siggen.record.simulation import record_response, simulate_specimen, specimen_state
+from siggen.record.simulation import record_response, simulate_specimen
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.made_gears import MadeGears
 
 SERIES_RECORDS = 64

@@ -11,7 +11,8 @@ from siggen.checks.loading import load_config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.channels import measured_channels
-from siggen.record.simulation import record_response, specimen_state
+from siggen.record.simulation import record_response
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.instrument import specimen_instrument
 
 CONFIG = "configs/industrial.yaml"

@@ -14,7 +14,8 @@ from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
+from siggen.record.simulation import start_angle_rad
+from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.motion import specimen_motion
 
@@ -91,6 +92,6 @@ def record_case(state: str, gearbox: int, *overrides: str) -> RecordCase:
     specimen = draw_specimen(config, gearbox)
     made = specimen_state(config, specimen, state_id)
     point = draw_operating_point(config, gearbox, record.operating_point_id)
-    angle = start_angle_rad(config, made.pair, record)
+    angle = start_angle_rad(config, specimen, record)
     driven = record_drive(config, specimen, made.mesh.structure, point, record, angle)
     return RecordCase(config, specimen, made, point, driven, state_id)

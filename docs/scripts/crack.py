@@ -16,7 +16,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.config import Config, read_yaml
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import SpecimenState, simulate, specimen_state
+from siggen.record.simulation import simulate
+from siggen.record.specimen_state import SpecimenState, specimen_state
 
 FIGURE = Path(__file__).resolve().parents[1] / "figures" / "crack.png"
 CONFIG = Path(__file__).resolve().parents[2] / "configs" / "quickstart.yaml"

@@ -8,7 +8,8 @@ from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, specimen_state
+from siggen.record.simulation import record_response
+from siggen.record.specimen_state import specimen_state
 
 PINION, GEAR = 47, 18
 """Revolutions in the hunting period, which a record lasts: the lines of both shafts are bins of its spectrum."""

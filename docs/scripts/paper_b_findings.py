@@ -12,7 +12,8 @@ from siggen.config import read_yaml
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.quantities import internal_quantities
-from siggen.record.simulation import record_response, specimen_state
+from siggen.record.simulation import record_response
+from siggen.record.specimen_state import specimen_state
 from siggen.views.natural_modes import kinetic_shares, specimen_modes
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"

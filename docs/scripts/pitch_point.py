@@ -34,7 +34,8 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, draw_specimen
 from siggen.record.quantities import internal_quantities
-from siggen.record.simulation import record_response, specimen_state
+from siggen.record.simulation import record_response
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen import motion
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, pitch_point
 from siggen.specimen.gears import gear_pair

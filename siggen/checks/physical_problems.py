@@ -31,6 +31,7 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
+from siggen.planning.stages import first_sections, stage_sections
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.gears import gear_pair, stiffness_options
 
@@ -51,7 +52,16 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     gears: Gears | None = parsed.sections.get("gears")
     if gears is None:
         return ()
-    return pair_problems(parsed.sections, _problems) if gears.pairs else _problems(parsed.sections)
+    if gears.pairs:
+        return pair_problems(parsed.sections, _problems)
+    behind = (_located_in(path, one) for path, own in stage_sections(parsed.sections) for one in _problems(own))
+    return (*_problems(first_sections(parsed.sections)), *behind)
+
+
+def _located_in(path: str, problem: Problem) -> Problem:
+    """Return a problem of a further stage where its file has what it is about."""
+    own = problem.path.startswith("gears") or problem.path == "manufacture"
+    return replace(problem, path=f"{path}.{problem.path}") if own else problem
 
 
 def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:

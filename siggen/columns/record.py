@@ -14,6 +14,7 @@ from siggen.columns.damage_columns import damage_columns
 from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
+from siggen.columns.stage_columns import stage_columns
 from siggen.columns.state_columns import state_columns
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
@@ -94,7 +95,13 @@ ID_COLUMNS = (
 LABEL_COLUMNS = (
     Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
     Column("severity", pa.string(), "", "healthy, slight, moderate or severe"),
-    Column("faulty_gear", pa.string(), "", "which gear carries damage: none, pinion, gear or both"),
+    Column(
+        "faulty_gear",
+        pa.string(),
+        "",
+        "which gear carries damage: none, pinion, gear or both; of a further stage behind its name, of several meshes "
+        "several",
+    ),
     Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
     Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
     Column("damage_count", pa.int32(), "", "number of single damages on all teeth"),
@@ -194,6 +201,7 @@ def label_columns(config: Config) -> tuple[Column, ...]:
         *state_columns(config),
         *operating,
         *gearbox_columns(config),
+        *stage_columns(config),
         *varying,
         *manufacture_columns(config),
     )

@@ -24,6 +24,7 @@ from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.presets import config_file
 from siggen.config.shafts import Shaft, Shafts
+from siggen.config.stages import Stage
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
@@ -61,6 +62,7 @@ __all__ = [
     "Shafts",
     "SpeedVariation",
     "Splits",
+    "Stage",
     "State",
     "Stiffness",
     "TorqueVariation",

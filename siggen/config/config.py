@@ -16,6 +16,7 @@ from siggen.config.gears import Gears
 from siggen.config.housing import Housing, PlateHousing, RigidHousing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
+from siggen.config.stages import Stage
 from siggen.config.states import State, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
@@ -88,6 +89,9 @@ class Config(Section):
     )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
     gears: Gears = Field(description="the gear pair")
+    stages: tuple[Stage, ...] = Field(
+        default=(), description="further meshes behind `gears`, in the order of power; the last gear drives the load"
+    )
     stiffness: Stiffness = Field(default=Stiffness(), description="model of the mesh stiffness")
     dynamics: Dynamics = Field(default=Dynamics(), description="model of the gearbox")
     operating_points: Annotated[tuple[OperatingRange, ...], Field(min_length=1), OPERATING_POINTS] = Field(

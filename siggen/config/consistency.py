@@ -8,13 +8,14 @@ from dataclasses import replace
 from typing import Any
 
 from siggen.config.housing import ModalHousing, PlateHousing
+from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
 from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
-from siggen.sensors.sensor import MODAL, PLATES
+from siggen.sensors.sensor import MODAL, PLATES, STAGES
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -42,6 +43,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _housing,
         _background,
         _splits,
+        stage_problems,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -58,7 +60,7 @@ def _sample_count(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
 def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if not {"fs_hz", "mesh_harmonics", "gears", "operating_points"} <= sections.keys():
         return
-    teeth, harmonics = max(sections["gears"].teeth_of("pinion")), sections["mesh_harmonics"]
+    teeth, harmonics = most_teeth_per_turn(sections), sections["mesh_harmonics"]
     speed_hz = max(bounds(point.speed_hz)[1] for point in sections["operating_points"])
     if "variation" in sections:
         speed_hz *= sections["variation"].speed_ratios[1]
@@ -79,7 +81,7 @@ AT_BEARINGS, ON_BODY = ("rubbing", "bearings", "machines", "shafts"), ("base", "
 def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if "dynamics" not in sections:
         return
-    model = sections["dynamics"].model
+    model = STAGES if sections.get("stages") else sections["dynamics"].model
     if model == "casing" and "housing" not in sections:  # wrong itself: which places there are is not known
         return
     if model == "casing" and isinstance(sections["housing"], PlateHousing):
@@ -197,7 +199,7 @@ def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) ->
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    for key in ("states", "sensors"):
+    for key in ("states", "sensors", "stages"):
         names = _raw_names(raw, key)
         for index, name in names.items():
             first = next(i for i, other in names.items() if other == name)
@@ -289,8 +291,10 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             (f"{path}.{key}", *rest) for path, one in state.placed(f"states.{index}") for key, *rest in one.hit_teeth()
         )
         for path, gear, teeth in hit:
+            if (pair := pair_of(sections, gear)) is None:  # told by `_stages_named`
+                continue
             selected = most_teeth(teeth)
-            count = min(sections["gears"].teeth_of(gear))
+            count = min(pair.teeth_of(gear.rpartition(".")[2]))
             if isinstance(selected, int):
                 if selected > count:
                     yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")

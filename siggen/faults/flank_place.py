@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
+from pydantic import Field
 
 from siggen.arrays import FloatArray
 from siggen.errors import Problem
@@ -19,10 +20,12 @@ from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Section
+from siggen.keys.wording import AllowedText
 
 GearName: TypeAlias = Literal["pinion", "gear"]
-AnyGear: TypeAlias = Literal["pinion", "gear", "either"]
-"""`either`: drawn per gearbox, the same for all of its states."""
+GEAR_TEXT = AllowedText("pinion, gear or either; of a further stage NAME.pinion, NAME.gear or NAME.either")
+AnyGear: TypeAlias = Annotated[str, Field(pattern=r"^([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)$"), GEAR_TEXT]
+"""`either`: drawn per gearbox, the same for all of its states; before a dot the name of a further stage."""
 
 DAMAGED_GEAR = "damaged gear; either: drawn per gearbox, one gear in all states"
 

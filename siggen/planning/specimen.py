@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from siggen.config import Config, Dynamics, Gears, ModalHousing, RigidHousing, Stiffness
+from siggen.config import Config, Dynamics, Gears, ModalHousing, RigidHousing, Stage, Stiffness
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.housing_numbers import PlateNumbers, drawn_housing
-from siggen.seeding import Stage, named_uniforms
+from siggen.seeding import Stage as Consumer
+from siggen.seeding import named_uniforms
 from siggen.sensors.sensor import Sensor
 
 
@@ -18,6 +19,7 @@ class Specimen:
     """A gearbox: sections of the configuration with every distribution replaced by a value.
 
     `bearing_point` is the operating point under whose mean load its bearings stand; None where they have one stiffness.
+    `stages` are the meshes behind that of `gears`.
     """
 
     specimen_id: int
@@ -27,6 +29,7 @@ class Specimen:
     housing: PlateNumbers | ModalHousing | RigidHousing
     sensors: tuple[Sensor, ...]
     bearing_point: OperatingPoint | None = None
+    stages: tuple[Stage, ...] = ()
 
     def under(self, point: OperatingPoint) -> Specimen:
         """Return the gearbox at an operating point; itself where its bearings have one stiffness."""
@@ -48,9 +51,9 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     operating point; `Specimen.under` puts them at that of a record.
     """
     own = gearbox_config(config, specimen_id)
-    gears = named_uniforms(config.seed, Stage.GEARS, specimen_id)
-    supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
-    sensor = named_uniforms(config.seed, Stage.SENSOR, specimen_id)
+    gears = named_uniforms(config.seed, Consumer.GEARS, specimen_id)
+    supports = named_uniforms(config.seed, Consumer.SUPPORTS, specimen_id)
+    sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
     return Specimen(
         specimen_id,
         gears=draw(own.gears, gears, "gears"),
@@ -59,6 +62,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         housing=drawn_housing(own.housing, supports),
         sensors=tuple(one.drawn(sensor) for one in own.sensors),
         bearing_point=draw_operating_point(own, specimen_id, 0) if follows_load(own.dynamics) else None,
+        stages=tuple(draw(one, supports, f"stages.{one.name}") for one in own.stages),
     )
 
 
@@ -69,7 +73,7 @@ def follows_load(dynamics: Dynamics) -> bool:
 
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:
     """Return an operating point of a specimen; the same for all of its states."""
-    uniform = named_uniforms(config.seed, Stage.OPERATING_POINT, specimen_id, operating_point_id)
+    uniform = named_uniforms(config.seed, Consumer.OPERATING_POINT, specimen_id, operating_point_id)
     ranges = gearbox_config(config, specimen_id).operating_points[operating_point_id]
     return OperatingPoint(
         speed_hz=at(ranges.speed_hz, uniform("speed_hz")), torque_nm=at(ranges.torque_nm, uniform("torque_nm"))

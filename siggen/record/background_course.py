@@ -74,7 +74,7 @@ class Course:
 def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: int, count: int) -> Course:
     """Return the course of one record over `count` samples from sample `first`, below 0 in the history."""
     pair, point = gear_pair(specimen.gears), draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    rotation = record_rotation(config, point, record, start_angle_rad(config, pair, record))
+    rotation = record_rotation(config, point, record, start_angle_rad(config, specimen, record))
     owner = record_owner(record)
     # a fast length may reach further back than any force is followed; there the shaft stands still
     time_s = np.maximum((np.arange(count) + first) / config.fs_hz, -TRANSIENT_CAP_S)

@@ -131,7 +131,7 @@ def _disturbances(
 
 def _rotation(config: Config, specimen: Specimen, record: PlannedRecord) -> Rotation:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    return record_rotation(config, point, record, start_angle_rad(config, gear_pair(specimen.gears), record))
+    return record_rotation(config, point, record, start_angle_rad(config, specimen, record))
 
 
 def _angle_rad(rotation: Rotation, fs_hz: float, first: int, count: int) -> FloatArray:

@@ -75,7 +75,7 @@ def _seldom_collected() -> Iterator[None]:
 def _run_teeth(config: Config) -> None:
     from siggen.planning.gearbox import gearbox_config
     from siggen.planning.specimen import draw_specimen
-    from siggen.record.simulation import state_teeth
+    from siggen.record.specimen_state import state_teeth
     from siggen.specimen.made_gears import MadeGears
 
     specimen, own = draw_specimen(config, 0), gearbox_config(config, 0)
@@ -96,7 +96,8 @@ def _run_motion(config: Config) -> None:
     from siggen.planning.gearbox import gearbox_config
     from siggen.planning.plan import planned_record
     from siggen.planning.specimen import draw_operating_point, draw_specimen
-    from siggen.record.simulation import simulated, specimen_state
+    from siggen.record.simulation import simulated
+    from siggen.record.specimen_state import specimen_state
     from siggen.specimen.friction import mean_force_n
     from siggen.specimen.instrument import specimen_instrument
 

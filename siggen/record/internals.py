@@ -17,7 +17,8 @@ from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.channels import measured_channels
 from siggen.record.quantities import internal_quantities, quantity_column
-from siggen.record.simulation import SpecimenState, record_response, specimen_state
+from siggen.record.simulation import record_response
+from siggen.record.specimen_state import SpecimenState, specimen_state
 
 
 def internals_table(config: Config, record_id: int, *, internals: bool = True) -> pa.Table:

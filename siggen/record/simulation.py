@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,128 +15,26 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.errors import SolverFailure
-from siggen.gears.damage.part import Parts
-from siggen.gears.damage.tooth_damage import Damage, on_teeth
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
-from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
-from siggen.record.labels import damage_labels, operating_labels, state_labels
+from siggen.record.labels import operating_labels, state_labels
 from siggen.record.machine import Machine, machines
 from siggen.record.quantities import is_asked_for
+from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
+from siggen.record.stage_labels import stage_operating_labels
 from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import FORCE, SHAFT
 from siggen.sensors.sensor import needs
-from siggen.specimen.back_flanks import with_back_flanks
-from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
-from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
-from siggen.specimen.flank_waves import wave_labels
-from siggen.specimen.gears import stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, settle_s
-from siggen.specimen.made_gears import MadeGears
-from siggen.specimen.motion import SpecimenMesh
-from siggen.specimen.static_mesh import StaticMesh, static_mesh
 from siggen.specimen.step_choice import stepped_motion
 from siggen.specimen.structure import structure
 
-__all__ = [
-    "damage_rows",
-    "record_response",
-    "refused_as",
-    "simulate",
-    "simulate_specimen",
-    "simulated",
-    "specimen_state",
-    "start_angle_rad",
-]
-
-
-@dataclass(frozen=True, slots=True)
-class SpecimenState:
-    """Everything that all records of one specimen and state share; built once for them."""
-
-    pair: GearPair
-    options: StiffnessOptions
-    damage: Damage
-    mesh: SpecimenMesh
-    labels: dict[str, object]
-    static: StaticMesh
-    parts: Parts = ()
-
-
-@dataclass(frozen=True, slots=True)
-class StateTeeth:
-    """Gears of one specimen in one state, with their damage, errors and tables."""
-
-    pair: GearPair
-    options: StiffnessOptions
-    damage: Damage
-    errors: SpecimenErrors | None
-    tables: ToothTables
-    labels: dict[str, object]
-    parts: Parts
-
-
-def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGears) -> StateTeeth:
-    """Return the teeth of one specimen in one state.
-
-    Raises
-    ------
-    SolverFailure
-        If what was drawn cannot be built (named in the reason).
-    """
-    pair, options = made.pair, stiffness_options(specimen.stiffness)
-    with refused_as("impossible_damage"):
-        parts = made.damage(state_id)
-        damage = on_teeth(parts)
-        errors = made.errors(state_id)
-        tables = tooth_tables(
-            specimen.dynamics, pair, damage, options, TABLE_POINTS,
-            largest_force_n(config.operating_points, pair), lead_of(errors),
-        )  # fmt: skip
-        labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
-    return StateTeeth(pair, options, damage, errors, tables, labels, parts)
-
-
-def specimen_state(config: Config, specimen: Specimen, state_id: int, made: MadeGears | None = None) -> SpecimenState:
-    """Return gears, damage, tables and structure of one specimen in one state; `made` if other states made them.
-
-    Raises
-    ------
-    SolverFailure
-        If what was drawn cannot be built (named in the reason).
-    """
-    made = made or MadeGears(config, specimen)
-    teeth = state_teeth(config, specimen, state_id, made)
-    pair, tables = teeth.pair, teeth.tables
-    with refused_as("outside_model"):
-        missing = made.missing(state_id)
-        assembled = structure(config, specimen)
-        labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
-        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, teeth.parts)
-        mesh = SpecimenMesh(
-            pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
-            sham=config.states[state_id].sham,
-        )  # fmt: skip
-        loads = largest_force_n(config.operating_points, pair), lead_of(teeth.errors)
-        before = made.missing_before_chips(state_id)
-        mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
-    return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
-
-
-@contextmanager
-def refused_as(status: str) -> Iterator[None]:
-    """Turn a refusal of what was drawn, which names the model's limit, into a status of the record."""
-    try:
-        yield
-    except ValueError as error:
-        raise SolverFailure(status, str(error)) from error
+__all__ = ["damage_rows", "record_response", "simulate", "simulate_specimen", "simulated", "start_angle_rad"]
 
 
 def record_response(
@@ -220,7 +117,7 @@ def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    angle_rad = start_angle_rad(config, state.pair, record)
+    angle_rad = start_angle_rad(config, specimen, record)
     return record_drive(config, specimen, state.mesh.structure, point, record, angle_rad, state.parts)
 
 
@@ -256,6 +153,7 @@ def simulated(
     labels = {
         **state.labels,
         **operating,
+        **stage_operating_labels(specimen, operating, tuple(one.pair for one in state.behind)),
         **stepped,
         **variation_labels(config, driven),
         "start_angle_rad": float(ends_rad[0]),

@@ -33,20 +33,26 @@ PLATES = "casing, housing.kind: plates"
 """The model whose housing gives way."""
 MODAL = "casing, housing.kind: modal"
 """The model whose housing gives way as given modes say."""
+STAGES = "8dof, stages"
+"""The model of gearboxes with further meshes behind the first one."""
 PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
 """Place -> plate of the housing."""
 PLACES = {
     "torsional": ("pinion_rim", "gear_rim"),
     "6dof": ("pinion_bearing", "gear_bearing"),
     "8dof": ("pinion_bearing", "gear_bearing"),
+    STAGES: ("pinion_bearing", "gear_bearing"),
     "casing": ("casing", "pinion_bearing", "gear_bearing"),
     PLATES: (*PLATE_OF, "pinion_bearing", "gear_bearing"),
     MODAL: ("casing", *PLATE_OF, "pinion_bearing", "gear_bearing"),
 }
 """Places whose motion a model has."""
-SHAFTS_OF = {model: tuple(SHAFTS) for model in PLACES} | {"6dof": ("pinion", "gear")}
+SHAFTS_OF = {model: tuple(SHAFTS) for model in PLACES} | {
+    "6dof": ("pinion", "gear"),
+    STAGES: ("motor", "pinion", "gear"),
+}
 """What turns in a model."""
-COUPLINGS_OF = {model: tuple(COUPLINGS) for model in PLACES} | {"6dof": ()}
+COUPLINGS_OF = {model: tuple(COUPLINGS) for model in PLACES} | {"6dof": (), STAGES: ("input_coupling",)}
 """Couplings that a model has."""
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
 

@@ -18,6 +18,7 @@ from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
+from siggen.planning.stages import first_mesh
 from siggen.specimen.gears import stiffness_options
 from siggen.specimen.worn_loads import load_at_rest
 
@@ -43,7 +44,7 @@ def grown_damage(
     config: Config, specimen_id: int, pair: GearPair, state_id: int, milder_damage: Callable[[int], Parts]
 ) -> Parts:
     """Return `state_damage`, with that of the milder state from `milder_damage`, which takes its number."""
-    config = gearbox_config(config, specimen_id)
+    config = first_mesh(gearbox_config(config, specimen_id))
     state = config.states[state_id]
     milder, older = tuple(_milder(config, state_id)), config.grown_from(state_id)
     before = () if older is None else milder_damage(older)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import gcd, pi
+from math import pi
 
 import numpy as np
 
@@ -18,11 +18,11 @@ from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.damage.part import Parts
-from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
+from siggen.planning.stages import hunting_turns
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread
@@ -80,9 +80,9 @@ def record_drive(
     return RecordDrive(rotation, Excitation(sources), torque, 0)
 
 
-def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> float:
-    """Return the pinion angle at the first sample [rad], uniform over the hunting period of the two gears."""
-    revolutions = pair.gear.teeth // gcd(pair.pinion.teeth, pair.gear.teeth)
+def start_angle_rad(config: Config, specimen: Specimen, record: PlannedRecord) -> float:
+    """Return the pinion angle at the first sample [rad], uniform over the hunting period of all gears."""
+    revolutions = hunting_turns(specimen.gears, specimen.stages)
     return float(generator(config.seed, Stage.START, *record_owner(record)).random() * 2 * pi * revolutions)
 
 

@@ -9,11 +9,13 @@ are those of the record: another operating point of the set does not change them
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import ceil, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
+from siggen.arrays import FloatArray
 from siggen.config import Config, Dynamics
 from siggen.dynamics.friction.friction import SLIP_SPEED_M_S
 from siggen.dynamics.structure.structure import Structure
@@ -71,23 +73,31 @@ def rule_grid(config: Config, dynamics: Dynamics, mesh: SpecimenMesh, point: Ope
     if dynamics.method != "exponential":
         return TimeGrid(dynamics.steps_per_sample, 1)
     mesh, front = mesh.carrying(point)
-    teeth_hz = float(mesh.tables.table_of_pair.shape[0]) * abs(point.speed_hz)
-    vibration_per_s = 2.0 * pi * _fastest_hz(mesh.structure, mesh.tables) / MOST_RADIANS
-    stopping_per_s = _stopping_per_s(dynamics, mesh.structure, mesh.pair, front) / MOST_STOPPED
+    teeth_hz = max(
+        float(one.mesh.tables.table_of_pair.shape[0]) * one.turning * abs(point.speed_hz) for one in mesh.every
+    )
+    vibration_per_s = 2.0 * pi * _fastest_hz(mesh.structure, [one.mesh.tables for one in mesh.every]) / MOST_RADIANS
+    by_mesh = zip(mesh.every, mesh.structure.meshes, strict=True)
+    stopping_per_s = max(
+        _stopping_per_s(dynamics, mesh.structure, vectors.sliding, one.mesh.pair, one.at(front))
+        for one, vectors in by_mesh
+    ) / MOST_STOPPED  # fmt: skip
     rate_hz = max(vibration_per_s, LEAST_PER_PITCH * teeth_hz, stopping_per_s)
     finer = sqrt(USUAL_TOLERANCE / dynamics.integration_tolerance)
     return exponential_grid(max(1, ceil(rate_hz / config.fs_hz * finer)))
 
 
-def _fastest_hz(structure: Structure, tables: MeshTables) -> float:
-    """Return the highest natural frequency to which the mesh contributes."""
-    healthy = tables.pair_stiffness_n_per_m.max(axis=0)
-    stiffness = float(healthy.mean()) * (tables.end_m - tables.start_m) / tables.base_pitch_m
-    modes = natural_modes(structure, stiffness)
+def _fastest_hz(structure: Structure, meshes: Sequence[MeshTables]) -> float:
+    """Return the highest natural frequency to which a mesh contributes."""
+    healthy = [float(one.pair_stiffness_n_per_m.max(axis=0).mean()) for one in meshes]
+    pairs = [(one.end_m - one.start_m) / one.base_pitch_m for one in meshes]
+    modes = natural_modes(structure, [k * count for k, count in zip(healthy, pairs, strict=True)])
     return float(modes.frequency_hz[modes.mesh_share >= MESH_SHARE].max(initial=0.0))
 
 
-def _stopping_per_s(dynamics: Dynamics, structure: Structure, pair: GearPair, point: OperatingPoint) -> float:
+def _stopping_per_s(
+    dynamics: Dynamics, structure: Structure, vectors: FloatArray, pair: GearPair, point: OperatingPoint
+) -> float:
     """Return how fast friction under the static force stops the sliding where it turns: μ F/v_0 · r M⁻¹ r (derived)."""
     turn = friction_turn(dynamics.friction, pair, point) if dynamics.rubbing == "mixed_ehl" else None
     if dynamics.rubbing == "constant":
@@ -95,7 +105,7 @@ def _stopping_per_s(dynamics: Dynamics, structure: Structure, pair: GearPair, po
     if turn is None:
         return 0.0
     force_n = abs(point.torque_nm) / pair.pinion.base_radius_m
-    r_0, r_1 = structure.mesh.sliding
+    r_0, r_1 = vectors
     sliding = r_0 + pair.pitch_point_m * r_1
     by_mass = float(sliding @ np.linalg.solve(structure.mass, sliding))
     return float(turn.coefficient * force_n / turn.slip_speed_m_s * by_mass)

@@ -10,6 +10,7 @@ from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
+from siggen.planning.stages import first_mesh, stage_config, stage_specimen
 from siggen.specimen.damage import grown_damage
 from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_errors
 from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
@@ -18,19 +19,33 @@ from siggen.specimen.motion import teeth_missing
 
 
 class MadeGears:
-    """Errors, waves, missing material and damage by state.
+    """Errors, waves, missing material and damage by state; `stages` are the same of the further meshes.
 
     What is made by `manufacture.draw: specimen` is one for all states; damage is drawn on that of the milder state.
     """
 
     def __init__(self, config: Config, specimen: Specimen) -> None:
         self.pair: GearPair = gear_pair(specimen.gears)
-        self._config, self._specimen = config, specimen
+        self._config, self._specimen = first_mesh(config), specimen
+        self.stages = tuple(
+            MadeGears(stage_config(config, specimen, i), stage_specimen(specimen, i))
+            for i in range(len(specimen.stages))
+        )
         # not over instances: what belongs to a gearbox ends with it
         self._errors = cache(self._computed_errors)
         self._waves = cache(self._computed_waves)
         self._missing = cache(self._computed_missing)
         self._damage = cache(self._drawn_damage)
+
+    @property
+    def config(self) -> Config:
+        """The configuration of this pair alone."""
+        return self._config
+
+    @property
+    def specimen(self) -> Specimen:
+        """The gearbox with this pair as its first one."""
+        return self._specimen
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
         """Return the errors; None for perfect gears.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ from siggen.gears.geometry.missing_material import (
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
+from siggen.planning.stages import stage_point
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh, specimen_friction
@@ -53,11 +54,27 @@ class TeethUnderTorque(Protocol):
         """Return the missing material in contact under a torque at the gear in front."""
 
 
+class MeshBehind(NamedTuple):
+    """One mesh of a gearbox, its pinion's turns per turn of the first one, and base pitches turned when that has none.
+
+    `turned_pitches` says how the teeth of its shafts stand to those in front.
+    """
+
+    mesh: SpecimenMesh
+    turning: float = 1.0
+    turned_pitches: float = 0.0
+
+    def at(self, point: OperatingPoint) -> OperatingPoint:
+        """Return an operating point of the first pinion as its own pinion has it."""
+        return point if self.turning == 1.0 else stage_point(point, self.turning)
+
+
 @dataclass(frozen=True, slots=True)
 class SpecimenMesh:
     """What all records of one specimen and state share: structure and tables of its teeth.
 
     `sham`: in what has kinds of pairs of its own nothing is removed, so that no pair is a damaged one.
+    `behind` are the further meshes, which carry no torque below 0.
     `back` makes the same of the back flanks, which carry torques below 0: `pair` has the gear in front there.
     """
 
@@ -69,6 +86,12 @@ class SpecimenMesh:
     contact: ContactTable | None = None
     sham: bool = False
     back: Callable[[], SpecimenMesh] | None = None
+    behind: tuple[MeshBehind, ...] = ()
+
+    @property
+    def every(self) -> tuple[MeshBehind, ...]:
+        """All meshes in the order of power, itself first."""
+        return (MeshBehind(self), *self.behind)
 
     def on(self, structure: Structure) -> SpecimenMesh:
         """Return the same teeth on another structure."""
@@ -133,7 +156,7 @@ def specimen_motion(
     more: dict[str, Any] = {"stride": stride} if kind is ExponentialMotion else {}
     return kind(
         locked_load(mesh.structure) if rubbing else mesh.structure,
-        (_pair_mesh(dynamics, mesh, front),),
+        [_pair_mesh(dynamics, one, number, front) for number, one in enumerate(mesh.every)],
         mean=MeanState(point.torque_nm, point.speed_hz),
         step_s=step_s,
         input_vectors=vectors,
@@ -142,13 +165,15 @@ def specimen_motion(
     )
 
 
-def _pair_mesh(dynamics: Dynamics, mesh: SpecimenMesh, front: OperatingPoint) -> PairMesh:
-    """Return the law of a mesh at an operating point as the gear in front has it."""
+def _pair_mesh(dynamics: Dynamics, one: MeshBehind, number: int, front: OperatingPoint) -> PairMesh:
+    """Return the law of a mesh at an operating point as the gear in front of the first one has it."""
+    mesh, own = one.mesh, one.at(front)
     return PairMesh(
-        _law(dynamics, mesh, front),
+        _law(dynamics, mesh, own, mesh.structure.meshes[number].mass_kg),
         mean_mesh_stiffness(mesh.tables),
         light_force_n(mesh.pair),
-        _contact(dynamics, mesh.pair, front),
+        _contact(dynamics, mesh.pair, own),
+        one.turned_pitches,
     )
 
 
@@ -160,13 +185,13 @@ def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairC
     return PairContact(modulus, pair.face_width_m, oil, composite_roughness_m(friction))
 
 
-def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairLaw:
+def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, mass_kg: float) -> PairLaw:
     section = dynamics.mesh
     film = SqueezeFilm(FILM_VISCOSITY_PA_S, mesh.pair.face_width_m, FILM_FLOOR_M)
     return pair_law(
         mesh.tables,
         mesh.missing.under(point.torque_nm),
-        MeshConstants(mesh.pair.line_of_action_m, mesh.structure.mesh.mass_kg, 1e-6 * constant(dynamics.backlash_um)),
+        MeshConstants(mesh.pair.line_of_action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um)),
         damping_ratio=_damping_ratio(dynamics),
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
         film=film if section.squeeze_film == "on" else None,

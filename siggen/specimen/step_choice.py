@@ -31,7 +31,7 @@ from siggen.planning.specimen import OperatingPoint
 from siggen.sensors.quantity import STILL_M_S2
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid
-from siggen.specimen.motion import SpecimenMesh, specimen_motion
+from siggen.specimen.motion import MeshBehind, SpecimenMesh, specimen_motion
 
 MARGIN = 0.7
 """Of the tolerance: what a stretch may err by, since the whole record may err by more."""
@@ -93,27 +93,32 @@ class Probe:
 
     def stretch(self, motion: Motion) -> Stretch:
         """Return where the record is looked at."""
-        pitches_hz = motion.teeth * abs(self.point.speed_hz)
+        pitches_hz = min(one.mesh.pair.pinion.teeth * one.turning * abs(self.point.speed_hz) for one in self.mesh.every)
         compared_s = max(LEAST_S, LEAST_PITCHES / pitches_hz, self._sharp_s())
         ringing = self.ringing(motion)
         count = max(2, min(ceil(compared_s * self.config.fs_hz), self.config.samples))
-        return Stretch(self._first(motion) - ringing, ringing + count)
+        return Stretch(self._first() - ringing, ringing + count)
 
     def _sharp_s(self) -> float:
         """Return the time over which what acts shows all that it changes within few steps."""
         acting = self.driven.excitation
         return 0.0 if acting is None else acting.sharp_turn_rad / (2.0 * np.pi * abs(self.point.speed_hz))
 
-    def _first(self, motion: Motion) -> int:
-        """Return the sample before the first damaged pair enters; without one the first of the record."""
+    def _first(self) -> int:
+        """Return the sample before the first damaged pair of any mesh enters; without one the first of the record."""
         if self.mesh.sham:
             return 0
+        entering = (self._entering(one) for one in self.mesh.every)
+        return min((sample for sample in entering if sample is not None), default=0)
+
+    def _entering(self, one: MeshBehind) -> int | None:
         samples = np.linspace(0.0, self.config.samples, SPREAD_POINTS)
-        turned = self.driven.rotation.angle_rad(samples / self.config.fs_hz) * motion.teeth / (2.0 * np.pi)
-        kinds = self.mesh.tables.table_of_pair
+        kinds = one.mesh.tables.table_of_pair
+        first_pinion = self.driven.rotation.angle_rad(samples / self.config.fs_hz) * kinds.shape[0] / (2.0 * np.pi)
+        turned = first_pinion * one.turning + one.turned_pitches
         pairs = np.arange(ceil(turned[0] + PITCHES_BEFORE), int(turned[-1]))
         damaged = pairs[kinds[pairs % kinds.shape[0], pairs % kinds.shape[1]] > 0]
-        return int(np.interp(damaged[0] - PITCHES_BEFORE, turned, samples)) if damaged.size else 0
+        return int(np.interp(damaged[0] - PITCHES_BEFORE, turned, samples)) if damaged.size else None
 
 
 def stepped_motion(

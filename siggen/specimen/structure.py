@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import pi
+from math import pi, radians
 
-from siggen.config import Config, Dynamics, RigidHousing, Rotor
+from siggen.config import Config, Dynamics, RigidHousing, Rotor, Stage
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.body import Body, Bolts, Casing, Point, modal_body
 from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
+from siggen.dynamics.structure.drivetrain import CommonShaft, NextStage, drivetrain
 from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
 from siggen.dynamics.structure.structure import Rotor as RotorNumbers
 from siggen.dynamics.structure.tilting_shaft import Shaft
@@ -35,6 +36,8 @@ ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 def structure(config: Config, specimen: Specimen) -> Structure:
     """Return the structure of a drawn specimen; a gear without given mass is a steel disc with its bore."""
     dynamics, pair, stage = specimen.dynamics, gear_pair(specimen.gears), supported_stage(specimen)
+    if specimen.stages:
+        return drivetrain(stage, _next_stages(specimen))
     if dynamics.model != "casing":
         return ASSEMBLIES[dynamics.model](stage)
     found = carried_structure(stage, specimen_body(config, specimen), _shafts(dynamics, stage, pair))
@@ -43,6 +46,32 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
     shafts = {name.replace("bearing", "shaft"): shaft_direction(found, name) for name in found.bearing_directions}
     return replace(found, motions=shafts)
+
+
+def _next_stages(specimen: Specimen) -> list[NextStage]:
+    """Return the further meshes in SI; a shaft is as thick as the thinner bore of its two gears."""
+    pairs = [gear_pair(specimen.gears), *(gear_pair(stage.gears) for stage in specimen.stages)]
+    return [
+        NextStage(
+            name=stage.name,
+            working_pressure_angle_rad=pair.working_pressure_angle_rad,
+            pinion=_rotor(Rotor(), pair.pinion, pair.face_width_m),
+            gear=_rotor(stage.gear, pair.gear, pair.face_width_m),
+            shaft=_common_shaft(stage, before, pair),
+            direction_rad=radians(constant(stage.direction_deg)),
+        )
+        for stage, before, pair in zip(specimen.stages, pairs, pairs[1:], strict=False)
+    ]
+
+
+def _common_shaft(stage: Stage, before: GearPair, pair: GearPair) -> CommonShaft:
+    span_m = 2.0 * (before.face_width_m + pair.face_width_m)
+    return CommonShaft(
+        span_m=span_m if stage.span_mm is None else 1e-3 * constant(stage.span_mm),
+        diameter_m=2.0 * min(before.gear.bore_radius_m, pair.pinion.bore_radius_m),
+        youngs_modulus_pa=pair.youngs_modulus_pa,
+        poisson_ratio=pair.poisson_ratio,
+    )
 
 
 def supported_stage(specimen: Specimen) -> SpurStage:

@@ -28,7 +28,8 @@ from siggen.errors import UsageError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
-from siggen.record.simulation import at_point, refused_as, specimen_state, start_angle_rad
+from siggen.record.simulation import at_point, start_angle_rad
+from siggen.record.specimen_state import refused_as, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
 from siggen.specimen.step_choice import stepped_motion
@@ -62,7 +63,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     with refused_as("outside_model"):
         specimen, state = at_point(config, specimen, state, record)
-        angle = start_angle_rad(config, state.pair, record)
+        angle = start_angle_rad(config, specimen, record)
         driven = record_drive(config, specimen, state.mesh.structure, point, record, angle, state.parts)
         (steps, _), motion, _ = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
         grid = _time_grid(config, specimen, motion, driven.rotation, steps)

@@ -23,7 +23,7 @@ from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.internals import record_internals
-from siggen.record.simulation import SpecimenState, refused_as
+from siggen.record.specimen_state import SpecimenState, refused_as
 from siggen.specimen.contact import face_options, largest_force_n
 from siggen.specimen.errors import specimen_errors
 from siggen.views.flank_views import FlankView, flank_view

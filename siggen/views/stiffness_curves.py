@@ -22,7 +22,7 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
-from siggen.record.simulation import specimen_state
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.contact import largest_force_n, solves_across_the_face
 from siggen.specimen.damage import state_damage
 from siggen.specimen.friction import light_force_n

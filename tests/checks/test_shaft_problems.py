@@ -15,7 +15,8 @@ from siggen.checks.tilt_problems import static_tilts_rad
 from siggen.columns.record import Record, RecordFailure
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import simulate, specimen_state
+from siggen.record.simulation import simulate
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
 

@@ -17,7 +17,8 @@ from siggen.dynamics.drive.drive import Drive
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import record_response, simulate, specimen_state
+from siggen.record.simulation import record_response, simulate
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
 from siggen.specimen.drive import record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
@@ -131,8 +132,7 @@ def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
     record = planned_record(made, record_id)
     specimen = draw_specimen(made, record.specimen_id)
     point = draw_operating_point(made, record.specimen_id, record.operating_point_id)
-    pair = gear_pair(specimen.gears)
-    rotation = record_rotation(made, point, record, start_angle_rad(made, pair, record))
+    rotation = record_rotation(made, point, record, start_angle_rad(made, specimen, record))
     parts = specimen_state(made, specimen, record.state_id).parts
     return spall_sources(made, specimen, structure(made, specimen), point, record, rotation, parts)
 

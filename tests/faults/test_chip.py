@@ -14,7 +14,8 @@ from siggen.errors import ConfigError
 from siggen.gears.damage.chip import Chip
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import simulate, specimen_state
+from siggen.record.simulation import simulate
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import config_with, damage_of
 

@@ -16,7 +16,7 @@ from siggen.gears.damage.heights import clipped_arc_m
 from siggen.gears.damage.irregular import IrregularSpall
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import specimen_state
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import PIT, config_with, damage_of
 

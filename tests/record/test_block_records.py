@@ -14,7 +14,8 @@ from siggen.columns.record import Record
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate, specimen_state
+from siggen.record.simulation import record_response, simulate
+from siggen.record.specimen_state import specimen_state
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import MOTION
 from siggen.specimen.instrument import specimen_instrument

@@ -12,7 +12,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate, specimen_state
+from siggen.record.simulation import record_response, simulate
+from siggen.record.specimen_state import specimen_state
 from tests.sensing.test_measurement import measured
 
 THREADS = (1, 3, 16)

@@ -14,7 +14,8 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate, simulate_specimen, specimen_state
+from siggen.record.simulation import record_response, simulate, simulate_specimen
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.measured_path import INPUTS
 from tests.config.minimal import minimal

@@ -12,7 +12,8 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.faults.registry import BY_WORD
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import damage_rows, simulate, specimen_state
+from siggen.record.simulation import damage_rows, simulate
+from siggen.record.specimen_state import specimen_state
 from tests.config.minimal import minimal
 
 PIT = {"semi_axis_face_mm": 0.6, "semi_axis_profile_mm": 0.4, "depth_mm": 0.3}

@@ -10,7 +10,7 @@ from siggen.gears.damage import flank_damage, irregular, outlines
 from siggen.gears.stiffness import compliance
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import StateTeeth, state_teeth
+from siggen.record.specimen_state import StateTeeth, state_teeth
 from siggen.specimen import contact
 from siggen.specimen.made_gears import MadeGears
 

@@ -8,7 +8,8 @@ import pytest
 from siggen.columns.record import RecordFailure
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate, specimen_state
+from siggen.record.simulation import record_response, simulate
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from tests.sensors.runs import GEAR_RATIO, line, loaded, problems, record
 

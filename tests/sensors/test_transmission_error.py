@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import specimen_state
+from siggen.record.specimen_state import specimen_state
 from tests.sensors.runs import loaded, problems, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION
 

@@ -11,7 +11,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Config, parse
 from siggen.dynamics.structure.body import DIRECTIONS, Row
 from siggen.planning.specimen import OperatingPoint, draw_specimen
-from siggen.record.simulation import SpecimenState, specimen_state
+from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.motion import specimen_motion
 from siggen.specimen.structure import specimen_body
 from tests.config.minimal import minimal

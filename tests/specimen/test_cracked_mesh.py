@@ -11,7 +11,7 @@ import pytest
 from siggen.dynamics.mesh.pair_forces import static_approach_m
 from siggen.dynamics.mesh.static_stiffness import secant_stiffness_n_per_m
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import SpecimenState, specimen_state
+from siggen.record.specimen_state import SpecimenState, specimen_state
 from tests.faults.test_damage import config_with
 
 TOOTH, FORCE_N = 3, 2400.0

@@ -12,7 +12,8 @@ from siggen.columns.record import Record, label_names
 from siggen.config import Config
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import simulate, simulate_specimen, specimen_state
+from siggen.record.simulation import simulate, simulate_specimen
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.errors import SpecimenErrors, specimen_errors
 from siggen.specimen.gears import gear_pair
 

@@ -15,7 +15,8 @@ from siggen.columns.record import Record
 from siggen.config import Config, by_reference
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import SpecimenState, simulate, specimen_state, start_angle_rad
+from siggen.record.simulation import simulate, start_angle_rad
+from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.sets.precision import record_error, reference_config, unrounded
 from siggen.specimen.drive import record_drive
 from siggen.specimen.motion import specimen_motion
@@ -42,7 +43,7 @@ def accelerations(
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    angle = start_angle_rad(config, state.pair, record)
+    angle = start_angle_rad(config, specimen, record)
     driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
     rate_hz = config.fs_hz * steps
     dynamics = by_reference(specimen.dynamics) if integrator == "runge_kutta" else specimen.dynamics
@@ -69,7 +70,7 @@ def errors(preset: str, number: int) -> np.ndarray:
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     driven = record_drive(
-        config, specimen, state.mesh.structure, point, record, start_angle_rad(config, state.pair, record)
+        config, specimen, state.mesh.structure, point, record, start_angle_rad(config, specimen, record)
     )
     steps, stride = stepped_motion(config, specimen.dynamics, state.mesh, point, driven).grid
     fine = accelerations(config, record_id, state, "runge_kutta", REFERENCE_STEPS)

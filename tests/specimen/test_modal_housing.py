@@ -19,7 +19,8 @@ from siggen.dataset.card_making import making
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate, specimen_state
+from siggen.record.simulation import record_response, simulate
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.measured_path import INPUTS
 from tests.config.minimal import minimal
 

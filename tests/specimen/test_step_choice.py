@@ -13,7 +13,8 @@ from siggen.config import Config, by_reference
 from siggen.dynamics.time.response import SampleGrid, Wanted, response_of
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import simulate, specimen_state, start_angle_rad
+from siggen.record.simulation import simulate, start_angle_rad
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive
 from siggen.specimen.integration import rule_grid
 from siggen.specimen.motion import specimen_motion
@@ -73,7 +74,7 @@ def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, 0, record.operating_point_id)
-    angle = start_angle_rad(config, state.pair, record)
+    angle = start_angle_rad(config, specimen, record)
     driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
     chosen = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
     dynamics, step_s = by_reference(specimen.dynamics), 1.0 / (config.fs_hz * FINE_STEPS)

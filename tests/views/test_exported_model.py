@@ -20,7 +20,7 @@ from siggen.dynamics.time.equations import no_inputs
 from siggen.errors import UsageError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import specimen_state
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import FORMAT_VERSION, exported_model
@@ -97,7 +97,7 @@ def beginning(
     specimen = draw_specimen(loaded, planned.specimen_id)
     state = specimen_state(loaded, specimen, planned.state_id)
     point = draw_operating_point(loaded, planned.specimen_id, planned.operating_point_id)
-    angle = start_angle_rad(loaded, state.pair, planned)
+    angle = start_angle_rad(loaded, specimen, planned)
     driven = record_drive(loaded, specimen, state.mesh.structure, point, planned, angle)
     built = state.mesh.structure
     matrices = {name: change(getattr(built, name)) for name in MATRICES}

@@ -17,7 +17,7 @@ from siggen.config import by_reference
 from siggen.dynamics.time.equations import no_inputs
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import specimen_state
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import exported_model
 from tests.views.test_exported_model import PINION, ROOT, by_scipy, largest

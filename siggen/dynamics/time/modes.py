@@ -5,6 +5,7 @@ Equations: eigenvalues of the undamped pencil (K, M) and of the state matrix (re
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +24,7 @@ class Modes:
     """Undamped modes, ascending; rigid ones have frequency 0.
 
     `frequency_hz` (k,); `shapes` (k, n), mass-normalised, their largest entry positive; `mesh_share` (k,): share of the
-    strain energy that is in the mesh, 0 for rigid modes.
+    strain energy that is in the meshes, 0 for rigid modes.
     """
 
     frequency_hz: FloatArray
@@ -31,10 +32,10 @@ class Modes:
     mesh_share: FloatArray
 
 
-def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float) -> Modes:
-    """Return the modes of the structure with a constant mesh stiffness [N/m]."""
-    p = structure.mesh.vector
-    stiffness = structure.stiffness + mesh_stiffness_n_per_m * p[:, None] * p[None, :]
+def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float | Sequence[float]) -> Modes:
+    """Return the modes of the structure with a constant stiffness [N/m] of the mesh, or of each of its meshes."""
+    of_meshes = np.atleast_1d(np.asarray(mesh_stiffness_n_per_m, dtype=np.float64))
+    stiffness = structure.stiffness + mesh_springs(structure, of_meshes)
     basis = elastic_basis(structure, stiffness)
     scaled = basis.T @ stiffness @ basis
     elastic, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
@@ -45,7 +46,7 @@ def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float) -> Modes:
     largest = shapes[np.arange(len(shapes)), np.argmax(np.abs(shapes), axis=1)]
     shapes = shapes * np.sign(largest)[:, None]
     # Mass-normalised, so the strain energy of a mode is half its eigenvalue.
-    mesh = mesh_stiffness_n_per_m * (shapes @ p) ** 2
+    mesh = sum(k * (shapes @ one.vector) ** 2 for k, one in zip(of_meshes, structure.meshes, strict=True))
     share = np.where(rigid, 0.0, mesh / np.where(rigid, 1.0, values))
     return Modes(np.sqrt(values) / (2.0 * np.pi), shapes, share)
 

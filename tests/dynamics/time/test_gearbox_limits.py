@@ -18,7 +18,8 @@ from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, specimen_state
+from siggen.record.simulation import record_response
+from siggen.record.specimen_state import specimen_state
 from tests.dynamics.casing_stage import PRESSURE_ANGLE, make_casing, make_structure
 from tests.dynamics.pair_runs import (
     MESHES,

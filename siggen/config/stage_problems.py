@@ -1,0 +1,65 @@
+"""What gearboxes with further meshes cannot have, and where damage names a stage that does not exist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import Any
+
+from siggen.errors import Problem
+from siggen.keys.number import bounds
+
+
+def stage_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield what is wrong about further meshes between the valid sections of a configuration."""
+    yield from _beside(sections)
+    yield from _named(sections)
+
+
+def most_teeth_per_turn(sections: Mapping[str, Any]) -> float:
+    """Return the teeth of the fastest mesh per turn of the first pinion."""
+    turned, most = 1.0, max(sections["gears"].teeth_of("pinion"))
+    pairs = [sections["gears"], *(stage.gears for stage in sections.get("stages", ()))]
+    for front, behind in pairwise(pairs):
+        turned *= front.pinion.teeth / front.gear.teeth
+        most = max(most, turned * behind.pinion.teeth)
+    return float(most)
+
+
+def pair_of(sections: Mapping[str, Any], gear: str) -> Any:
+    """Return the section `gears` of the mesh that a gear is in, None if there is no stage of its name."""
+    name = gear.rpartition(".")[0]
+    stages = {stage.name: stage.gears for stage in sections.get("stages", ())}
+    return stages.get(name) if name else sections["gears"]
+
+
+def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield what gearboxes with further meshes cannot have."""
+    if not sections.get("stages") or "dynamics" not in sections:
+        return
+    dynamics = sections["dynamics"]
+    beside = "in a set with stages"
+    if dynamics.model != "8dof":
+        yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof {beside}")
+    if dynamics.mesh.law != "pairs":
+        yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {beside}")
+    if "gears" in sections and sections["gears"].pairs:
+        yield Problem("gears.pairs", f"{len(sections['gears'].pairs)} pairs", f"allowed: none {beside}")
+    for which in ("pinion", "gear"):
+        if getattr(dynamics, which).bearing is not None:
+            yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null {beside}")
+    for index, point in enumerate(sections.get("operating_points", ())):
+        if bounds(point.torque_nm)[0] <= 0.0:
+            yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {beside}")
+
+
+def _named(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield damage on gears of stages that do not exist."""
+    if "stages" not in sections or "gears" not in sections:
+        return
+    for index, state in sections.get("states", {}).items():
+        for where, one in state.placed(f"states.{index}"):
+            gear = str(getattr(one, "gear", ""))
+            if pair_of(sections, gear) is None:
+                names = [f"{stage.name}.{which}" for stage in sections["stages"] for which in ("pinion", "gear")]
+                yield Problem(f"{where}.gear", f"'{gear}'", f"allowed: {', '.join(['pinion', 'gear', *names])}")

@@ -1,0 +1,144 @@
+"""Further meshes of a gearbox: each is looked at as if a user had written a file for its pair alone.
+
+So nothing that makes teeth, their errors or their damage knows of gearboxes with several meshes. Random numbers of a
+stage follow from the seed and its name.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+from siggen.config import Config, Gears, OperatingRange, Rotor, Stage, State
+from siggen.faults.fault import Fault
+from siggen.keys.distributions import Uniform
+from siggen.keys.number import Number, bounds
+from siggen.planning.specimen import OperatingPoint, Specimen
+
+DOT = "."
+"""Between the name of a stage and that of its gear, where damage names both."""
+
+
+def first_mesh(config: Config) -> Config:
+    """Return the configuration of the pair of `gears` alone; itself where there is no other mesh."""
+    return config if not config.stages else config.model_copy(update={"stages": (), "states": _states_on(config, "")})
+
+
+def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
+    """Return the configuration of the pair of a further stage of a drawn gearbox alone.
+
+    Its operating points are those of its pinion, as ranges; speed and torque of a record come from the first pinion.
+    """
+    own, turning = stage_specimen(specimen, index), turns(specimen)[index]
+    name = specimen.stages[index].name
+    points = _points(config.operating_points, turning)
+    return config.model_copy(
+        update={
+            "seed": _seed(config.seed, name), "gears": own.gears, "dynamics": own.dynamics, "stages": (),
+            "stiffness": own.stiffness, "operating_points": points, "states": _states_on(config, name),
+        }
+    )  # fmt: skip
+
+
+def first_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return valid sections of a configuration as those of its first mesh alone."""
+    return sections if not sections.get("stages") else _sections_on(sections, "")
+
+
+def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Yield path and sections of each further mesh alone, as `stage_config`, at the bounds of all numbers."""
+    if "gears" not in sections:
+        return
+    stages: tuple[Stage, ...] = sections.get("stages", ())
+    for index, (stage, turning) in enumerate(zip(stages, _turned(sections["gears"], stages), strict=False)):
+        own = {**_sections_on(sections, stage.name), "gears": stage.gears}
+        if "dynamics" in sections:
+            own["dynamics"] = sections["dynamics"].model_copy(update={"pinion": Rotor(), "gear": stage.gear})
+        if "operating_points" in sections:
+            own["operating_points"] = _points(sections["operating_points"], float(turning))
+        yield f"stages.{index}", own
+
+
+def _sections_on(sections: Mapping[str, Any], name: str) -> dict[str, Any]:
+    states: Mapping[int, State] = sections.get("states", {})
+    own = {index: state.model_copy(update={"damage": _own(state, name)}) for index, state in states.items()}
+    return {**sections, "states": own, "stages": ()}
+
+
+def stage_specimen(specimen: Specimen, index: int) -> Specimen:
+    """Return a drawn gearbox with the pair of a further stage in place of the first one."""
+    stage = specimen.stages[index]
+    dynamics = specimen.dynamics.model_copy(update={"pinion": Rotor(), "gear": stage.gear})
+    return replace(specimen, gears=stage.gears, dynamics=dynamics, stages=())
+
+
+def turns(specimen: Specimen) -> tuple[float, ...]:
+    """Return the turns of every further stage's pinion per turn of the first one."""
+    return tuple(float(one) for one in _turned(specimen.gears, specimen.stages))[:-1]
+
+
+def stage_point(point: OperatingPoint, turning: float) -> OperatingPoint:
+    """Return an operating point as a pinion has it that turns `turning` times per turn of the first one."""
+    return OperatingPoint(point.speed_hz * turning, point.torque_nm / turning)
+
+
+def hunting_turns(gears: Gears, stages: tuple[Stage, ...]) -> int:
+    """Return the turns of the first pinion after which all shafts stand again as they did."""
+    return lcm(*(one.denominator for one in _turned(gears, stages)))
+
+
+def _turned(gears: Gears, stages: tuple[Stage, ...]) -> Iterator[Fraction]:
+    """Yield the turns of each shaft behind the first one, per turn of that."""
+    turned = Fraction(1)
+    for pair in (gears, *(stage.gears for stage in stages)):
+        turned *= Fraction(pair.pinion.teeth, pair.gear.teeth)
+        yield turned
+
+
+def stage_of(damage: Fault) -> str:
+    """Return the name of the further stage that a damage is on; empty for the first mesh and for what is on no gear."""
+    return str(getattr(damage, "gear", "")).rpartition(DOT)[0]
+
+
+def _states_on(config: Config, name: str) -> tuple[State, ...]:
+    """Return the states with their damage on the gears of one mesh alone, which are called pinion and gear there."""
+    return tuple(_on(config, state_id, name) for state_id in range(len(config.states)))
+
+
+def _on(config: Config, state_id: int, name: str) -> State:
+    """Return a state with the damage of one mesh; what it grows from stays, though it may add nothing here."""
+    state, older = config.states[state_id], config.grown_from(state_id)
+    milder = "none" if older is None else config.states[older].name
+    return state.model_copy(update={"damage": _own(state, name), "grows_from": milder})
+
+
+def _own(state: State, name: str) -> tuple[Fault, ...] | None:
+    return tuple(_alone(one) for one in state.damages if stage_of(one) == name) or None
+
+
+def _alone(damage: Fault) -> Fault:
+    gear = getattr(damage, "gear", None)
+    return damage if gear is None or DOT not in gear else damage.model_copy(update={"gear": gear.rpartition(DOT)[2]})
+
+
+def _seed(seed: int, name: str) -> int:
+    return int.from_bytes(hashlib.sha256(f"{seed} stages.{name}".encode()).digest()[:8]) >> 1
+
+
+def _points(points: tuple[OperatingRange, ...], turning: float) -> tuple[OperatingRange, ...]:
+    """Return operating points of the first pinion as a pinion has them that turns `turning` times as fast."""
+    return tuple(
+        OperatingRange(speed_hz=_scaled(one.speed_hz, turning), torque_nm=_scaled(one.torque_nm, 1.0 / turning))
+        for one in points
+    )
+
+
+def _scaled(number: Number, factor: float) -> Number:
+    if isinstance(number, float):
+        return number * factor
+    low, high = (factor * one for one in bounds(number))
+    return Uniform(low=low, high=high)

@@ -1,0 +1,141 @@
+"""What all records of one specimen and state share: its teeth, their tables, its structure, its labels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+from siggen.config import Config
+from siggen.dynamics.structure.structure import Structure
+from siggen.errors import SolverFailure
+from siggen.gears.damage.part import Parts
+from siggen.gears.damage.tooth_damage import Damage, on_teeth
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
+from siggen.planning.specimen import Specimen
+from siggen.planning.stages import turns
+from siggen.record.labels import damage_labels
+from siggen.record.stage_labels import stage_labels
+from siggen.seeding import Stage as Consumer
+from siggen.seeding import named_uniforms
+from siggen.specimen.back_flanks import with_back_flanks
+from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
+from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
+from siggen.specimen.flank_waves import wave_labels
+from siggen.specimen.gears import stiffness_options
+from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.motion import MeshBehind, SpecimenMesh
+from siggen.specimen.static_mesh import StaticMesh, static_mesh
+from siggen.specimen.structure import structure
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenState:
+    """Everything that all records of one specimen and state share; built once for them.
+
+    `behind` are the same of the further meshes, whose labels are in `labels` already.
+    """
+
+    pair: GearPair
+    options: StiffnessOptions
+    damage: Damage
+    mesh: SpecimenMesh
+    labels: dict[str, object]
+    static: StaticMesh
+    parts: Parts = ()
+    behind: tuple[SpecimenState, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class StateTeeth:
+    """Gears of one specimen in one state, with their damage, errors and tables."""
+
+    pair: GearPair
+    options: StiffnessOptions
+    damage: Damage
+    errors: SpecimenErrors | None
+    tables: ToothTables
+    labels: dict[str, object]
+    parts: Parts
+
+
+def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGears) -> StateTeeth:
+    """Return the teeth of one specimen in one state.
+
+    Raises
+    ------
+    SolverFailure
+        If what was drawn cannot be built (named in the reason).
+    """
+    pair, options = made.pair, stiffness_options(specimen.stiffness)
+    with refused_as("impossible_damage"):
+        parts = made.damage(state_id)
+        damage = on_teeth(parts)
+        errors = made.errors(state_id)
+        tables = tooth_tables(
+            specimen.dynamics, pair, damage, options, TABLE_POINTS,
+            largest_force_n(config.operating_points, pair), lead_of(errors),
+        )  # fmt: skip
+        labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
+    return StateTeeth(pair, options, damage, errors, tables, labels, parts)
+
+
+def specimen_state(config: Config, specimen: Specimen, state_id: int, made: MadeGears | None = None) -> SpecimenState:
+    """Return gears, damage, tables and structure of one specimen in one state; `made` if other states made them.
+
+    Raises
+    ------
+    SolverFailure
+        If what was drawn cannot be built (named in the reason).
+    """
+    made = made or MadeGears(config, specimen)
+    with refused_as("outside_model"):
+        assembled = structure(config, specimen)
+    first = _mesh_state(made, state_id, assembled)
+    if not specimen.stages:
+        return first
+    return _with_stages(config, specimen, first, tuple(_mesh_state(one, state_id, assembled) for one in made.stages))
+
+
+def _with_stages(
+    config: Config, specimen: Specimen, first: SpecimenState, behind: tuple[SpecimenState, ...]
+) -> SpecimenState:
+    """Return the state of the first mesh with those behind it; how their teeth stand is drawn for the gearbox."""
+    uniform = named_uniforms(config.seed, Consumer.GEARS, specimen.specimen_id)
+    names = [stage.name for stage in specimen.stages]
+    meshes = tuple(
+        MeshBehind(one.mesh, turning, uniform(f"stages.{name}.clocking") * one.pair.pinion.teeth * one.pair.gear.teeth)
+        for one, turning, name in zip(behind, turns(specimen), names, strict=True)
+    )
+    labels = stage_labels(first.labels, dict(zip(names, (one.labels for one in behind), strict=True)))
+    return replace(first, mesh=replace(first.mesh, behind=meshes, back=None), labels=labels, behind=behind)
+
+
+def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> SpecimenState:
+    """Return the state of one mesh of a gearbox."""
+    config, specimen = made.config, made.specimen
+    teeth = state_teeth(config, specimen, state_id, made)
+    pair, tables = teeth.pair, teeth.tables
+    with refused_as("outside_model"):
+        missing = made.missing(state_id)
+        labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
+        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, teeth.parts)
+        mesh = SpecimenMesh(
+            pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
+            sham=config.states[state_id].sham,
+        )  # fmt: skip
+        loads = largest_force_n(config.operating_points, pair), lead_of(teeth.errors)
+        before = made.missing_before_chips(state_id)
+        mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
+    return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
+
+
+@contextmanager
+def refused_as(status: str) -> Iterator[None]:
+    """Turn a refusal of what was drawn, which names the model's limit, into a status of the record."""
+    try:
+        yield
+    except ValueError as error:
+        raise SolverFailure(status, str(error)) from error

@@ -1,0 +1,54 @@
+"""Labels of the further meshes of a gearbox, and how those of all meshes make one label of the record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.specimen import Specimen
+from siggen.planning.stages import DOT
+
+ADDED = ("damage_count", "damaged_area_mm2")
+LARGEST = (
+    "damaged_area_share", "damage_face_length_mm", "damage_profile_length_mm", "contact_length_loss_mm",
+    "mesh_stiffness_loss", "through_face", "sink_depth_um",
+)  # fmt: skip
+GEARS = ("pinion", "gear")
+
+
+def stage_labels(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any]]) -> dict[str, object]:
+    """Return the labels of a state by those of its first mesh and, by name, of each mesh behind it.
+
+    Counts and areas add up; of shares, lengths and losses the largest counts.
+    """
+    every = (first, *behind.values())
+    teeth = {
+        f"faulty_teeth_{name}_{gear}": labels[f"faulty_teeth_{gear}"]
+        for name, labels in behind.items()
+        for gear in GEARS
+    }
+    added = {key: sum(labels[key] for labels in every) for key in ADDED}
+    largest = {key: max(labels[key] for labels in every) for key in LARGEST}
+    return {**first, **added, **largest, **teeth, "faulty_gear": _faulty_gear(first, behind)}
+
+
+def stage_operating_labels(
+    specimen: Specimen, first: Mapping[str, Any], pairs: tuple[GearPair, ...]
+) -> dict[str, object]:
+    """Return teeth and frequencies of the further meshes, whose first shaft is that of the first mesh's gear."""
+    found: dict[str, object] = {}
+    shaft_hz = float(first["gear_shaft_hz"])
+    for stage, pair in zip(specimen.stages, pairs, strict=True):
+        found |= {f"teeth_{stage.name}_{gear}": pair.member(gear).teeth for gear in GEARS}
+        found[f"mesh_{stage.name}_hz"] = shaft_hz * pair.pinion.teeth
+        shaft_hz *= pair.pinion.teeth / pair.gear.teeth
+        found[f"{stage.name}_shaft_hz"] = shaft_hz
+    return found
+
+
+def _faulty_gear(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return which gear carries damage; `several` where gears of several meshes do."""
+    found = [] if first["faulty_gear"] == "none" else [str(first["faulty_gear"])]
+    found += [f"{name}{DOT}{one['faulty_gear']}" for name, one in behind.items() if one["faulty_gear"] != "none"]
+    return "several" if len(found) > 1 else next(iter(found), "none")
