@@ -153,7 +153,7 @@ def simulated(
     labels = {
         **state.labels,
         **operating,
-        **stage_operating_labels(specimen, operating, tuple(one.pair for one in state.behind)),
+        **stage_operating_labels(specimen, operating, [one.static for one in state.behind]),
         **stepped,
         **variation_labels(config, driven),
         "start_angle_rad": float(ends_rad[0]),

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import Specimen
-from siggen.planning.stages import DOT
+from siggen.planning.stages import DOT, turns
+from siggen.specimen.static_mesh import StaticMesh
 
 ADDED = ("damage_count", "damaged_area_mm2")
 LARGEST = (
     "damaged_area_share", "damage_face_length_mm", "damage_profile_length_mm", "contact_length_loss_mm",
     "mesh_stiffness_loss", "through_face", "sink_depth_um",
 )  # fmt: skip
+LOSS = "mesh_stiffness_loss_as_simulated"
 GEARS = ("pinion", "gear")
 
 
@@ -34,17 +35,23 @@ def stage_labels(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any
 
 
 def stage_operating_labels(
-    specimen: Specimen, first: Mapping[str, Any], pairs: tuple[GearPair, ...]
+    specimen: Specimen, first: Mapping[str, Any], behind: Sequence[StaticMesh]
 ) -> dict[str, object]:
-    """Return teeth and frequencies of the further meshes, whose first shaft is that of the first mesh's gear."""
+    """Return teeth and frequencies of the further meshes, and the largest loss of stiffness of any mesh.
+
+    Their first shaft is that of the first mesh's gear.
+    """
     found: dict[str, object] = {}
-    shaft_hz = float(first["gear_shaft_hz"])
-    for stage, pair in zip(specimen.stages, pairs, strict=True):
+    shaft_hz, turning = float(first["gear_shaft_hz"]), turns(specimen)
+    losses = [float(first[LOSS])]
+    for stage, static, turned in zip(specimen.stages, behind, turning, strict=True):
+        pair = static.pair
+        losses.append(static.largest_loss(float(first["torque_nm"]) / turned))
         found |= {f"teeth_{stage.name}_{gear}": pair.member(gear).teeth for gear in GEARS}
         found[f"mesh_{stage.name}_hz"] = shaft_hz * pair.pinion.teeth
         shaft_hz *= pair.pinion.teeth / pair.gear.teeth
         found[f"{stage.name}_shaft_hz"] = shaft_hz
-    return found
+    return {**found, LOSS: max(losses)} if behind else {}
 
 
 def _faulty_gear(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any]]) -> str:
