@@ -140,6 +140,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "duration_s": config.duration_s,
         "signal_hours": records * config.duration_s / 3600,
         "mesh_hz": list(_mesh_range_hz(config)),
+        "stages_hz": {name: list(ends) for name, ends in _stage_ranges_hz(config).items()},
         "specimens_of_split": specimens,
         "states": _state_counts(config, specimens),
         "severity_share": _severity_shares(config),
@@ -201,6 +202,17 @@ def _mesh_range_hz(config: Config) -> tuple[float, float]:
     return min(teeth) * min(low for low, _ in speeds) * slowest, max(teeth) * max(high for _, high in speeds) * fastest
 
 
+def _stage_ranges_hz(config: Config) -> dict[str, tuple[float, float]]:
+    """Return the mesh frequencies of the further stages by name."""
+    from siggen.config.stages import turned_teeth
+
+    first, ends = config.gears.pinion.teeth, _mesh_range_hz(config)
+    return {
+        stage.name: (float(teeth / first) * ends[0], float(teeth / first) * ends[1])
+        for stage, teeth in zip(config.stages, turned_teeth(config.gears, config.stages), strict=True)
+    }
+
+
 def _manufacture(config: Config) -> str:
     """Return what is planned for the errors of the teeth, in words."""
     section = config.manufacture
@@ -234,6 +246,10 @@ def _severity_shares(config: Config) -> dict[str, float]:
     return {name: severities.count(name) / len(severities) for name in dict.fromkeys(severities)}
 
 
+def _hertz(low_hz: float, high_hz: float) -> str:
+    return f"{low_hz:g} Hz" if low_hz == high_hz else f"{low_hz:.5g} to {high_hz:.5g} Hz"
+
+
 def _overview(summary: dict[str, Any]) -> Table:
     from rich.table import Table
 
@@ -250,7 +266,8 @@ def _overview(summary: dict[str, Any]) -> Table:
         "records": f"{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
         "channels": ", ".join(summary["channels"]),
         "hours of signal": f"{summary['signal_hours']:.3g}",
-        "mesh frequency": f"{low_hz:g} Hz" if low_hz == high_hz else f"{low_hz:g} to {high_hz:g} Hz",
+        "mesh frequency": _hertz(low_hz, high_hz),
+        **{f"mesh of {name}": _hertz(*ends) for name, ends in summary["stages_hz"].items()},
         "class balance": ", ".join(f"{name} {share:.0%}" for name, share in summary["severity_share"].items()),
         "errors of the teeth": summary["manufacture"],
         "shards": f"{sum(summary['shards_of_split'].values())}  ({_per_split(summary['shards_of_split'])}), "

@@ -95,13 +95,7 @@ ID_COLUMNS = (
 LABEL_COLUMNS = (
     Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
     Column("severity", pa.string(), "", "healthy, slight, moderate or severe"),
-    Column(
-        "faulty_gear",
-        pa.string(),
-        "",
-        "which gear carries damage: none, pinion, gear or both; of a further stage behind its name, of several meshes "
-        "several",
-    ),
+    Column("faulty_gear", pa.string(), "", "gear with damage: none, pinion, gear, both, STAGE.pinion, ... or several"),
     Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
     Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
     Column("damage_count", pa.int32(), "", "number of single damages on all teeth"),
@@ -152,9 +146,7 @@ INTEGRATION_COLUMNS = (
 )
 """Columns of sets of the law pairs."""
 VARIATION_COLUMNS = (
-    Column(
-        "speed_std_hz", pa.float64(), HERTZ, "standard deviation of the pinion's speed; its mean is pinion_shaft_hz"
-    ),
+    Column("speed_std_hz", pa.float64(), HERTZ, "standard deviation of the pinion's speed about pinion_shaft_hz"),
     Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque, what speeds the train up included"),
     Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
 )

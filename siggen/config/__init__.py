@@ -11,9 +11,9 @@ from siggen.config.background import (
     ShaftLines,
 )
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
-from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
+from siggen.config.dynamics import Coupling, Dynamics, PlainRotor, Rotor, by_reference
 from siggen.config.external_forces import Unbalance
-from siggen.config.gears import Gears, Wheel
+from siggen.config.gears import Gears, Pair, Wheel
 from siggen.config.housing import Bolts, Feet, Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
 from siggen.config.internals import Internals
@@ -52,7 +52,9 @@ __all__ = [
     "Mesh",
     "ModalHousing",
     "OperatingRange",
+    "Pair",
     "ParsedConfig",
+    "PlainRotor",
     "PlateHousing",
     "RigidHousing",
     "Rotor",

@@ -14,7 +14,7 @@ from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
 
 
-class Rotor(Section):
+class PlainRotor(Section):
     """Mass of a gear and the bearings of its shaft (x along the centre line, y vertical)."""
 
     mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
@@ -35,6 +35,11 @@ class Rotor(Section):
     bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
         default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
     )
+
+
+class Rotor(PlainRotor):
+    """The same with what makes it wobble, and with bearings that follow the load."""
+
     eccentricity_um: Annotated[Number, Within(least=0, most=200)] = Field(
         default=0.0,
         description="of the gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "

@@ -25,8 +25,8 @@ class Wheel(Section):
     )
 
 
-class Gears(Section):
-    """The pair: common tooth form, material, and the two wheels. The pinion drives."""
+class Pair(Section):
+    """One pair: common tooth form, material, and the two wheels. The pinion drives."""
 
     module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module")
     pressure_angle_deg: Annotated[Number, Within(least=10, most=35)] = Field(
@@ -48,6 +48,17 @@ class Gears(Section):
     )
     pinion: Wheel = Field(description="the driving gear")
     gear: Wheel = Field(description="the driven gear")
+
+    def teeth_of(self, which: str) -> tuple[int, ...]:
+        """Return the numbers of teeth that the pinion, the gear or either of them has."""
+        if which == "either":
+            return (*self.teeth_of("pinion"), *self.teeth_of("gear"))
+        return (getattr(self, which).teeth,)
+
+
+class Gears(Pair):
+    """The first pair of a gearbox, and what other pairs gearboxes of the set may have."""
+
     pairs: Annotated[Pairs, PAIRS] = Field(
         default=(),
         description="pairs of the set, each gearbox has one; all other numbers of the file are those of the pair above "
@@ -56,10 +67,8 @@ class Gears(Section):
 
     def teeth_of(self, which: str) -> tuple[int, ...]:
         """Return the numbers of teeth that the pinion, the gear or either of a gearbox may have."""
-        if which == "either":
-            return (*self.teeth_of("pinion"), *self.teeth_of("gear"))
-        if not self.pairs:
-            return (getattr(self, which).teeth,)
+        if which == "either" or not self.pairs:
+            return super().teeth_of(which)
         return tuple(dict.fromkeys(pair.teeth[("pinion", "gear").index(which)] for pair in self.pairs))
 
     @model_validator(mode="after")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
 from typing import Any
 
+from siggen.config.gears import Pair
+from siggen.config.stages import turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
 
@@ -18,15 +19,11 @@ def stage_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
 
 def most_teeth_per_turn(sections: Mapping[str, Any]) -> float:
     """Return the teeth of the fastest mesh per turn of the first pinion."""
-    turned, most = 1.0, max(sections["gears"].teeth_of("pinion"))
-    pairs = [sections["gears"], *(stage.gears for stage in sections.get("stages", ()))]
-    for front, behind in pairwise(pairs):
-        turned *= front.pinion.teeth / front.gear.teeth
-        most = max(most, turned * behind.pinion.teeth)
-    return float(most)
+    behind = turned_teeth(sections["gears"], sections.get("stages", ()))
+    return float(max(*sections["gears"].teeth_of("pinion"), 0, *behind))
 
 
-def pair_of(sections: Mapping[str, Any], gear: str) -> Any:
+def pair_of(sections: Mapping[str, Any], gear: str) -> Pair | None:
     """Return the section `gears` of the mesh that a gear is in, None if there is no stage of its name."""
     name = gear.rpartition(".")[0]
     stages = {stage.name: stage.gears for stage in sections.get("stages", ())}

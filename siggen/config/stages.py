@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Iterator
+from fractions import Fraction
+from math import lcm
+from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from siggen.config.dynamics import Rotor
-from siggen.config.gears import Gears
-from siggen.errors import Problem
-from siggen.keys.number import Number, Within, bounds
-from siggen.keys.problems import refusal
+from siggen.config.dynamics import PlainRotor
+from siggen.config.gears import Pair
+from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
@@ -27,8 +28,10 @@ class Stage(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), STAGE_NAME] = Field(
         description="part of the names of its labels, and of its gears: NAME.pinion and NAME.gear"
     )
-    gears: Gears = Field(description="its pair")
-    gear: Rotor = Field(default=Rotor(), description="its gear and that gear's shaft; its pinion is a solid steel disc")
+    gears: Pair = Field(description="its pair")
+    gear: PlainRotor = Field(
+        default=PlainRotor(), description="its gear and that gear's shaft; its pinion is a solid steel disc"
+    )
     span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
         default=None,
         description="distance of the bearings of the shaft in front, as thick as the thinner bore of its two gears; "
@@ -40,17 +43,20 @@ class Stage(Section):
         "pinion turns",
     )
 
-    @model_validator(mode="after")
-    def _one_pair_without_bearings_by_load(self) -> Stage:
-        problems = [*self._problems()]
-        if problems:
-            raise refusal(problems)
-        return self
 
-    def _problems(self) -> Any:
-        if self.gears.pairs:
-            yield Problem("gears.pairs", f"{len(self.gears.pairs)} pairs", "allowed: none in a further stage")
-        if self.gear.bearing is not None:
-            yield Problem("gear.bearing", "a section", "allowed: null in a set with stages")
-        if bounds(self.gear.eccentricity_um)[1] > 0.0:
-            yield Problem("gear.eccentricity_um", str(self.gear.eccentricity_um), "allowed: 0 in a further stage")
+def hunting_turns(gears: Pair, stages: tuple[Stage, ...]) -> int:
+    """Return the turns of the first pinion after which all shafts stand again as they did."""
+    return lcm(*(one.denominator for one in turned(gears, stages)))
+
+
+def turned_teeth(gears: Pair, stages: tuple[Stage, ...]) -> tuple[Fraction, ...]:
+    """Return the teeth of every further stage that mesh per turn of the first pinion."""
+    return tuple(turns * stage.gears.pinion.teeth for turns, stage in zip(turned(gears, stages), stages, strict=False))
+
+
+def turned(gears: Pair, stages: tuple[Stage, ...]) -> Iterator[Fraction]:
+    """Yield the turns of each shaft behind the first one, per turn of that."""
+    turns = Fraction(1)
+    for pair in (gears, *(stage.gears for stage in stages)):
+        turns *= Fraction(pair.pinion.teeth, pair.gear.teeth)
+        yield turns

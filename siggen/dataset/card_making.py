@@ -74,7 +74,8 @@ def _gears_text(config: Config) -> str:
 def _teeth_text(config: Config) -> str:
     gears = config.gears
     if not gears.pairs:
-        return f"A spur pair with {gears.pinion.teeth} and {gears.gear.teeth} teeth."
+        first = f"A spur pair with {gears.pinion.teeth} and {gears.gear.teeth} teeth"
+        return f"{first}.{_stages_text(config)}"
     (least, most), (low, high) = (_ends(gears.teeth_of(which)) for which in ("pinion", "gear"))
     small, large = _ends([pair.module_mm for pair in gears.pairs])
     return (
@@ -82,6 +83,14 @@ def _teeth_text(config: Config) -> str:
         f"{large:g} mm; every gearbox has one of them (`pair`), and masses, supports, torque and damage of its size. "
         f"Splits never share a {config.splits.by}."
     )
+
+
+def _stages_text(config: Config) -> str:
+    """Say which further meshes stand behind the first one."""
+    if not config.stages:
+        return ""
+    pairs = [f"`{one.name}` with {one.gears.pinion.teeth} and {one.gears.gear.teeth}" for one in config.stages]
+    return f" Behind it, in the order of power: {', '.join(pairs)}; all meshes are simulated together."
 
 
 def _ends(values: Sequence[float]) -> tuple[float, float]:

@@ -9,11 +9,10 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from fractions import Fraction
-from math import lcm
 from typing import Any
 
-from siggen.config import Config, Gears, OperatingRange, Rotor, Stage, State
+from siggen.config import Config, Gears, OperatingRange, Pair, PlainRotor, Rotor, Stage, State
+from siggen.config.stages import turned
 from siggen.faults.fault import Fault
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, bounds
@@ -46,7 +45,8 @@ def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
 
 def first_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return valid sections of a configuration as those of its first mesh alone."""
-    return sections if not sections.get("stages") else _sections_on(sections, "")
+    # stages that are wrong themselves are not there, while damage may be on them
+    return sections if sections.get("stages") == () else _sections_on(sections, "")
 
 
 def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -54,13 +54,23 @@ def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[s
     if "gears" not in sections:
         return
     stages: tuple[Stage, ...] = sections.get("stages", ())
-    for index, (stage, turning) in enumerate(zip(stages, _turned(sections["gears"], stages), strict=False)):
-        own = {**_sections_on(sections, stage.name), "gears": stage.gears}
+    for index, (stage, turning) in enumerate(zip(stages, turned(sections["gears"], stages), strict=False)):
+        own = {**_sections_on(sections, stage.name), "gears": _gears(stage)}
         if "dynamics" in sections:
-            own["dynamics"] = sections["dynamics"].model_copy(update={"pinion": Rotor(), "gear": stage.gear})
+            own["dynamics"] = sections["dynamics"].model_copy(update=_rotors(stage))
         if "operating_points" in sections:
             own["operating_points"] = _points(sections["operating_points"], float(turning))
         yield f"stages.{index}", own
+
+
+def _gears(stage: Stage) -> Gears:
+    return Gears.model_construct(**{name: getattr(stage.gears, name) for name in Pair.model_fields})
+
+
+def _rotors(stage: Stage) -> dict[str, Rotor]:
+    """Return the rotors of a stage as those of a pair alone; its pinion is a disc."""
+    own = {name: getattr(stage.gear, name) for name in PlainRotor.model_fields}
+    return {"pinion": Rotor(), "gear": Rotor.model_construct(**own)}
 
 
 def _sections_on(sections: Mapping[str, Any], name: str) -> dict[str, Any]:
@@ -72,31 +82,18 @@ def _sections_on(sections: Mapping[str, Any], name: str) -> dict[str, Any]:
 def stage_specimen(specimen: Specimen, index: int) -> Specimen:
     """Return a drawn gearbox with the pair of a further stage in place of the first one."""
     stage = specimen.stages[index]
-    dynamics = specimen.dynamics.model_copy(update={"pinion": Rotor(), "gear": stage.gear})
-    return replace(specimen, gears=stage.gears, dynamics=dynamics, stages=())
+    dynamics = specimen.dynamics.model_copy(update=_rotors(stage))
+    return replace(specimen, gears=_gears(stage), dynamics=dynamics, stages=())
 
 
 def turns(specimen: Specimen) -> tuple[float, ...]:
     """Return the turns of every further stage's pinion per turn of the first one."""
-    return tuple(float(one) for one in _turned(specimen.gears, specimen.stages))[:-1]
+    return tuple(float(one) for one in turned(specimen.gears, specimen.stages))[:-1]
 
 
 def stage_point(point: OperatingPoint, turning: float) -> OperatingPoint:
     """Return an operating point as a pinion has it that turns `turning` times per turn of the first one."""
     return OperatingPoint(point.speed_hz * turning, point.torque_nm / turning)
-
-
-def hunting_turns(gears: Gears, stages: tuple[Stage, ...]) -> int:
-    """Return the turns of the first pinion after which all shafts stand again as they did."""
-    return lcm(*(one.denominator for one in _turned(gears, stages)))
-
-
-def _turned(gears: Gears, stages: tuple[Stage, ...]) -> Iterator[Fraction]:
-    """Yield the turns of each shaft behind the first one, per turn of that."""
-    turned = Fraction(1)
-    for pair in (gears, *(stage.gears for stage in stages)):
-        turned *= Fraction(pair.pinion.teeth, pair.gear.teeth)
-        yield turned
 
 
 def stage_of(damage: Fault) -> str:
@@ -116,8 +113,10 @@ def _on(config: Config, state_id: int, name: str) -> State:
     return state.model_copy(update={"damage": _own(state, name), "grows_from": milder})
 
 
-def _own(state: State, name: str) -> tuple[Fault, ...] | None:
-    return tuple(_alone(one) for one in state.damages if stage_of(one) == name) or None
+def _own(state: State, name: str) -> tuple[Fault, ...] | Fault | None:
+    """Return the damage of a state on one mesh as a section or a list, as the state has it."""
+    own = tuple(_alone(one) for one in state.damages if stage_of(one) == name)
+    return (own if isinstance(state.damage, tuple) else own[0]) if own else None
 
 
 def _alone(damage: Fault) -> Fault:

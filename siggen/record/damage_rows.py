@@ -6,10 +6,11 @@ from functools import lru_cache
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
 from siggen.config import Config
-from siggen.gears.damage.part import Parts
+from siggen.gears.damage.part import Part, Parts
 from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
+from siggen.planning.stages import DOT, stage_config
 from siggen.planning.state_config import state_config
 from siggen.specimen.bearing_spalls import drawn_labels
 from siggen.specimen.damage import state_damage
@@ -19,19 +20,29 @@ from siggen.specimen.gears import gear_pair
 def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
     """Return one row per part of a record's damage, lengths in mm; none for a healthy record."""
     record = planned_record(config, record_id)
-    parts, shared = _damage(config, record.specimen_id, record.state_id)
+    placed, shared = _damage(config, record.specimen_id, record.state_id)
     empty = {column.name: nothing_of(column) for column in (*DAMAGE_COLUMNS, *kind_columns(config))}
     return [
-        {**empty, "record_id": record_id, **shared, **one.table_row(), **drawn_labels(config, record, one)}
+        {**empty, "record_id": record_id, **shared, **_row(one, name), **drawn_labels(config, record, one)}
+        for name, parts in placed.items()
         for one in parts
     ]
 
 
+def _row(part: Part, stage: str) -> dict[str, object]:
+    """Return the row of a part, whose gear has the name of its stage before it."""
+    row = part.table_row()
+    return {**row, "gear": f"{stage}{DOT}{row['gear']}"} if stage else row
+
+
 @lru_cache(maxsize=8)  # records of one specimen and state come one after the other
-def _damage(config: Config, specimen_id: int, state_id: int) -> tuple[Parts, dict[str, object]]:
-    """Return the damage of a state, and in sets that store edges those of damage that states none itself."""
+def _damage(config: Config, specimen_id: int, state_id: int) -> tuple[dict[str, Parts], dict[str, object]]:
+    """Return the damage of a state by stage, and in sets that store edges those of damage that states none itself."""
     specimen = draw_specimen(state_config(config, specimen_id, state_id), specimen_id)
-    damage = state_damage(config, specimen_id, gear_pair(specimen.gears), state_id)
+    damage = {"": state_damage(config, specimen_id, gear_pair(specimen.gears), state_id)}
+    for index, stage in enumerate(specimen.stages):
+        own = stage_config(config, specimen, index)
+        damage[stage.name] = state_damage(own, specimen_id, gear_pair(stage.gears), state_id)
     if not has_drawn_edges(config):
         return damage, {}
     return damage, {"edge_radius_mm": constant(specimen.dynamics.mesh.pit_edge_radius_mm), "strip_depth_mm": []}

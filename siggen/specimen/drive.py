@@ -9,6 +9,7 @@ import numpy as np
 
 from siggen.config import Config, SpeedVariation, Variation
 from siggen.config import TorqueVariation as TorqueSection
+from siggen.config.stages import hunting_turns
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation
 from siggen.dynamics.drive.slow_variation import slow_variation
@@ -22,7 +23,6 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
-from siggen.planning.stages import hunting_turns
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from siggen.config import Config, Gears, Stiffness, Wheel
+from siggen.config import Config, Pair, Stiffness, Wheel
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -12,7 +12,7 @@ from siggen.keys.drawing import corners
 from siggen.keys.number import constant
 
 
-def gear_pair(gears: Gears) -> GearPair:
+def gear_pair(gears: Pair) -> GearPair:
     """Return the gear pair of a drawn section `gears`.
 
     Raises
@@ -43,7 +43,7 @@ def model_notes(config: Config) -> tuple[str, ...]:
     return tuple(dict.fromkeys(notes))
 
 
-def _spur_gear(gears: Gears, wheel: Wheel) -> SpurGear:
+def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
     return SpurGear(
         teeth=wheel.teeth,
         module_m=constant(gears.module_mm) / 1e3,

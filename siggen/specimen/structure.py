@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import pi, radians
 
-from siggen.config import Config, Dynamics, RigidHousing, Rotor, Stage
+from siggen.config import Config, Dynamics, PlainRotor, RigidHousing, Stage
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
@@ -55,7 +55,7 @@ def _next_stages(specimen: Specimen) -> list[NextStage]:
         NextStage(
             name=stage.name,
             working_pressure_angle_rad=pair.working_pressure_angle_rad,
-            pinion=_rotor(Rotor(), pair.pinion, pair.face_width_m),
+            pinion=_rotor(PlainRotor(), pair.pinion, pair.face_width_m),
             gear=_rotor(stage.gear, pair.gear, pair.face_width_m),
             shaft=_common_shaft(stage, before, pair),
             direction_rad=radians(constant(stage.direction_deg)),
@@ -124,7 +124,7 @@ def disc_inertia_kg_m2(gear: SpurGear, face_width_m: float) -> float:
     return 0.5 * disc_mass_kg(gear, face_width_m) * (gear.pitch_radius_m**2 + gear.bore_radius_m**2)
 
 
-def _rotor(section: Rotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
+def _rotor(section: PlainRotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
     mass, inertia = section.mass_kg, section.inertia_kg_m2
     return RotorNumbers(
         base_radius_m=gear.base_radius_m,

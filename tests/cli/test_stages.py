@@ -1,0 +1,102 @@
+"""Gearboxes with two stages from the command line: the plan, what is refused, records, labels, the table of damage."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+import yaml
+
+from tests.config.staged import SLOW, SPALL, staged
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", "from siggen.cli.app import main; main()", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=600,
+    )
+
+
+def written(folder: Path, **changes: Any) -> str:
+    file = folder / "two.yaml"
+    file.write_text(yaml.safe_dump(staged(**changes)), encoding="utf-8")
+    return str(file)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("stages")
+    done = run("generate", written(folder, specimens=1, fs_hz=12_800.0, duration_s=0.1), "--out", str(folder / "set"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder / "set"
+
+
+def rows(made: Path, table: str) -> list[dict[str, Any]]:
+    return [row for file in sorted((made / table).iterdir()) for row in pq.read_table(file).to_pylist()]
+
+
+def test_labels_name_the_stage_and_its_frequencies(made: Path) -> None:
+    healthy, severe = sorted(rows(made, "metadata"), key=lambda row: row["record_id"])
+    assert severe["status"] == healthy["status"] == "ok"
+    assert (healthy["faulty_gear"], severe["faulty_gear"]) == ("none", "slow.pinion")
+    assert severe["faulty_teeth_pinion"] == []
+    assert len(severe["faulty_teeth_slow_pinion"]) == 1
+    assert severe["mesh_stiffness_loss_as_simulated"] > healthy["mesh_stiffness_loss_as_simulated"] == 0.0
+    shaft = Fraction(18, 47)
+    assert severe["mesh_slow_hz"] == pytest.approx(30.0 * float(shaft * 17))
+    assert severe["slow_shaft_hz"] == pytest.approx(30.0 * float(shaft * Fraction(17, 52)))
+    assert (severe["teeth_slow_pinion"], severe["teeth_slow_gear"]) == (17, 52)
+
+
+def test_the_table_of_damage_names_gear_and_stage(made: Path) -> None:
+    (row,) = rows(made, "damage")
+    assert row["gear"] == "slow.pinion"
+    (severe,) = (row for row in rows(made, "metadata") if row["state"] == "severe")
+    assert [row["tooth"]] == severe["faulty_teeth_slow_pinion"]
+
+
+def test_the_card_and_the_plan_name_every_mesh(made: Path) -> None:
+    assert "`slow` with 17 and 52" in (made / "README.md").read_text(encoding="utf-8")
+    told = run("plan", str(made / "config.yaml"))
+    assert "mesh of slow" in told.stdout
+    assert f"{30.0 * 18 / 47 * 17:.6g} Hz" in told.stdout
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "allowed"),
+    [
+        ({"stages": [SLOW, SLOW]}, "stages.1.name", "does not have already"),
+        (
+            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "fast.pinion"}}]},
+            "states.0.damage.gear", "slow.gear",
+        ),
+        (
+            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "slow.pinion", "teeth": [17]}}]},
+            "states.0.damage.teeth", "slow.pinion has 17 teeth",
+        ),
+        ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -1.0}]}, "operating_points.0.torque_nm", "above 0"),
+        ({"stages": [{**SLOW, "direction_deg": 270.0}]}, "stages.0.direction_deg", "from -180 to 180"),
+        (
+            {"stages": [{**SLOW, "gears": {**SLOW["gears"], "pinion": {"teeth": 17, "bore_radius_mm": 35.0}}}]},
+            "stages.0.gears.pinion.bore_radius_mm", "below the root radius",
+        ),
+        ({"fs_hz": 2_560.0}, "fs_hz", "mesh harmonic"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_with_its_path_and_what_is_allowed(
+    tmp_path: Path, changes: dict[str, Any], path: str, allowed: str
+) -> None:
+    told = run("plan", written(tmp_path, **changes))
+    assert told.returncode != 0
+    said = " ".join(told.stderr.split())
+    assert path in said
+    assert allowed in said
+    assert "Traceback" not in said

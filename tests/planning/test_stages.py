@@ -1,0 +1,74 @@
+"""Further meshes as configurations of their own: what each sees of teeth, loads, damage and random numbers."""
+
+from __future__ import annotations
+
+from math import gcd
+
+import pytest
+
+from siggen.config import Config, parse
+from siggen.config.stages import hunting_turns
+from siggen.planning.specimen import OperatingPoint, draw_specimen
+from siggen.planning.stages import first_mesh, stage_config, stage_point, turns
+from siggen.specimen.damage import state_damage
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.made_gears import MadeGears
+from tests.config.minimal import minimal
+from tests.config.staged import SPALL, staged
+
+
+def config_of(**changes: object) -> Config:
+    parsed = parse(staged(**changes))
+    assert parsed.config is not None, parsed.problems
+    return parsed.config
+
+
+def test_a_gearbox_with_one_mesh_is_its_own_first_mesh() -> None:
+    config = parse(minimal()).config
+    assert config is not None
+    assert first_mesh(config) is config
+
+
+def test_speed_falls_and_torque_rises_by_the_teeth_of_the_meshes_in_front() -> None:
+    specimen = draw_specimen(config_of(), 0)
+    point = stage_point(OperatingPoint(30.0, 40.0), turns(specimen)[0])
+    assert point.speed_hz == pytest.approx(30.0 * 18 / 47)
+    assert point.torque_nm == pytest.approx(40.0 * 47 / 18)
+    own = stage_config(config_of(), specimen, 0)
+    assert own.operating_points[0].torque_nm == pytest.approx(20.0 * 47 / 18)
+
+
+def test_all_shafts_stand_again_as_they_did_after_the_hunting_turns_and_not_before() -> None:
+    config = config_of()
+    found = hunting_turns(config.gears, config.stages)
+    ratios = [(18, 47), (18 * 17, 47 * 52)]
+    assert all(found * a % b == 0 for a, b in ratios)
+    assert found == 47 * 52 // gcd(18 * 17, 47 * 52)
+
+
+def test_damage_grows_on_both_meshes_whatever_state_adds_to_which() -> None:
+    """A state that adds a spall to one mesh keeps that of the milder state on the other one."""
+    states = [
+        {"name": "healthy"},
+        {"name": "slight", "damage": {**SPALL, "gear": "pinion", "teeth": 1}},
+        {"name": "moderate", "damage": {**SPALL, "gear": "slow.gear", "teeth": 1}},
+        {"name": "severe", "damage": {**SPALL, "gear": "slow.gear", "teeth": 2}},
+    ]
+    config = config_of(states=states)
+    specimen = draw_specimen(config, 0)
+    first, behind = gear_pair(specimen.gears), gear_pair(specimen.stages[0].gears)
+    own = stage_config(config, specimen, 0)
+    assert [len(state_damage(config, 0, first, i)) for i in range(4)] == [0, 1, 1, 1]
+    assert [len(state_damage(own, 0, behind, i)) for i in range(4)] == [0, 0, 1, 2]
+
+
+def test_a_further_stage_leaves_the_draws_of_the_first_mesh_alone() -> None:
+    made = {"manufacture": {"accuracy_class": 6}, "states": [{"name": "healthy"}]}
+    both, alone = config_of(**made), config_of(**made, stages=[])
+    one, other = (MadeGears(config, draw_specimen(config, 0)) for config in (both, alone))
+    first, expected, behind = one.errors(0), other.errors(0), one.stages[0].errors(0)
+    assert first is not None
+    assert expected is not None
+    assert behind is not None
+    assert first.pinion.found.largest == expected.pinion.found.largest
+    assert behind.pinion.tolerance_share != first.pinion.tolerance_share
