@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.gearbox_choice import GearboxChoice
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
@@ -22,7 +23,7 @@ def errors(
         Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per tooth.")
     ] = None,
     picture: PictureOptions,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
+    gearbox: GearboxChoice,
     state: Annotated[
         str | None, typer.Option("--state", help="Which state, where states have gears of their own.")
     ] = None,
@@ -43,7 +44,7 @@ def errors(
     png = picture.place("errors")
     check_wanted(out, png, "errors")
     with working("drawing the errors of the teeth"):
-        charts = gear_charts(load_config(config, overrides or ()), specimen, state)
+        charts = gear_charts(gearbox.of(load_config(config, overrides or ())), gearbox.specimen, state)
     if out is not None:
         write_table_file(deviation_table(charts), out)
         typer.echo(str(out))

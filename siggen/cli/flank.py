@@ -1,4 +1,4 @@
-"""`siggen inspect flank`: the damage on the flanks of one specimen, as a table and drawn to scale."""
+"""`siggen inspect flank`: the damage on the flanks of one gearbox.specimen, as a table and drawn to scale."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.gearbox_choice import GearboxChoice
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
@@ -25,13 +26,13 @@ def flank(
         Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per single damage.")
     ] = None,
     picture: PictureOptions,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
+    gearbox: GearboxChoice,
     state: Annotated[str | None, typer.Option("--state", help="Only this state; by default all with damage.")] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.")
     ] = None,
 ) -> None:
-    """Write the damage of one specimen, and draw its damaged flanks to scale with the zones of contact.
+    """Write the damage of one gearbox.specimen, and draw its damaged flanks to scale with the zones of contact.
 
     Example: siggen inspect flank configs/paper_a.yaml --state severe --out flank.csv --png flank.png
     """
@@ -43,9 +44,9 @@ def flank(
     png = picture.place("flank")
     check_wanted(out, png, "flank")
     with working("drawing damage"):
-        usable = load_config(config, overrides or ())
-        table = flank_damage_table(usable, specimen, state)
-        views = flank_views(usable, specimen, state) if png is not None else []
+        usable = gearbox.of(load_config(config, overrides or ()))
+        table = flank_damage_table(usable, gearbox.specimen, state)
+        views = flank_views(usable, gearbox.specimen, state) if png is not None else []
     if png is not None and not views:
         raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png and --open")
     if out is not None:

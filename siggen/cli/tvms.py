@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.gearbox_choice import GearboxChoice
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
@@ -42,7 +43,7 @@ def tvms(
     *,
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     picture: PictureOptions,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
+    gearbox: GearboxChoice,
     pitches: Annotated[
         int | None,
         typer.Option(
@@ -84,11 +85,11 @@ def tvms(
     png = picture.place("tvms")
     check_wanted(out, png, "tvms")
     with working("computing the mesh stiffness of every state"):
-        usable = load_config(config, overrides or ())
-        torque = static_torque_nm(usable, specimen) if torque_nm is None else torque_nm
-        curves = stiffness_curves(usable, specimen, pitches=pitches, torque_nm=torque)
+        usable = gearbox.of(load_config(config, overrides or ()))
+        torque = static_torque_nm(usable, gearbox.specimen) if torque_nm is None else torque_nm
+        curves = stiffness_curves(usable, gearbox.specimen, pitches=pitches, torque_nm=torque)
         meaning = stiffness_meaning(usable, torque)
-        error = table_error_text(usable, specimen)
+        error = table_error_text(usable, gearbox.specimen)
     if out is not None:
         write_table_file(curve_table(curves, **asdict(further)), out)
     if png is not None:

@@ -41,11 +41,11 @@ class SpecimenModes:
 def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
     """Return the modes of one specimen without damage, undamped, at the mean over the angle of its mesh stiffness."""
     specimen = draw_specimen(config, specimen_id)
-    pair = gear_pair(specimen.gears)
-    tables = mesh_tables(pair, (), stiffness_options(specimen.stiffness))
-    stiffness = mean_mesh_stiffness(tables)
+    options = stiffness_options(specimen.stiffness)
+    pairs = [gear_pair(gears) for gears in (specimen.gears, *(stage.gears for stage in specimen.stages))]
+    stiffness = [mean_mesh_stiffness(mesh_tables(pair, (), options)) for pair in pairs]
     assembled = structure(config, specimen)
-    return SpecimenModes(assembled.coordinates, stiffness, assembled.mass, natural_modes(assembled, stiffness))
+    return SpecimenModes(assembled.coordinates, stiffness[0], assembled.mass, natural_modes(assembled, stiffness))
 
 
 def kinetic_shares(found: SpecimenModes) -> FloatArray:

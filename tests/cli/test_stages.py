@@ -100,3 +100,23 @@ def test_what_cannot_be_is_refused_with_its_path_and_what_is_allowed(
     assert path in said
     assert allowed in said
     assert "Traceback" not in said
+
+
+def test_a_stage_is_looked_at_by_its_name(tmp_path: Path, made: Path) -> None:
+    file, table = written(tmp_path), tmp_path / "flank.csv"
+    done = run("inspect", "flank", file, "--stage", "slow", "--out", str(table))
+    assert done.returncode == 0, done.stderr
+    header, row = table.read_text(encoding="utf-8").splitlines()
+    assert dict(zip(header.split(","), row.split(","), strict=True))["gear"] == "pinion"
+    told = run("inspect", "flank", file, "--stage", "fast", "--out", str(table)).stderr
+    assert "allowed: slow" in told
+    curves = tmp_path / "tvms.csv"
+    done = run("inspect", "tvms", str(made / "config.yaml"), "--stage", "slow", "--out", str(curves))
+    assert done.returncode == 0, done.stderr
+    assert "severe_n_per_m" in curves.read_text(encoding="utf-8").splitlines()[0]
+
+
+def test_modes_are_those_of_all_shafts(tmp_path: Path) -> None:
+    done = run("inspect", "modes", written(tmp_path), "--json")
+    assert done.returncode == 0, done.stderr
+    assert "shape_theta_4" in done.stdout
