@@ -13,7 +13,16 @@ from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.body import Body, Bolts, Casing, Point, modal_body
 from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
-from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
+from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.structure import (
+    Bearing,
+    Coupling,
+    SpurStage,
+    Structure,
+    eight_dof,
+    six_dof,
+    vector,
+)
 from siggen.dynamics.structure.structure import Rotor as RotorNumbers
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
@@ -43,6 +52,19 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
     shafts = {name.replace("bearing", "shaft"): shaft_direction(found, name) for name in found.bearing_directions}
     return replace(found, motions=shafts)
+
+
+def linear_structure(config: Config, specimen: Specimen) -> tuple[Structure, Body | None]:
+    """Return the structure on which small forces act, and what carries its bearings; it moves as its body does.
+
+    The load is held softly: otherwise nothing would keep the shafts from turning away.
+    """
+    assembled = locked_load(structure(config, specimen))
+    if specimen.dynamics.model != "casing":
+        return assembled, None
+    body = specimen_body(config, specimen)
+    motions = {name: vector(assembled.coordinates, row) for name, row in body.motions.items()}
+    return replace(assembled, motions=motions), body
 
 
 def supported_stage(specimen: Specimen) -> SpurStage:
