@@ -161,6 +161,15 @@ def test_belts_differ_between_gearboxes_and_not_between_states() -> None:
     assert all(first[name] != other[name] for name in first)
 
 
+def test_a_worn_belt_is_a_state_of_its_own() -> None:
+    changes = {"background.belt.force_share": {"times": 4.0}}
+    worn = {"name": "worn", "fault": "belt", "severity": "slight", "changes": changes}
+    found = simulate(belted({}, states=[{"name": "healthy"}, worn]), [0, 1])
+    healthy, worn_belt = (one.labels for one in found if isinstance(one, Record))
+    assert worn_belt["belt_force_n"] == pytest.approx(4.0 * healthy["belt_force_n"])  # type: ignore[operator]
+    assert worn_belt["belt_runout_force_n"] == healthy["belt_runout_force_n"]
+
+
 def test_a_belt_needs_a_shaft_that_can_be_pulled_and_is_longer_than_round_its_pulley() -> None:
     for changes, path in (
         ({"belt": {"order": 1.2}}, "background.belt.order"),
