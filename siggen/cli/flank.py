@@ -32,7 +32,7 @@ def flank(
         list[str] | None, typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.")
     ] = None,
 ) -> None:
-    """Write the damage of one gearbox.specimen, and draw its damaged flanks to scale with the zones of contact.
+    """Write the damage of one specimen, and draw its damaged flanks to scale with the zones of contact.
 
     Example: siggen inspect flank configs/paper_a.yaml --state severe --out flank.csv --png flank.png
     """

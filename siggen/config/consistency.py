@@ -74,7 +74,8 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
 
 
 WITH_BEARINGS = "6dof, 8dof, casing"
-AT_BEARINGS, ON_BODY = ("rubbing", "bearings", "machines", "shafts"), ("base", "second_stage", "auxiliary_drive")
+AT_BEARINGS = ("rubbing", "bearings", "machines", "shafts", "belt")
+ON_BODY = ("base", "second_stage", "auxiliary_drive")
 """Parts of the background that press on bearings, and those that press on what carries them."""
 
 

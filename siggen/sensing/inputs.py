@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
+
+from siggen.arrays import ComplexArray
 
 MOTION, FORCE, SHAFT, BACKGROUND = "motion", "force", "shaft", "background"
 
@@ -12,3 +14,7 @@ class Input(NamedTuple):
 
     kind: str
     name: str
+
+
+Weight: TypeAlias = float | ComplexArray
+"""How much of an input a channel shows: at all frequencies alike, or a factor (k,) at each."""

@@ -153,6 +153,11 @@ class Sensor(Section):
         return None
 
     @property
+    def added_mass_g(self) -> Number:
+        """Mass that the place of its motions carries for it, drawn per gearbox."""
+        return 0.0
+
+    @property
     def sources(self) -> tuple[Source, ...]:
         """What is added to its channels beside the white noise; `SourceKeys` has a key for each."""
         return ()

@@ -18,7 +18,6 @@ from siggen.dynamics.drive.external_forces import bearing_direction, shaft_direc
 from siggen.dynamics.structure.body import Body
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
 from siggen.dynamics.structure.foundation import Base, on_base
-from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
@@ -26,7 +25,7 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
-from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input
+from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input, Weight
 from siggen.sensing.sensor_response import resonance_response
 from siggen.specimen.background_numbers import (
     MESH_STIFFNESS_N_PER_UM_MM,
@@ -39,7 +38,7 @@ from siggen.specimen.background_numbers import (
 )
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.measured_path import INPUTS
-from siggen.specimen.structure import specimen_body, structure
+from siggen.specimen.structure import linear_structure
 
 DECAYS = 7.0
 """Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
@@ -62,7 +61,7 @@ class ChannelWay:
     entries : (entries of `Body`, k) the same from where other machines press on the housing
     """
 
-    shown: Mapping[Input, float]
+    shown: Mapping[Input, Weight]
     accelerance: ComplexArray | None
     entries: ComplexArray | None
 
@@ -114,13 +113,9 @@ def specimen_background(
     frequency_hz : (k,)
     """
     pair = gear_pair(specimen.gears)
-    assembled = locked_load(structure(config, specimen))
-    body = specimen_body(config, specimen) if specimen.dynamics.model == "casing" else None
-    if body is not None:
-        motions = {name: vector(assembled.coordinates, row) for name, row in body.motions.items()}
-        assembled = replace(assembled, motions=motions)
-        if section.base is not None:
-            assembled = on_base(assembled, body, _base(section.base))
+    assembled, body = linear_structure(config, specimen)
+    if body is not None and section.base is not None:
+        assembled = on_base(assembled, body, _base(section.base))
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
     directions = _directions(assembled, body, section, uniform)
     assert config.background is not None
@@ -219,6 +214,9 @@ def _directions(
             rows = _on_rotor(assembled, shaft) - _on_base(assembled)
             found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
         found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
+    if section.belt is not None:  # between its shaft and a machine on the base
+        rows = _on_rotor(assembled, section.belt.shaft) - _on_base(assembled)
+        found["belt"] = _turned(rows, _angle(uniform, "belt"))
     if section.second_stage is not None:
         found["second_stage"] = _entry(assembled, body, "second_stage")
     if section.auxiliary_drive is not None:
@@ -284,7 +282,7 @@ def _response(
     total = np.zeros_like(next(iter(forced.bearing_force.values())))
     found = {FORCE: forced.bearing_force, MOTION: forced.acceleration, SHAFT: forced.shaft}
     for one, weight in way.shown.items():
-        total += weight * found[one.kind][one.name]
+        total += (weight if isinstance(weight, float) else weight[block]) * found[one.kind][one.name]
     if way.accelerance is not None:
         for name, row in zip(INPUTS, way.accelerance[:, block], strict=True):
             total += row * forced.bearing_force[name]

@@ -15,7 +15,7 @@ from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.block_filter import block_grid
-from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input
+from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input, Weight
 from siggen.sensing.spectral_filter import frequencies
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.sensor import AxisDraws, Sensor
@@ -30,6 +30,7 @@ from siggen.specimen.background import (
 from siggen.specimen.block_responses import BlockResponses, block_responses
 from siggen.specimen.housing import housing_settle_s, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
+from siggen.specimen.sensor_mass import Loading, sensor_loading
 from siggen.specimen.specimen_housing import SpecimenHousing
 
 CHAIN_HISTORY_S = 0.02
@@ -57,7 +58,7 @@ class ChannelInstrument:
     name: str
     sensor: Sensor
     gain: float
-    seen: Mapping[Input, float]
+    seen: Mapping[Input, Weight]
     accelerance: ComplexArray | None
     sensor_response: ComplexArray | None
     path_modes: int
@@ -69,7 +70,8 @@ class ChannelInstrument:
     @property
     def is_plain(self) -> bool:
         """Whether it stores one quantity of the model as it is."""
-        return self.accelerance is None and self.sensor_response is None and [*self.seen.values()] == [1.0]
+        whole = [weight for weight in self.seen.values() if isinstance(weight, float)] == [1.0]
+        return self.accelerance is None and self.sensor_response is None and whole and len(self.seen) == 1
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -114,9 +116,10 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     grid = frequencies(blocks.memory, config.fs_hz)
     channels, ways = [], {}
     for sensor in specimen.sensors:
+        paths = _Paths(housing, grid, sensor_loading(config, specimen, housing, sensor, grid))
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
-            channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, _Paths(housing, grid))
+            channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, paths)
             channels.append(channel)
     background = None
     if section is not None:
@@ -155,28 +158,29 @@ def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
 
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing and a grid of frequencies (k,)."""
+    """A housing, a grid of frequencies (k,), and what the mass of a sensor does to its place."""
 
     housing: SpecimenHousing | None
     grid: FloatArray
+    loading: Loading | None
 
 
 def _channel(
     sensor: Sensor, axis: str, gain: float, draw: AxisDraws, paths: _Paths
 ) -> tuple[ChannelInstrument, ChannelWay]:
     """Return a channel and what it sees of forces that the model does not make."""
-    shown, housing, grid = sensor.shows(axis, draw), paths.housing, paths.grid
+    housing, grid, plain = paths.housing, paths.grid, sensor.shows(axis, draw)
+    shown: Mapping[Input, Weight] = plain if paths.loading is None else paths.loading.weights(plain)
     motions = {one.name: weight for one, weight in shown.items() if one.kind == MOTION}
     accelerance, beyond, entries = None, None, None
     if isinstance(sensor.through, MeasuredPath):
         weights = sensor.weights(axis, draw)
         accelerance = beyond = _measured(sensor, weights, draw, grid)
     elif housing is not None and motions:
-        seen = housing.seen(motions)
         coupled, others = slice(housing.coupled), slice(housing.coupled, None)
-        beyond = housing.accelerance(seen, INPUTS, grid, others)
-        entries = housing.accelerance(seen, tuple(housing.entries), grid, others)
-        accelerance = beyond + housing.accelerance(seen, INPUTS, grid, coupled)
+        beyond = housing.shown_accelerance(motions, INPUTS, grid, others)
+        entries = housing.shown_accelerance(motions, tuple(housing.entries), grid, others)
+        accelerance = beyond + housing.shown_accelerance(motions, INPUTS, grid, coupled)
     channel = ChannelInstrument(
         name=f"{sensor.name}_{axis}",
         sensor=sensor,
@@ -193,7 +197,7 @@ def _channel(
     return channel, ChannelWay(shown, beyond, entries)
 
 
-def _of_model(shown: Mapping[Input, float], housing: SpecimenHousing | None) -> dict[Input, float]:
+def _of_model(shown: Mapping[Input, Weight], housing: SpecimenHousing | None) -> dict[Input, Weight]:
     """Return what of the model's motion is shown as it is: nothing that the modes of a housing give, nothing axial."""
     motions = {} if housing is None else housing.motions
     return {

@@ -16,6 +16,7 @@ from siggen.dynamics.housing.box import Box
 from siggen.dynamics.housing.modes import ALL, Modes
 from siggen.dynamics.housing.motion import Motion
 from siggen.dynamics.structure.body import ModalBody, Point
+from siggen.sensing.inputs import Weight
 
 MODES_ON_BOLTS = 6
 COUPLED_HZ, MOST = 1500.0, 9
@@ -59,21 +60,32 @@ class SpecimenHousing:
         """Natural frequencies [Hz] and damping ratios, ascending."""
         return list(zip(self.modes.frequency_hz.tolist(), self.damping_ratio.tolist(), strict=True))
 
-    def seen(self, weights: Mapping[str, float]) -> Motion:
-        """Return what a channel sees: motions times factors."""
+    def accelerance(
+        self, seen: Motion, inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
+    ) -> ComplexArray:
+        """Return the accelerance (inputs, k) [m/s² per N] from seats, entries or motions, of some of the modes."""
+        places = {**self.motions, **self.seats, **self.entries}
+        motions = [places[name] for name in inputs]
+        return np.asarray(self.modes.accelerance([seen], motions, frequency_hz, self.damping_ratio, which)[0])
+
+    def shown_accelerance(
+        self, weights: Mapping[str, Weight], inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
+    ) -> ComplexArray:
+        """Return the accelerance (inputs, k) of what a channel sees: motions times factors, numbers or all (k,)."""
+        fixed = {name: weight for name, weight in weights.items() if isinstance(weight, float)}
+        if fixed:
+            return self.accelerance(self._sum(fixed), inputs, frequency_hz, which)
+        total = np.zeros((len(inputs), frequency_hz.size), dtype=np.complex128)
+        for name, weight in weights.items():
+            total += weight * self.accelerance(self.motions[name], inputs, frequency_hz, which)
+        return total
+
+    def _sum(self, weights: Mapping[str, float]) -> Motion:
         (name, weight), *others = weights.items()
         total = Motion(weight * self.motions[name].even, weight * self.motions[name].odd)
         for name, weight in others:
             total = total.plus(self.motions[name], weight)
         return total
-
-    def accelerance(
-        self, seen: Motion, inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
-    ) -> ComplexArray:
-        """Return the accelerance (inputs, k) [m/s² per N] from seats or entries, of some of the modes."""
-        places = {**self.seats, **self.entries}
-        motions = [places[name] for name in inputs]
-        return np.asarray(self.modes.accelerance([seen], motions, frequency_hz, self.damping_ratio, which)[0])
 
 
 def modes_settle_s(frequency_hz: FloatArray, damping_ratio: FloatArray) -> float:

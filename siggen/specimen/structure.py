@@ -14,7 +14,16 @@ from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.body import Body, Bolts, Casing, Point, modal_body
 from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
 from siggen.dynamics.structure.drivetrain import CommonShaft, NextStage, drivetrain
-from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
+from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.structure import (
+    Bearing,
+    Coupling,
+    SpurStage,
+    Structure,
+    eight_dof,
+    six_dof,
+    vector,
+)
 from siggen.dynamics.structure.structure import Rotor as RotorNumbers
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
@@ -72,6 +81,19 @@ def _common_shaft(stage: Stage, before: GearPair, pair: GearPair) -> CommonShaft
         youngs_modulus_pa=pair.youngs_modulus_pa,
         poisson_ratio=pair.poisson_ratio,
     )
+
+
+def linear_structure(config: Config, specimen: Specimen) -> tuple[Structure, Body | None]:
+    """Return the structure on which small forces act, and what carries its bearings; it moves as its body does.
+
+    The load is held softly: otherwise nothing would keep the shafts from turning away.
+    """
+    assembled = locked_load(structure(config, specimen))
+    if specimen.dynamics.model != "casing":
+        return assembled, None
+    body = specimen_body(config, specimen)
+    motions = {name: vector(assembled.coordinates, row) for name, row in body.motions.items()}
+    return replace(assembled, motions=motions), body
 
 
 def supported_stage(specimen: Specimen) -> SpurStage:
