@@ -44,8 +44,8 @@ class SolidBox(NamedTuple):
         return summed - omega**2 * residual[:, :, None]
 
 
-def solid_box(box: Box, element_m: float, modes: int) -> SolidBox:
-    """Return the lowest modes of a box on its bolts."""
+def solid_box(box: Box, element_m: float, modes: int, loose_share: float = 1.0) -> SolidBox:
+    """Return the lowest modes of a box on its bolts; the last one behind has a share of its stiffness left."""
     mesh = solid_mesh(box, element_m)
     stiffness, mass = _assembled(mesh, box)
     ones = np.zeros(mass.shape[0])
@@ -53,7 +53,8 @@ def solid_box(box: Box, element_m: float, modes: int) -> SolidBox:
     weight = float(ones @ (mass @ ones))
     for bolt in box.bolts:
         for z in (bolt.z_m, box.size_m[2] - bolt.z_m):
-            stiffness = stiffness + _spring(mesh, box, bolt, z)
+            left = loose_share if bolt is box.bolts[-1] and z != bolt.z_m else 1.0
+            stiffness = stiffness + left * _spring(mesh, box, bolt, z)
     factored = splu(
         stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )

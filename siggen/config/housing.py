@@ -19,10 +19,11 @@ from siggen.keys.section import Position, Section
 
 Stiffness = Annotated[Number | None, Within(above=0, words=(None,))]
 Length = Annotated[Number | None, Within(above=0, most=10_000, words=(None,))]
+FOOT = "what one foot has left of its stiffness: the pinion's, behind, or the first bolt of a rigid housing"
 
 
 class Feet(Section):
-    """The four bolts under a housing of plates, at the corners of its floor, all alike."""
+    """The four bolts under a housing of plates, at the corners of its floor, all alike but for a loose one."""
 
     shear_stiffness_n_per_m: Stiffness = Field(
         default=None, description="horizontal, each; null: 0.62 to 1.13e9 per metre of centre distance (assumed)"
@@ -64,6 +65,7 @@ class PlateHousing(Section):
         default=LogUniform(low=0.003, high=0.05), description="of the plates, drawn for each mode"
     )
     feet: Feet = Field(default=Feet(), description="bolts between floor and ground")
+    loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(default=1.0, description=FOOT)
 
 
 class Bolts(Section):
@@ -73,9 +75,6 @@ class Bolts(Section):
     axial_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1.5e8, description="vertical, each")
     damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.04, description="of a bolt that carries its share of the casing's mass"
-    )
-    loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(
-        default=1.0, description="what the first bolt has left of both stiffnesses; 1: it is tight"
     )
     positions_mm: Annotated[tuple[Position, ...], Field(min_length=2)] = Field(
         default=((90.0, 0.0), (90.0, 0.0), (-90.0, 0.0), (-90.0, 0.0)),
@@ -101,6 +100,7 @@ class RigidHousing(Section):
         description="about its centre of gravity; null: the mass times the square of 1.15 centre distances (derived)",
     )
     bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
+    loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(default=1.0, description=FOOT)
 
 
 class ModalHousing(Section):

@@ -17,13 +17,15 @@ from siggen.dynamics.housing.box import SIDES, Axis, Box, Material, plane_axes
 from siggen.dynamics.housing.housing_modes import (
     BEYOND,
     WAVES,
+    BoxModes,
     HousingModes,
     housing_modes,
     mixed_damping,
     resolved_hz,
 )
 from siggen.dynamics.housing.layout import Contents, Proportions, layout
-from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, motion_at, seat_motions
+from siggen.dynamics.housing.loose_foot import loosened, springs
+from siggen.dynamics.housing.motion import Motion, Place, motion_at, seat_motions
 from siggen.dynamics.structure.body import Point
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import at, constant
@@ -52,30 +54,36 @@ def plate_housing(config: Config, specimen: Specimen, numbers: PlateNumbers) -> 
         seats={name: motion for name, motion in seats.items() if not name.endswith("axial")},
         motions={**seats, **_sensors(box, modes, specimen.sensors, uniform)},
         entries=_entries(box, modes, seats, pair, uniform),
-        bolts=partial(_bolts, box, modes),
+        bolts=partial(_bolts, box, modes, constant(numbers.loose_foot_share)),
         box=box,
     )
 
 
-def damped_modes(config: Config, specimen: Specimen, numbers: PlateNumbers) -> tuple[Box, HousingModes, FloatArray]:
+def damped_modes(config: Config, specimen: Specimen, numbers: PlateNumbers) -> tuple[Box, BoxModes, FloatArray]:
     """Return box, modes and their damping ratios (m,)."""
     made = specimen_layout(numbers, specimen.dynamics.shafts, gear_pair(specimen.gears))
-    box, modes = _made(*made, 0.5 * config.fs_hz)
+    box, modes = _on_its_feet(*made, 0.5 * config.fs_hz, constant(numbers.loose_foot_share))
     rng = named_generator(config.seed, Stage.PATH, specimen.specimen_id, name="housing.damping_ratio")
     plates = np.array([at(numbers.damping_ratio, float(u)) for u in rng.random(modes.frequency_hz.size)])
     return box, modes, mixed_damping(modes, plates, constant(numbers.feet.damping_ratio))
 
 
-def _bolts(box: Box, modes: HousingModes) -> BoltMotions:
-    found = []
-    for bolt in box.bolts:
-        place = _from_middle(box, bolt.x_m)
-        of_bolt = bolt_motions(modes.halves, bolt)
-        for axis, number in (("horizontal", Axis.X), ("vertical", Axis.Y)):
-            for wall in ("front", "back"):
-                motion = of_bolt[f"{wall}/{number.name.lower()}"]
-                found.append((place, axis, bolt.stiffness_n_per_m[number], motion))
-    return tuple(found)
+def _bolts(box: Box, modes: BoxModes, share: float) -> BoltMotions:
+    axes = {Axis.X: "horizontal", Axis.Y: "vertical"}
+    return tuple(
+        (_from_middle(box, one.bolt.x_m), axes[one.axis], one.stiffness_n_per_m, one.motion)
+        for one in springs(box, modes.halves, share)
+        if one.axis in axes
+    )
+
+
+@lru_cache(maxsize=4)
+def _on_its_feet(
+    contents: Contents, proportions: Proportions, material: Material, highest_hz: float, share: float
+) -> tuple[Box, BoxModes]:
+    """Return a box and its modes; one foot has a share of its stiffness left."""
+    box, sound = _made(contents, proportions, material, highest_hz)
+    return (box, sound) if share == 1.0 else (box, loosened(sound, box, share))
 
 
 @lru_cache(maxsize=4)  # states and records of a gearbox share them
@@ -86,7 +94,7 @@ def _made(
     return box, housing_modes(box, min(highest_hz, BEYOND * resolved_hz(box)), WAVES)
 
 
-def _seats(box: Box, modes: HousingModes, shafts: Shafts | None) -> dict[str, Motion]:
+def _seats(box: Box, modes: BoxModes, shafts: Shafts | None) -> dict[str, Motion]:
     """Return the motion of both seats of every shaft, weighted with what each of them bears of a force on the gear."""
     found = {}
     for shaft in ("pinion", "gear"):
@@ -100,7 +108,7 @@ def _seats(box: Box, modes: HousingModes, shafts: Shafts | None) -> dict[str, Mo
 
 
 def _sensors(
-    box: Box, modes: HousingModes, sensors: tuple[Sensor, ...], uniform: Callable[[str], float]
+    box: Box, modes: BoxModes, sensors: tuple[Sensor, ...], uniform: Callable[[str], float]
 ) -> dict[str, Motion]:
     """Return the motions of all sensors on plates, along all axes."""
     found = {}
@@ -134,7 +142,7 @@ SCATTER_MM = 15.0
 
 
 def _entries(
-    box: Box, modes: HousingModes, seats: Mapping[str, Motion], pair: GearPair, uniform: Callable[[str], float]
+    box: Box, modes: BoxModes, seats: Mapping[str, Motion], pair: GearPair, uniform: Callable[[str], float]
 ) -> dict[str, Motion]:
     """Return where other machines press: a second mesh on the seats, another drive in the front wall.
 

@@ -197,7 +197,7 @@ def casing_numbers(section: RigidHousing, pair: GearPair, sensors: Sequence[Sens
             axial_stiffness_n_per_m=constant(bolts.axial_stiffness_n_per_m),
             damping_ratio=constant(bolts.damping_ratio),
             places_m=tuple(_metres(place) for place in bolts.positions_mm),
-            loose_share=constant(bolts.loose_foot_share),
+            loose_share=constant(section.loose_foot_share),
         ),
         pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0),
         sensor_places_m={s.name: _sensor_metres(s.place_on_casing_mm) for s in sensors if s.place_on_casing_mm},

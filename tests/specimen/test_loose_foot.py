@@ -1,4 +1,4 @@
-"""A loose foot of a rigid casing: softer, so that bouncing and rocking couple; the others stay as they are."""
+"""A loose foot of a rigid casing couples bouncing and rocking; records of either housing have it as a change."""
 
 from __future__ import annotations
 
@@ -50,22 +50,23 @@ def test_all_four_loose_together_are_softer_bolts() -> None:
         np.testing.assert_allclose(tight + sum(one - tight for one in single), soft, rtol=1e-12, atol=1e-6)
 
 
-def changed(share: float | None) -> np.ndarray:
+def changed(kind: str, share: float | None) -> np.ndarray:
     """Return a channel of the second state, in which a foot has a share of its stiffness left; None: no change."""
     loose: dict[str, Any] = {"fault": "looseness", "severity": "severe"}
-    changes = {} if share is None else {**loose, "changes": {"housing.bolts.loose_foot_share": share}}
+    changes = {} if share is None else {**loose, "changes": {"housing.loose_foot_share": share}}
     dynamics = {"model": "casing", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     small = {"specimens": 1, "duration_s": 0.2, "fs_hz": 20480.0, "mesh_harmonics": 3, "dynamics": dynamics}
     sensors = [{"name": "bearing", "noise": None, "bits": None}]
     states = [{"name": "healthy"}, {"name": "second", **changes}]
-    config = load_config(minimal(**small, sensors=sensors, housing={"kind": "rigid"}, states=states))
+    config = load_config(minimal(**small, sensors=sensors, housing={"kind": kind}, states=states))
     (record,) = simulate(config, [1])
     assert isinstance(record, Record), record
     assert record.labels["state"] == "second"
     return next(iter(record.channels.values()))
 
 
-def test_a_tight_foot_leaves_every_byte_and_a_loose_one_is_heard() -> None:
-    tight, loose = changed(1.0), changed(0.1)
-    assert tight.tobytes() == changed(None).tobytes()
+@pytest.mark.parametrize("kind", ["rigid", "plates"])
+def test_a_tight_foot_leaves_every_byte_and_a_loose_one_is_heard(kind: str) -> None:
+    tight, loose = changed(kind, 1.0), changed(kind, 0.1)
+    assert tight.tobytes() == changed(kind, None).tobytes()
     assert np.std(loose.astype(float) - tight.astype(float)) > 0.01 * np.std(tight.astype(float))

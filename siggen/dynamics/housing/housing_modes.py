@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, sqrt
+from typing import Protocol
 
 import numpy as np
 
@@ -43,14 +44,39 @@ BEYOND = 3.0
 """Modes are kept up to so many times the resolved frequency: they serve as a statistical tail."""
 
 
-@dataclass(frozen=True, slots=True)
-class HousingModes(Modes):
-    """Modes of a box in ascending order.
+class BoxModes(Modes, Protocol):
+    """Modes of a box in ascending order. To be derived from.
 
     Attributes
     ----------
     frequency_hz, bolt_share : (m,) natural frequencies, and the share of the strain energy that bolts hold
     halves : functions of both halves, for `motion_at` and its like
+    """
+
+    bolt_share: FloatArray
+    halves: tuple[HalfFunctions, HalfFunctions]
+
+    @property
+    def vibrating(self) -> int:
+        """How many of them may move with the gears: all."""
+        return self.frequency_hz.size
+
+    def static_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+        """Return static displacements (outputs, inputs) under unit forces, bolts included [m/N]."""
+
+    def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+        """Return what all modes above the first so many give way, (outputs, inputs) [m/N]."""
+        left, right = (np.ascontiguousarray(self.shapes(side).T[:modes]) for side in (outputs, inputs))
+        omega = 2.0 * pi * self.frequency_hz[:modes, None]
+        return self.static_flexibility(outputs, inputs) - squares(left / (omega * omega), right)
+
+
+@dataclass(frozen=True, slots=True)
+class HousingModes(BoxModes):
+    """Modes of a symmetric box.
+
+    Attributes
+    ----------
     found : modes of both halves
     order : (m,) number of each mode among those of the first half (walls alike), then of the second (oppositely)
     resolved_hz : shapes follow the bending waves of the thinnest plate up to here
@@ -63,14 +89,9 @@ class HousingModes(Modes):
     order: IntArray
     resolved_hz: float
 
-    @property
-    def vibrating(self) -> int:
-        """How many of them may move with the gears: all."""
-        return self.frequency_hz.size
-
     def shapes(self, motions: Sequence[Motion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
-        both = [squares(_columns(motions, h), self.found[h].shapes) for h in (0, 1)]
+        both = [squares(columns(motions, h), self.found[h].shapes) for h in (0, 1)]
         return np.concatenate(both, axis=1)[:, self.order]
 
     def static_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
@@ -78,21 +99,16 @@ class HousingModes(Modes):
         total = np.zeros((len(outputs), len(inputs)))
         for h in (0, 1):
             root = self.found[h].root
-            total += squares(*(solve_lower(root, _columns(side, h)) for side in (outputs, inputs)))
+            total += squares(*(solve_lower(root, columns(side, h)) for side in (outputs, inputs)))
         return total
 
-    def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
-        """Return what all modes above the first so many give way, (outputs, inputs) [m/N]."""
-        left, right = (np.ascontiguousarray(self.shapes(side).T[:modes]) for side in (outputs, inputs))
-        omega = 2.0 * pi * self.frequency_hz[:modes, None]
-        return self.static_flexibility(outputs, inputs) - squares(left / (omega * omega), right)
 
-
-def _columns(motions: Sequence[Motion], half: int) -> FloatArray:
+def columns(motions: Sequence[Motion], half: int) -> FloatArray:
+    """Return the rows of motions in one half side by side, (coordinates, motions)."""
     return np.ascontiguousarray(np.array([motion[half] for motion in motions]).T)
 
 
-def mixed_damping(modes: HousingModes, of_walls: FloatArray | float, of_bolts: float) -> FloatArray:
+def mixed_damping(modes: BoxModes, of_walls: FloatArray | float, of_bolts: float) -> FloatArray:
     """Return damping ratios (m,): walls' and bolts' weighted with their shares of the strain energy.
 
     Source: modal strain energy (reference: standard literature).

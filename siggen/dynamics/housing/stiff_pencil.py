@@ -18,11 +18,12 @@ from siggen.compiled import njit
 
 
 class LowestModes(NamedTuple):
-    """Squared angular frequencies (m,) ascending [1/s²], shapes (n, m) with modal mass 1, and U (n, n), K = UᵀU."""
+    """ω² (m,) ascending [1/s²], shapes (n, m) with modal mass 1, U (n, n) of K = UᵀU, and M (n, n)."""
 
     omega_squared: FloatArray
     shapes: FloatArray
     root: FloatArray
+    mass: FloatArray
 
 
 def lowest_modes(stiffness: FloatArray, mass: FloatArray, highest_omega: float) -> LowestModes:
@@ -45,7 +46,7 @@ def lowest_modes(stiffness: FloatArray, mass: FloatArray, highest_omega: float) 
     reflect(reflections, scales, vectors)
     shapes = solve_upper(root, vectors) / np.sqrt(inverse)
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
-    return LowestModes(1.0 / inverse, shapes * np.sign(largest), root)
+    return LowestModes(1.0 / inverse, shapes * np.sign(largest), root, mass)
 
 
 LEAST = 3

@@ -10,15 +10,16 @@ from siggen.dynamics.housing.box import SIDES, Box, plane_axes
 POINTS = 200
 
 
-def rigid_box_hz(box: Box) -> np.ndarray:
-    """Natural frequencies (6,) of the box's mass on its bolts."""
+def rigid_box_hz(box: Box, loose_share: float = 1.0) -> np.ndarray:
+    """Natural frequencies (6,) of the box's mass on its bolts, of which the last one behind may be loose."""
     places, masses = mass_points(box)
     mass = sum(m * _jacobian(p).T @ _jacobian(p) for p, m in zip(places, masses, strict=True))
     stiffness = np.zeros((6, 6))
     for bolt in box.bolts:
         for z in (bolt.z_m, box.size_m[2] - bolt.z_m):
             jacobian = _jacobian(np.array([bolt.x_m, 0.0, z]))
-            stiffness += jacobian.T @ np.diag(bolt.stiffness_n_per_m) @ jacobian
+            left = loose_share if bolt is box.bolts[-1] and z != bolt.z_m else 1.0
+            stiffness += left * jacobian.T @ np.diag(bolt.stiffness_n_per_m) @ jacobian
     return np.sqrt(eigh(stiffness, mass, eigvals_only=True)) / (2.0 * np.pi)
 
 

@@ -13,12 +13,15 @@ ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = """
 import hashlib
 from siggen.dynamics.housing.housing_modes import housing_modes
+from siggen.dynamics.housing.loose_foot import loosened
 from siggen.dynamics.housing.motion import box_motions
 from tests.dynamics.housing.boxes import iron_box
 box = iron_box()
-found = housing_modes(box, 6000.0)
-seats = found.shapes(list(box_motions(box, found.halves).values()))
-print(hashlib.sha256(found.frequency_hz.tobytes() + seats.tobytes()).hexdigest())
+sound = housing_modes(box, 6000.0)
+for found in (sound, loosened(sound, box, 0.1)):
+    seats = list(box_motions(box, found.halves).values())
+    parts = found.frequency_hz, found.bolt_share, found.shapes(seats), found.static_flexibility(seats, seats)
+    print(hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest())
 """
 
 
