@@ -20,7 +20,7 @@ from siggen.planning.plan import SPLITS, split_of
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.modal_housing import given_modes
-from siggen.specimen.structure import disc_inertia_kg_m2, disc_mass_kg
+from siggen.specimen.rotors import disc_inertia_kg_m2, disc_mass_kg
 
 FORM_FACTOR = 2.5
 """Of the nominal stress at the tooth root, F_t/(b m) Y; 2.1 to 3 for spur gears of 17 teeth and more (ISO 6336-3)."""

@@ -15,7 +15,7 @@ from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
-from siggen.sensors.sensor import MODAL, PLATES, STAGES
+from siggen.sensors.sensor import MODAL, PLATES, STAGED_CASING, STAGES
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -82,7 +82,9 @@ ON_BODY = ("base", "second_stage", "auxiliary_drive")
 def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if "dynamics" not in sections:
         return
-    model = STAGES if sections.get("stages") else sections["dynamics"].model
+    model = sections["dynamics"].model
+    if sections.get("stages"):
+        model = STAGED_CASING if model == "casing" else STAGES
     if model == "casing" and "housing" not in sections:  # wrong itself: which places there are is not known
         return
     if model == "casing" and isinstance(sections["housing"], PlateHousing):

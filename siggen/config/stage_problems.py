@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from siggen.config.gears import Pair
+from siggen.config.housing import RigidHousing
 from siggen.config.stages import turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
@@ -36,8 +37,15 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
         return
     dynamics = sections["dynamics"]
     beside = "in a set with stages"
-    if dynamics.model != "8dof":
-        yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof {beside}")
+    if dynamics.model not in {"8dof", "casing"}:
+        yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof or casing {beside}")
+    if dynamics.model == "casing" and not isinstance(sections.get("housing"), RigidHousing | None):
+        yield Problem("housing.kind", "plates or modal", f"allowed: rigid {beside}, or dynamics.model: 8dof")
+    background = sections.get("background")
+    if background is not None and background.second_stage is not None:
+        yield Problem("background.second_stage", "a section", f"allowed: null {beside}, which has one of its own")
+    if dynamics.shafts is not None:
+        yield Problem("dynamics.shafts", "a section", f"allowed: null {beside}")
     if dynamics.mesh.law != "pairs":
         yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {beside}")
     if "gears" in sections and sections["gears"].pairs:

@@ -35,6 +35,7 @@ MODAL = "casing, housing.kind: modal"
 """The model whose housing gives way as given modes say."""
 STAGES = "8dof, stages"
 """The model of gearboxes with further meshes behind the first one."""
+STAGED_CASING = "casing, stages"
 PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
 """Place -> plate of the housing."""
 PLACES = {
@@ -42,6 +43,7 @@ PLACES = {
     "6dof": ("pinion_bearing", "gear_bearing"),
     "8dof": ("pinion_bearing", "gear_bearing"),
     STAGES: ("pinion_bearing", "gear_bearing"),
+    STAGED_CASING: ("casing", "pinion_bearing", "gear_bearing"),
     "casing": ("casing", "pinion_bearing", "gear_bearing"),
     PLATES: (*PLATE_OF, "pinion_bearing", "gear_bearing"),
     MODAL: ("casing", *PLATE_OF, "pinion_bearing", "gear_bearing"),
@@ -49,10 +51,14 @@ PLACES = {
 """Places whose motion a model has."""
 SHAFTS_OF = {model: tuple(SHAFTS) for model in PLACES} | {
     "6dof": ("pinion", "gear"),
-    STAGES: ("motor", "pinion", "gear"),
+    **dict.fromkeys((STAGES, STAGED_CASING), ("motor", "pinion", "gear")),
 }
 """What turns in a model."""
-COUPLINGS_OF = {model: tuple(COUPLINGS) for model in PLACES} | {"6dof": (), STAGES: ("input_coupling",)}
+COUPLINGS_OF = {model: tuple(COUPLINGS) for model in PLACES} | {
+    "6dof": (),
+    STAGES: ("input_coupling",),
+    STAGED_CASING: ("input_coupling",),
+}
 """Couplings that a model has."""
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
 

@@ -112,7 +112,6 @@ def specimen_background(
     channels : by name
     frequency_hz : (k,)
     """
-    pair = gear_pair(specimen.gears)
     assembled, body = linear_structure(config, specimen)
     if body is not None and section.base is not None:
         assembled = on_base(assembled, body, _base(section.base))
@@ -125,13 +124,13 @@ def specimen_background(
         return SpecimenBackground(section, shafts, bearings, (), {})
     ways = {name: _in_model(way, assembled) for name, way in channels.items()}
     seen, readings = (_named(ways.values(), kind) for kind in (MOTION, SHAFT))
-    mesh = mean_mesh(specimen.dynamics, pair, assembled.mesh.mass_kg)
+    meshes = mean_meshes(specimen, assembled)
     names, rows = tuple(directions), np.array(list(directions.values()))
     turn_rad = _angle(uniform, "auxiliary_drive")
     responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
     for first in range(0, frequency_hz.size, BLOCK):
         block = slice(first, first + BLOCK)
-        forced = forced_motion(assembled, mesh, rows, seen, frequency_hz[block], readings)
+        forced = forced_motion(assembled, meshes, rows, seen, frequency_hz[block], readings)
         for name, way in ways.items():
             try:
                 responses[name][:, block] = _response(names, turn_rad, forced, way, block)
@@ -178,6 +177,15 @@ def _per_velocity(assembled: Structure, name: str, frequency_hz: FloatArray) -> 
     stiffness = float(assembled.bearing_forces[name][0] @ shaft_direction(assembled, name))
     turning = np.where(frequency_hz > 0.0, 2.0 * pi * frequency_hz, np.inf)
     return np.asarray(-1j * stiffness / turning)
+
+
+def mean_meshes(specimen: Specimen, assembled: Structure) -> list[MeanMesh]:
+    """Return every mesh of a gearbox as a constant spring and damper."""
+    pairs = (specimen.gears, *(stage.gears for stage in specimen.stages))
+    return [
+        mean_mesh(specimen.dynamics, gear_pair(gears), mesh.mass_kg)
+        for gears, mesh in zip(pairs, assembled.meshes, strict=True)
+    ]
 
 
 def mean_mesh(dynamics: Dynamics, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:

@@ -23,8 +23,7 @@ from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.inputs import MOTION, Input, Weight
 from siggen.sensing.mass_loading import mass_loading
 from siggen.sensors.sensor import Sensor
-from siggen.specimen.background import BLOCK, mean_mesh
-from siggen.specimen.gears import gear_pair
+from siggen.specimen.background import BLOCK, mean_meshes
 from siggen.specimen.measured_path import INPUTS
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import linear_structure
@@ -76,12 +75,12 @@ def _accelerance(
     frequency_hz: FloatArray,
 ) -> ComplexArray:
     """Return the accelerance (d, d, k) of a place, from forces to motions along its directions."""
-    mesh = mean_mesh(specimen.dynamics, gear_pair(specimen.gears), assembled.mesh.mass_kg)
+    meshes = mean_meshes(specimen, assembled)
     rows = np.array([assembled.motions[name] for name in names])
     result = np.empty((len(names), len(names), frequency_hz.size), dtype=np.complex128)
     for first in range(0, frequency_hz.size, BLOCK):
         block = slice(first, first + BLOCK)
-        forced = forced_motion(assembled, mesh, rows, names, frequency_hz[block])
+        forced = forced_motion(assembled, meshes, rows, names, frequency_hz[block])
         for i, name in enumerate(names):
             result[i, :, block] = forced.acceleration[name]
             if housing is not None:

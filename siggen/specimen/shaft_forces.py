@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from math import pi
 
+import numpy as np
+
 from siggen.config import Config
+from siggen.config.stages import turned
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.external_forces import (
     Unbalance,
@@ -21,7 +24,7 @@ RATED_SPEED_HZ = 50.0
 
 
 def force_sources(config: Config, specimen: Specimen, structure: Structure) -> tuple[Source, ...]:
-    """Return the unbalance of both shafts where a drawn `dynamics` section has it.
+    """Return the unbalance of all shafts where a drawn `dynamics` section has it.
 
     Raises
     ------
@@ -30,17 +33,21 @@ def force_sources(config: Config, specimen: Specimen, structure: Structure) -> t
     """
     if constant(specimen.dynamics.unbalance.grade_mm_s) <= 0.0:
         return ()
-    orders = {"pinion_bearing": 1.0, "gear_bearing": specimen.gears.pinion.teeth / specimen.gears.gear.teeth}
+    behind = turned(specimen.gears, specimen.stages)
+    names = ["gear_bearing", *(f"{stage.name}_bearing" for stage in specimen.stages)]
+    orders = {"pinion_bearing": 1.0, **{name: float(order) for name, order in zip(names, behind, strict=True)}}
     return tuple(_unbalance(config, specimen, structure, place, order) for place, order in orders.items())
 
 
 def _unbalance(config: Config, specimen: Specimen, structure: Structure, place: str, order: float) -> Unbalance:
     section = specimen.dynamics.unbalance
     uniform = named_uniforms(config.seed, Stage.SUPPORTS, specimen.specimen_id)
-    mass_kg = structure.mass[(structure.coordinates.index("x_1" if order == 1.0 else "x_2"),) * 2]
+    directions = shaft_directions(structure, place)
+    moved = zip(structure.coordinates, np.diag(structure.mass), np.abs(directions).sum(axis=0), strict=True)
+    mass_kg = sum(mass for name, mass, share in moved if name.startswith("x_") and share > 0.0)
     rated_rad_s = 2.0 * pi * RATED_SPEED_HZ * order
     return Unbalance(
-        directions=shaft_directions(structure, place),
+        directions=directions,
         moment_kg_m=float(mass_kg) * 1e-3 * constant(section.grade_mm_s) / rated_rad_s,
         order=order * turning_sense(structure, place),
         phase_rad=2.0 * pi * uniform(f"dynamics.unbalance.{place}.phase"),

@@ -15,7 +15,6 @@ from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.structure.structure import Structure
 
-
 @dataclass(frozen=True, slots=True)
 class Unbalance(Source):
     """An eccentric mass m e [kg m] on a shaft that turns at `order` times the pinion.
@@ -66,7 +65,7 @@ def shaft_directions(structure: Structure, place: str) -> FloatArray:
 def shaft_direction(structure: Structure, name: str) -> FloatArray:
     """Return the generalised force (n,) of 1 N on the rotor at a bearing along an axis, by place/axis."""
     place, axis = name.split("/")
-    return _on_shaft(structure, place, bearing_direction(structure, place, axis))
+    return _on_shaft(structure, bearing_direction(structure, place, axis))
 
 
 def turning_sense(structure: Structure, place: str) -> float:
@@ -74,24 +73,21 @@ def turning_sense(structure: Structure, place: str) -> float:
 
     With g along the line of action and w the direction in which flanks slide positively, both in the plane of the
     coordinates, a point of the pinion's flank at arm s slides by s Ω along w: so w is g turned by a quarter in the
-    sense of the pinion. The gear turns the other way.
+    sense of the pinion. Every shaft behind turns the other way than the one in front.
     """
-    rows = [structure.coordinates.index(name) for name in _translations(place)]
+    rows = [structure.coordinates.index(name) for name in ("x_1", "y_1")]
     along, across = structure.mesh.vector[rows], structure.mesh.sliding[0][rows]
-    horizontal, vertical = shaft_directions(structure, place)[:, rows]
+    first, *_ = places = list(dict.fromkeys(name.split("/")[0] for name in structure.bearing_directions))
+    horizontal, vertical = shaft_directions(structure, first)[:, rows]
     pinion = np.sign(_cross(along, across)) * np.sign(_cross(horizontal, vertical))
-    return float(pinion if place.startswith("pinion") else -pinion)
+    return float(-pinion if places.index(place) % 2 else pinion)
 
 
 def _cross(first: FloatArray, second: FloatArray) -> float:
     return float(first[0] * second[1] - first[1] * second[0])
 
 
-def _translations(place: str) -> tuple[str, str]:
-    return ("x_1", "y_1") if place.startswith("pinion") else ("x_2", "y_2")
-
-
-def _on_shaft(structure: Structure, place: str, values: FloatArray) -> FloatArray:
-    """Return a vector (n,) with its entries at the rotor alone."""
-    at_rotor = [name in _translations(place) for name in structure.coordinates]
+def _on_shaft(structure: Structure, values: FloatArray) -> FloatArray:
+    """Return a vector (n,) with its entries at shifts of gears alone."""
+    at_rotor = [name[:2] in {"x_", "y_"} and name[2:].isdigit() for name in structure.coordinates]
     return np.where(at_rotor, values, 0.0)

@@ -21,7 +21,6 @@ Point = tuple[float, float]
 """Horizontal and vertical distance from the casing's centre of gravity [m]."""
 Row = Mapping[str, float]
 """Coordinate -> what it moves."""
-SEATS = ("pinion_bearing", "gear_bearing")
 DIRECTIONS = ("vertical", "horizontal")
 BASE = ("x_b", "y_b", "phi_b")
 
@@ -91,13 +90,13 @@ class ModalBody:
     flexibility_m_per_n: FloatArray
 
 
-def rigid_body(casing: Casing, gear_place_m: Point, angle_rad: float) -> Body:
+def rigid_body(casing: Casing, places_m: Mapping[str, Point], angle_rad: float) -> Body:
     """Return a casing with the translations x_c along, y_c across and the rocking φ_c, turned by an angle.
 
+    `places_m`: bearings of every shaft -> where it stands, that of the first pinion as `casing` has it.
     x_c and y_c run as the gears' x and y; a force on the casing beside its bearings acts at its centre of gravity.
     """
-    places = {"pinion_bearing": casing.pinion_place_m, "gear_bearing": gear_place_m}
-    seats = _motions(places, angle_rad)
+    seats = _motions({"pinion_bearing": casing.pinion_place_m, **places_m}, angle_rad)
     sensors = {f"casing_{name}": place for name, place in casing.sensor_places_m.items()}
     return Body(
         inertias={"x_c": casing.mass_kg, "y_c": casing.mass_kg, "phi_c": casing.inertia_kg_m2},

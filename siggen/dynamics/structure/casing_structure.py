@@ -72,13 +72,24 @@ def casing_body(stage: SpurStage, casing: Casing) -> Body:
     ValueError
         As `casing_structure`.
     """
+    refuse_single_bolt(casing)
+    gear_place = (casing.pinion_place_m[0] - _centre_distance_m(stage), casing.pinion_place_m[1])
+    return rigid_body(casing, {"gear_bearing": gear_place}, stage.working_pressure_angle_rad)
+
+
+def refuse_single_bolt(casing: Casing) -> None:
+    """Raise if nothing keeps a casing from turning.
+
+    Raises
+    ------
+    ValueError
+        If its bolts stand in one place.
+    """
     if len(set(casing.bolts.places_m)) < 2:
         raise ValueError(
             f"bolts: received {len(set(casing.bolts.places_m))} distinct places; allowed are at least 2, "
             "since about a single one the casing would turn freely"
         )
-    gear_place = (casing.pinion_place_m[0] - _centre_distance_m(stage), casing.pinion_place_m[1])
-    return rigid_body(casing, gear_place, stage.working_pressure_angle_rad)
 
 
 def carried_structure(stage: SpurStage, body: Body, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:

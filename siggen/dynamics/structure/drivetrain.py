@@ -1,4 +1,4 @@
-"""Structures of several meshes in a row: shafts with one or two gears on bearings on the ground.
+"""Structures of several meshes in a row: shafts with one or two gears on bearings on the ground or in a body.
 
 Equations: standard literature (a round beam on two supports; gears as rigid discs); direction of the lines of action
 derived. With x along the first centre line from pinion to gear and y along the pitch-line velocity of the first pinion,
@@ -17,7 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.housing.ordered_sums import squares
+from siggen.dynamics.structure.body import Body
+from siggen.dynamics.structure.casing_structure import seated_springs
 from siggen.dynamics.structure.mesh_vectors import MeshVectors
 from siggen.dynamics.structure.structure import Bearing, Element, Rotor, SpurStage, Structure, assemble, shafts, vector
 
@@ -68,65 +69,88 @@ class NextStage:
     direction_rad: float
 
 
-def drivetrain(first: SpurStage, behind: Sequence[NextStage]) -> Structure:
-    """Return motor, shafts with their gears, and load: q = [θ_m, x_1, y_1, θ_1, ..., x_2m, y_2m, θ_2m, θ_L].
+def drivetrain(first: SpurStage, behind: Sequence[NextStage], body: Body | None = None) -> Structure:
+    """Return motor, shafts with their gears, load, and what carries the bearings: the ground, or a body.
 
-    Gears 2k - 1 and 2k are those of mesh k; the bearings of the shaft of gear 2k are called by mesh k, of the first
-    mesh `pinion_bearing` and `gear_bearing`.
+    q = [θ_m, x_1, y_1, θ_1, ..., x_2m, y_2m, θ_2m, θ_L, coordinates of the body]. Gears 2k - 1 and 2k are those of mesh
+    k; the bearings of the shaft of gear 2k are called by mesh k, of the first mesh `pinion_bearing` and `gear_bearing`.
+    On the ground horizontal runs from the first pinion to its gear, in a body from gear to pinion, as in single stages.
     """
     rotors = [first.pinion, first.gear, *(rotor for stage in behind for rotor in (stage.pinion, stage.gear))]
-    inertias, carried = _inertias(first, rotors), _carried(first, behind)
-    coordinates = tuple(inertias)
-    held, turned = _springs(coordinates, carried), assemble(coordinates, _torsion(first, behind))
-    stiffness, damping = held[0] + turned[0], held[1] + turned[1]
+    inertias = {**_inertias(first, rotors), **({} if body is None else body.inertias)}
+    coordinates, carried = tuple(inertias), _carried(first, behind)
+    held = {f"{one.place}/{name}": (one.held(name, body),) for one in carried for name in AXES}
+    free = [element for one in carried for name in AXES for element in one.bent(name)]
+    supports = () if body is None else body.supports
+    turned = assemble(coordinates, (*_torsion(first, behind), *free, *supports))
+    seats, flexibility = (tuple(held), None) if body is None else (tuple(body.seats), body.flexibility_m_per_n)
+    springs = seated_springs(coordinates, held, seats, flexibility)
+    stiffness, damping = springs.stiffness + turned[0], springs.damping + turned[1]
     mass = np.diag(list(inertias.values()))
     for matrix in (mass, damping, stiffness):
         matrix.setflags(write=False)
-    motions, forces = _at_bearings(coordinates, carried)
     ratio = first.ratio * prod(stage.gear.base_radius_m / stage.pinion.base_radius_m for stage in behind)
+    motions = springs.directions if body is None else _body_motions(coordinates, body)
     return Structure(
         coordinates=coordinates,
         mass=mass,
         damping=damping,
         stiffness=stiffness,
-        meshes=_meshes(coordinates, first, behind),
+        meshes=_meshes(coordinates, first, behind, 1.0 if body is None else -1.0),
         shaft_lines=_lines(len(behind) + 1),
         torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -ratio}),
         motions=motions,
-        bearing_forces=forces,
-        bearing_directions=motions,
+        bearing_forces=springs.forces,
+        bearing_directions=springs.directions,
     )
 
 
+def _body_motions(coordinates: Sequence[str], body: Body) -> dict[str, FloatArray]:
+    return {name: vector(coordinates, row) for name, row in body.motions.items()}
+
+
 class _Carried(NamedTuple):
-    """A shaft as it stands: what its bearings are called, the numbers of its gears, both bearings together."""
+    """A shaft as it stands: what its bearings are called, the numbers of its gears, both bearings together.
+
+    Both gears of a common shaft stand alike about its middle. So their mean motion is held by the bearings and the
+    bending in series, and so is their difference, which does not load the seats as a whole (derived).
+    """
 
     place: str
     gears: tuple[int, ...]
     bearing: Bearing
     shaft: CommonShaft | None
 
-    def held(self, axis: str) -> tuple[FloatArray, FloatArray]:
-        """Return stiffness and damping (gears, gears) of the shaft on its bearings along an axis.
+    def held(self, name: str, body: Body | None) -> Element:
+        """Return the spring between the mean motion of the gears and the seats along an axis."""
+        axis, stiffness, damping = self._bearing(name)
+        seat = {} if body is None else {key: -value for key, value in body.seats[f"{self.place}/{name}"].items()}
+        moved = {f"{axis}_{gear}": 1.0 / len(self.gears) for gear in self.gears}
+        bending = 0.0 if self.shaft is None else 0.5 * float(self.shaft.bending_m_per_n[0].sum())
+        return _in_series({**moved, **seat}, stiffness, damping, bending)
 
-        Bearings and bending give way in series. The dampers see their own springs' share of the motion, as in
-        `casing_structure.seated_springs`.
-        """
-        stiffness = getattr(self.bearing, f"stiffness_{axis}_n_per_m")
-        damping = getattr(self.bearing, f"damping_{axis}_n_s_per_m")
+    def bent(self, name: str) -> list[Element]:
+        """Return the spring between the gears of a common shaft along an axis."""
         if self.shaft is None:
-            return np.array([[stiffness]]), np.array([[damping]])
-        ends = np.array([[1.0 - place for place in PLACES], PLACES])
-        levers = squares(ends, ends)
-        held = _inverse(levers * (2.0 / stiffness) + self.shaft.bending_m_per_n)
-        slow = levers * (2.0 * damping / stiffness**2)
-        return held, squares(held, squares(slow, held))
+            return []
+        axis, stiffness, damping = self._bearing(name)
+        (own, other), lever = self.shaft.bending_m_per_n[0].tolist(), 0.25 / (PLACES[1] - PLACES[0]) ** 2
+        first, second = (f"{axis}_{gear}" for gear in self.gears)
+        return [_in_series({first: 1.0, second: -1.0}, lever * stiffness, lever * damping, 2.0 * (own - other))]
+
+    def _bearing(self, name: str) -> tuple[str, float, float]:
+        axis = AXES[name]
+        stiffness, damping = (
+            getattr(self.bearing, f"{word}_{axis}_{unit}")
+            for word, unit in (("stiffness", "n_per_m"), ("damping", "n_s_per_m"))
+        )
+        return axis, stiffness, damping
 
 
-def _inverse(matrix: FloatArray) -> FloatArray:
-    """Return the inverse of a symmetric (2, 2); written out, since a library's last bits depend on the processor."""
-    (a, b), (_, d) = matrix
-    return np.asarray(np.array([[d, -b], [-b, a]]) / (a * d - b * b))
+def _in_series(direction: dict[str, float], stiffness: float, damping: float, bending_m_per_n: float) -> Element:
+    """Return a spring with its damper in series with bending; the damper sees its spring's share of the motion."""
+    share = 1.0 / (1.0 + stiffness * bending_m_per_n)
+    return Element(direction, stiffness * share, damping * share**2)
 
 
 def _carried(first: SpurStage, behind: Sequence[NextStage]) -> list[_Carried]:
@@ -138,34 +162,6 @@ def _carried(first: SpurStage, behind: Sequence[NextStage]) -> list[_Carried]:
         gears = (2 * number + 2,) if last else (2 * number + 2, 2 * number + 3)
         found.append(_Carried(f"{name}_bearing", gears, rotor.bearing, None if last else behind[number].shaft))
     return found
-
-
-def _springs(coordinates: Sequence[str], carried: Sequence[_Carried]) -> tuple[FloatArray, FloatArray]:
-    """Return stiffness and damping (n, n) of the bearings and bending shafts."""
-    n = len(coordinates)
-    stiffness, damping = np.zeros((n, n)), np.zeros((n, n))
-    for shaft in carried:
-        for axis in AXES.values():
-            rows = np.ix_(*[[coordinates.index(f"{axis}_{gear}") for gear in shaft.gears]] * 2)
-            held = shaft.held(axis)
-            stiffness[rows] += held[0]
-            damping[rows] += held[1]
-    return stiffness, damping
-
-
-def _at_bearings(
-    coordinates: Sequence[str], carried: Sequence[_Carried]
-) -> tuple[dict[str, FloatArray], dict[str, tuple[FloatArray, FloatArray]]]:
-    """Return by place/axis how the shaft moves in the middle of its bearings, and the force on them."""
-    motions, forces = {}, {}
-    for shaft in carried:
-        for name, axis in AXES.items():
-            held = [matrix.sum(axis=0) for matrix in shaft.held(axis)]
-            names = [f"{axis}_{gear}" for gear in shaft.gears]
-            pushing, braking = (vector(coordinates, dict(zip(names, row.tolist(), strict=True))) for row in held)
-            forces[f"{shaft.place}/{name}"] = pushing, braking
-            motions[f"{shaft.place}/{name}"] = pushing / getattr(shaft.bearing, f"stiffness_{axis}_n_per_m")
-    return motions, forces
 
 
 def _inertias(first: SpurStage, rotors: Sequence[Rotor]) -> dict[str, float]:
@@ -194,15 +190,15 @@ def _lines(meshes: int) -> tuple[tuple[str, ...], ...]:
     return (("theta_m", "theta_1"), *between, (f"theta_{2 * meshes}", "theta_l"))
 
 
-def _meshes(coordinates: Sequence[str], first: SpurStage, behind: Sequence[NextStage]) -> tuple[MeshVectors, ...]:
+def _meshes(
+    coordinates: Sequence[str], first: SpurStage, behind: Sequence[NextStage], to_gear: float
+) -> tuple[MeshVectors, ...]:
     gears = _Gears("", first.working_pressure_angle_rad, first.pinion, first.gear, 0.0)
-    found, sense = [_mesh(coordinates, gears, 1, 1.0)], 1.0
+    found, sense = [_mesh(coordinates, gears, 1, (1.0, to_gear))], 1.0
     for number, stage in enumerate(behind, start=1):
         sense = -sense
-        gears = _Gears(
-            stage.name, stage.working_pressure_angle_rad, stage.pinion, stage.gear, stage.direction_rad
-        )  # fmt: skip
-        found.append(_mesh(coordinates, gears, 2 * number + 1, sense))
+        gears = _Gears(stage.name, stage.working_pressure_angle_rad, stage.pinion, stage.gear, stage.direction_rad)
+        found.append(_mesh(coordinates, gears, 2 * number + 1, (sense, to_gear)))
     return tuple(found)
 
 
@@ -214,19 +210,22 @@ class _Gears(NamedTuple):
     direction_rad: float
 
 
-def _mesh(coordinates: Sequence[str], gears: _Gears, number: int, sense: float) -> MeshVectors:
-    """Return the mesh of gears `number` and the next one; its pinion turns from x to y (sense 1) or back (-1)."""
+def _mesh(coordinates: Sequence[str], gears: _Gears, number: int, senses: tuple[float, float]) -> MeshVectors:
+    """Return the mesh of gears `number` and the next one.
+
+    `senses`: 1 if its pinion turns as the first one, else -1; 1 if x runs from the first pinion to its gear, else -1.
+    """
     a, b = str(number), str(number + 1)
+    sense, to_gear = senses
     slope = gears.direction_rad - sense * gears.angle_rad
     x, y = -sense * sin(slope), sense * cos(slope)
-    radii = gears.pinion.base_radius_m, gears.gear.base_radius_m
-    along = {f"x_{a}": x, f"y_{a}": y, f"theta_{a}": radii[0], f"x_{b}": -x, f"y_{b}": -y, f"theta_{b}": -radii[1]}
     u, v = -sense * y, sense * x
+    radii = gears.pinion.base_radius_m, gears.gear.base_radius_m
     line_m = (radii[0] + radii[1]) * tan(gears.angle_rad)
-    still = {f"x_{a}": u, f"y_{a}": v, f"x_{b}": -u, f"y_{b}": -v, f"theta_{b}": -line_m}
-    sliding = np.array(
-        [vector(coordinates, still), vector(coordinates, {f"theta_{a}": 1.0, f"theta_{b}": 1.0})]
-    )  # fmt: skip
+    along = {**_opposed(a, b, to_gear * x, y), f"theta_{a}": radii[0], f"theta_{b}": -radii[1]}
+    still = {**_opposed(a, b, to_gear * u, v), f"theta_{b}": -line_m}
+    rolling = {f"theta_{a}": 1.0, f"theta_{b}": 1.0}
+    sliding = np.array([vector(coordinates, still), vector(coordinates, rolling)])
     sliding.setflags(write=False)
     by_inertia = radii[0] ** 2 / gears.pinion.inertia_kg_m2 + radii[1] ** 2 / gears.gear.inertia_kg_m2
     return MeshVectors(
@@ -234,6 +233,10 @@ def _mesh(coordinates: Sequence[str], gears: _Gears, number: int, sense: float) 
         sliding,
         1.0 / by_inertia,
         (f"theta_{a}", f"theta_{b}"),
-        centre_line=(cos(gears.direction_rad), sin(gears.direction_rad)),
+        centre_line=(to_gear * cos(gears.direction_rad), sin(gears.direction_rad)),
         name=gears.name,
     )
+
+
+def _opposed(a: str, b: str, x: float, y: float) -> dict[str, float]:
+    return {f"x_{a}": x, f"y_{a}": y, f"x_{b}": -x, f"y_{b}": -y}

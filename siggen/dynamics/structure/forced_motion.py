@@ -8,7 +8,7 @@ and a force that takes teeth out of contact; both matter for forces that are not
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +40,7 @@ class ForcedMotion:
 
 def forced_motion(
     structure: Structure,
-    mesh: MeanMesh,
+    mesh: MeanMesh | Sequence[MeanMesh],
     directions: FloatArray,
     motions: tuple[str, ...],
     frequency_hz: FloatArray,
@@ -51,15 +51,17 @@ def forced_motion(
     Parameters
     ----------
     structure : Structure; one that turns freely has no motion at frequency 0, where all responses are set to 0
-    mesh : MeanMesh
+    mesh : MeanMesh, or one for each mesh of the structure
     directions : (inputs, n)
     motions : names of `structure.motions` that are wanted
     frequency_hz : (k,)
     readings : names of `structure.shaft_readings` that are wanted
     """
-    p = structure.mesh.vector
-    stiffness = structure.stiffness + mesh.stiffness_n_per_m * p[:, None] * p[None, :]
-    damping = structure.damping + mesh.damping_n_s_per_m * p[:, None] * p[None, :]
+    stiffness, damping = structure.stiffness, structure.damping
+    means = (mesh,) if isinstance(mesh, MeanMesh) else mesh
+    for p, mean in zip((one.vector for one in structure.meshes), means, strict=True):
+        stiffness = stiffness + mean.stiffness_n_per_m * p[:, None] * p[None, :]
+        damping = damping + mean.damping_n_s_per_m * p[:, None] * p[None, :]
     bearings = structure.bearing_forces
     zero = np.zeros(len(structure.coordinates))
     rows = [(zero, zero, structure.motions[name]) for name in motions]

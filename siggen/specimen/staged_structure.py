@@ -1,0 +1,91 @@
+"""The structure of a drawn specimen with further meshes: its shafts on the ground, or in a rigid casing."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import cos, radians, sin
+
+from siggen.config import PlainRotor, RigidHousing, Stage
+from siggen.dynamics.structure.body import Body, Point, rigid_body
+from siggen.dynamics.structure.casing_structure import refuse_single_bolt
+from siggen.dynamics.structure.drivetrain import CommonShaft, NextStage, drivetrain
+from siggen.dynamics.structure.structure import SpurStage, Structure
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import constant
+from siggen.planning.specimen import Specimen
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.rigid_casing import casing_numbers
+from siggen.specimen.rotors import rotor_numbers
+
+
+def staged_structure(first: SpurStage, specimen: Specimen) -> Structure:
+    """Return the structure of a gearbox with further meshes behind the first one.
+
+    Raises
+    ------
+    ValueError
+        If the bolts leave a casing free to move.
+    """
+    return drivetrain(first, _next_stages(specimen), staged_casing(specimen))
+
+
+def staged_casing(specimen: Specimen) -> Body | None:
+    """Return the rigid casing round all shafts; None for shafts on the ground. Its x is horizontal, its y vertical."""
+    if specimen.dynamics.model != "casing":
+        return None
+    assert isinstance(specimen.housing, RigidHousing)
+    places = axis_places_m(specimen)
+    across = [place[0] for place in places.values()]
+    casing = casing_numbers(specimen.housing, max(across) - min(across), specimen.sensors)
+    refuse_single_bolt(casing)
+    return rigid_body(casing, places, 0.0)
+
+
+def axis_places_m(specimen: Specimen) -> dict[str, Point]:
+    """Return where the bearings of every shaft stand, horizontally from the middle between the outermost ones [m].
+
+    Horizontal runs from the first gear to its pinion; the height is that of the first pinion.
+    """
+    place, found = (0.0, 0.0), {"pinion_bearing": (0.0, 0.0)}
+    names, directions = ["gear", *(one.name for one in specimen.stages)], [0.0, *_directions(specimen)]
+    for name, direction, pair in zip(names, directions, _pairs(specimen), strict=True):
+        centre_m = pair.working_centre_distance_m
+        place = place[0] - centre_m * cos(direction), place[1] + centre_m * sin(direction)
+        found[f"{name}_bearing"] = place
+    across = [x for x, _ in found.values()]
+    middle = 0.5 * (max(across) + min(across))
+    return {name: (x - middle, y) for name, (x, y) in found.items()}
+
+
+def _pairs(specimen: Specimen) -> list[GearPair]:
+    return [gear_pair(specimen.gears), *(gear_pair(stage.gears) for stage in specimen.stages)]
+
+
+def _directions(specimen: Specimen) -> list[float]:
+    return [radians(constant(stage.direction_deg)) for stage in specimen.stages]
+
+
+def _next_stages(specimen: Specimen) -> list[NextStage]:
+    """Return the further meshes in SI; a shaft is as thick as the thinner bore of its two gears."""
+    pairs = pairwise(_pairs(specimen))
+    return [
+        NextStage(
+            name=stage.name,
+            working_pressure_angle_rad=pair.working_pressure_angle_rad,
+            pinion=rotor_numbers(PlainRotor(), pair.pinion, pair.face_width_m),
+            gear=rotor_numbers(stage.gear, pair.gear, pair.face_width_m),
+            shaft=_common_shaft(stage, before, pair),
+            direction_rad=direction,
+        )
+        for stage, direction, (before, pair) in zip(specimen.stages, _directions(specimen), pairs, strict=True)
+    ]
+
+
+def _common_shaft(stage: Stage, before: GearPair, pair: GearPair) -> CommonShaft:
+    span_m = 2.0 * (before.face_width_m + pair.face_width_m)
+    return CommonShaft(
+        span_m=span_m if stage.span_mm is None else 1e-3 * constant(stage.span_mm),
+        diameter_m=2.0 * min(before.gear.bore_radius_m, pair.pinion.bore_radius_m),
+        youngs_modulus_pa=pair.youngs_modulus_pa,
+        poisson_ratio=pair.poisson_ratio,
+    )

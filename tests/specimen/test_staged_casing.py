@@ -1,0 +1,67 @@
+"""Two stages in a rigid casing: on hard bolts it is the ground, and it feels all bearings together."""
+
+from __future__ import annotations
+
+from math import cos, radians, sin
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.config import parse
+from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.equations import mesh_springs
+from siggen.planning.specimen import draw_specimen
+from siggen.specimen.staged_structure import axis_places_m
+from siggen.specimen.structure import structure
+from tests.config.staged import SLOW, staged
+
+MESH = np.array([3e8, 5e8])
+HARD = {"shear_stiffness_n_per_m": 1e16, "axial_stiffness_n_per_m": 1e16}
+
+
+def built(model: str, **housing: Any) -> Structure:
+    more = {"housing": {"kind": "rigid", **housing}} if model == "casing" else {}
+    raw = staged(dynamics={"model": model}, stages=[{**SLOW, "direction_deg": 35.0}], **more)
+    parsed = parse(raw)
+    assert parsed.config is not None, parsed.problems
+    return structure(parsed.config, draw_specimen(parsed.config, 0))
+
+
+def at_rest(found: Structure, torque_nm: float = 20.0) -> np.ndarray:
+    loaded = found.stiffness + mesh_springs(found, MESH)
+    return np.asarray(static_solution(found, loaded, found.torque_vector * torque_nm))
+
+
+def test_a_casing_on_hard_bolts_is_the_ground_seen_in_a_mirror() -> None:
+    """Horizontal runs from the first pinion to its gear on the ground, and back in a casing."""
+    ground, casing = built("8dof"), built("casing", bolts=HARD)
+    expected, found = (dict(zip(one.coordinates, at_rest(one), strict=True)) for one in (ground, casing))
+    for name, value in expected.items():
+        sign = -1.0 if name.startswith("x_") else 1.0
+        assert found[name] == pytest.approx(sign * value, rel=1e-6, abs=1e-12), name
+    for place, (pushing, _) in ground.bearing_forces.items():
+        sign = -1.0 if place.endswith("horizontal") else 1.0
+        force = casing.bearing_forces[place][0] @ at_rest(casing)
+        assert force == pytest.approx(sign * (pushing @ at_rest(ground)), rel=1e-6)
+
+
+def test_bolts_carry_what_all_shafts_press_with() -> None:
+    """Meshes are forces inside the casing: bearings of all shafts together press with nothing but their moment."""
+    found = built("casing")
+    rest, places = at_rest(found), dict.fromkeys(name.split("/")[0] for name in found.bearing_forces)
+    forces = {name: float(row @ rest) for name, (row, _) in found.bearing_forces.items()}
+    largest = max(abs(force) for force in forces.values())
+    for axis in ("horizontal", "vertical"):
+        assert abs(sum(forces[f"{place}/{axis}"] for place in places)) < 1e-9 * largest
+
+
+def test_shafts_stand_at_their_centre_distances_in_their_directions() -> None:
+    parsed = parse(staged(stages=[{**SLOW, "direction_deg": 35.0}]))
+    assert parsed.config is not None
+    places = axis_places_m(draw_specimen(parsed.config, 0))
+    first, second = 1e-3 * 2.0 * (18 + 47) / 2, 1e-3 * 3.0 * (17 + 52) / 2
+    pinion, gear, last = (np.array(places[f"{name}_bearing"]) for name in ("pinion", "gear", "slow"))
+    assert gear - pinion == pytest.approx([-first, 0.0])
+    assert last - gear == pytest.approx([-second * cos(radians(35.0)), second * sin(radians(35.0))])
