@@ -15,6 +15,7 @@ from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.structure.structure import Structure
 
+
 @dataclass(frozen=True, slots=True)
 class Unbalance(Source):
     """An eccentric mass m e [kg m] on a shaft that turns at `order` times the pinion.
