@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -47,11 +48,16 @@ WITHOUT_FRICTION = ("dynamics.friction.model=off", "dynamics.mesh.damping=consta
 STEP_S = 1.0 / (51200 * 8)
 
 
+def two_stages() -> dict[str, Any]:
+    """Return the gearbox of the tests on bearings in the ground, with a second stage, as in a file."""
+    raw = {**read_yaml(ROOT / "tests/configs/casing.yaml"), "stages": [SLOW], "sensors": [SENSOR]}
+    dynamics = {**raw["dynamics"], "model": "8dof"}
+    return {**raw, "dynamics": dynamics, "housing": {}, "duration_s": 0.2}
+
+
 @cache
 def config(*overrides: str) -> Config:
-    """Return the gearbox of the tests on bearings in the ground, with a second stage."""
-    raw = {**read_yaml(ROOT / "tests/configs/casing.yaml"), "stages": [SLOW], "sensors": [SENSOR]}
-    return load_config(raw, ["dynamics.model=8dof", "housing={}", "duration_s=0.2", *overrides])
+    return load_config(two_stages(), overrides)
 
 
 @cache

@@ -113,6 +113,11 @@ class PairMotion:
         return self.laws[0]
 
     @property
+    def places(self) -> FloatArray:
+        """How base pitches of every mesh follow from those of the first."""
+        return self.pair_equations.places
+
+    @property
     def damping(self) -> FloatArray:
         """Damping (meshes,) of the linear part [N s/m]."""
         return np.asarray(np.array([law.damping_root_kg for law in self.laws]) * np.sqrt(self._stiffness))
