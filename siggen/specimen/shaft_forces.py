@@ -8,7 +8,8 @@ from siggen.config import Config
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.external_forces import (
     Unbalance,
-    shaft_directions,
+    bearing_places,
+    shaft_mass,
     turning_sense,
 )
 from siggen.dynamics.structure.structure import Structure
@@ -17,11 +18,11 @@ from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 
 RATED_SPEED_HZ = 50.0
-"""Of the pinion shaft, to which a grade of balance belongs; the gear's by the ratio."""
+"""Of the pinion shaft, to which a grade of balance belongs; that of the others by their ratios."""
 
 
 def force_sources(config: Config, specimen: Specimen, structure: Structure) -> tuple[Source, ...]:
-    """Return the unbalance of both shafts where a drawn `dynamics` section has it.
+    """Return the unbalance of all shafts where a drawn `dynamics` section has it.
 
     Raises
     ------
@@ -30,18 +31,21 @@ def force_sources(config: Config, specimen: Specimen, structure: Structure) -> t
     """
     if constant(specimen.dynamics.unbalance.grade_mm_s) <= 0.0:
         return ()
-    orders = {"pinion_bearing": 1.0, "gear_bearing": specimen.gears.pinion.teeth / specimen.gears.gear.teeth}
-    return tuple(_unbalance(config, specimen, structure, place, order) for place, order in orders.items())
+    orders = [1.0]
+    for pair in (specimen.gears, *(stage.gears for stage in specimen.stages)):
+        orders.append(orders[-1] * (pair.pinion.teeth / pair.gear.teeth))
+    by_shaft = zip(bearing_places(structure), orders, strict=True)
+    return tuple(_unbalance(config, specimen, structure, place, order) for place, order in by_shaft)
 
 
 def _unbalance(config: Config, specimen: Specimen, structure: Structure, place: str, order: float) -> Unbalance:
     section = specimen.dynamics.unbalance
     uniform = named_uniforms(config.seed, Stage.SUPPORTS, specimen.specimen_id)
-    mass_kg = structure.mass[(structure.coordinates.index("x_1" if order == 1.0 else "x_2"),) * 2]
+    mass_kg, directions = shaft_mass(structure, place)
     rated_rad_s = 2.0 * pi * RATED_SPEED_HZ * order
     return Unbalance(
-        directions=shaft_directions(structure, place),
-        moment_kg_m=float(mass_kg) * 1e-3 * constant(section.grade_mm_s) / rated_rad_s,
+        directions=directions,
+        moment_kg_m=mass_kg * 1e-3 * constant(section.grade_mm_s) / rated_rad_s,
         order=order * turning_sense(structure, place),
         phase_rad=2.0 * pi * uniform(f"dynamics.unbalance.{place}.phase"),
     )

@@ -18,6 +18,8 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import Config, read_yaml
+from siggen.dynamics.drive.excitation import Source
+from siggen.dynamics.drive.external_forces import Unbalance, shaft_mass
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
@@ -26,8 +28,9 @@ from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_po
 from siggen.planning.stages import first_mesh, hunting_turns, stage_config, stage_point, stage_specimen, turns
 from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.drive import start_angle_rad
+from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
+from siggen.specimen.shaft_forces import force_sources
 from siggen.specimen.structure import structure
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -228,3 +231,78 @@ def test_all_teeth_meet_as_at_the_start_after_the_hunting_turns_and_not_before()
     assert not any(as_at_start(turned) for turned in range(1, whole))
     angles = [start_angle_rad(found, specimen, planned_record(found, record)) for record in range(12)]
     assert 0.5 * whole < max(angles) / (2.0 * pi) < whole
+
+
+def balance(sources: Sequence[Source]) -> tuple[list[float], list[float]]:
+    """Return order and moment [kg m] of unbalances."""
+    orders = [one.order for one in sources if isinstance(one, Unbalance)]
+    return orders, [one.moment_kg_m for one in sources if isinstance(one, Unbalance)]
+
+
+def test_every_shaft_is_out_of_balance_by_the_mass_of_its_gears_and_turns_against_the_one_in_front() -> None:
+    found, specimen, mesh, _ = machine("dynamics.unbalance={grade_mm_s: 6.3}")
+    built = mesh.structure
+    orders, moments = balance(force_sources(found, specimen, built))
+    assert orders == pytest.approx([1.0, -18 / 47, 18 / 47 * 17 / 52])
+    masses = [built.mass[(built.coordinates.index(f"x_{gear}"),) * 2] for gear in (1, 2, 3, 4)]
+    of_shafts = np.array([masses[0], masses[1] + masses[2], masses[3]])
+    assert np.array(moments) * np.abs(orders) * 100.0 * pi == pytest.approx(6.3e-3 * of_shafts)
+    # On the middle shaft each gear is pulled by its own mass, and both together as one mass is.
+    _, pulled = shaft_mass(built, "gear_bearing")
+    rows = [built.coordinates.index(name) for name in ("x_2", "x_3")]
+    assert pulled[0, rows] == pytest.approx(np.array(masses[1:3]) / sum(masses[1:3]), rel=1e-12)
+
+
+@pytest.mark.parametrize(("gear", "order"), [("gear", -18 / 47), ("slow.pinion", -18 / 47), ("slow.gear", 306 / 2444)])
+def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -> None:
+    """A missing tooth leaves a mass on the other side, which turns with its shaft and stands at its tooth's angle."""
+    damage = f"states.1.damage={{kind: chip, gear: {gear}, height_mm: whole}}"
+    found = config(damage)
+    specimen, record = draw_specimen(found, 0), planned_record(found, 3)
+    state = specimen_state(found, specimen, 1)
+    point, built = draw_operating_point(found, 0, 0), state.mesh.structure
+    driven = record_drive(found, specimen, built, point, record, 0.0, state.parts, state.parts_behind)
+    assert driven.excitation is not None
+    assert driven.excitation.vectors.shape[0] == 2
+    number = {"gear": 2, "slow.pinion": 3, "slow.gear": 4}[gear]
+    names = [built.coordinates.index(f"{axis}_{number}") for axis in "xy"]
+    assert np.abs(driven.excitation.vectors[:, names]) == pytest.approx(np.eye(2), abs=1e-12)
+    assert np.count_nonzero(driven.excitation.vectors) == 2
+    times = np.arange(4) * 0.25 / (abs(order) * point.speed_hz)
+    force = driven.excitation.inputs(times, driven.rotation) @ driven.excitation.vectors[:, names]
+    turned = np.unwrap(np.angle(force[:, 0] + 1j * force[:, 1]))
+    assert np.diff(turned) == pytest.approx(np.sign(order) * pi / 2 * np.ones(3), rel=1e-9)
+
+
+def test_the_missing_tooth_points_away_from_the_pull_when_its_place_meets_the_mate() -> None:
+    """When the middle of the path of contact of the missing tooth's pair comes, the pull points away from its mate."""
+    found = config("states.1.damage={kind: chip, gear: slow.pinion, height_mm: whole}")
+    specimen, record = draw_specimen(found, 0), planned_record(found, 3)
+    state = specimen_state(found, specimen, 1)
+    mesh, behind = state.mesh, state.mesh.behind[0]
+    point, pair = draw_operating_point(found, 0, 0), behind.mesh.pair
+    driven = record_drive(found, specimen, mesh.structure, point, record, 0.0, state.parts, state.parts_behind)
+    tooth = state.behind[0].parts[0].tooth
+    # Of the pair of this tooth at the pitch point: base pitches of the second mesh, and the time of them.
+    along = (pair.pitch_point_m - pair.contact_start_m) / pair.base_pitch_m
+    per_s = 17 * behind.turning * point.speed_hz
+    time = ((tooth + along - behind.turned_pitches) % 17) / per_s
+    assert driven.excitation is not None
+    names = [mesh.structure.coordinates.index(f"{axis}_3") for axis in "xy"]
+    x, y = (driven.excitation.inputs(np.array([time]), driven.rotation) @ driven.excitation.vectors[:, names])[0]
+    direction = np.radians(70.0)
+    away = np.angle((x + 1j * y) / -np.exp(1j * direction))
+    # At the pitch point the flank is on the line of centres; the tooth's middle is half a tooth, a quarter of the
+    # pitch's angle, beside it.
+    assert abs(away) == pytest.approx(0.5 * pi / 17, abs=0.02)
+
+
+def test_shafts_that_let_gears_part_are_refused_with_the_place_to_change() -> None:
+    soft = {**two_stages(), "stages": [{**SLOW, "span_mm": 1500.0}]}
+    found = load_config(soft, WITHOUT_FRICTION)
+    specimen = draw_specimen(found, 0)
+    motion = specimen_motion(
+        specimen.dynamics, specimen_state(found, specimen, 0).mesh, draw_operating_point(found, 0, 0), STEP_S
+    )
+    with pytest.raises(ValueError, match="stages: a gear moves by"):
+        motion.start(0.0)
