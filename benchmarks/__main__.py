@@ -24,7 +24,7 @@ from siggen.engines.worker import ONE_THREAD
 
 DEFAULT = (
     *("presets", "record", "sensing", "background", "filtering"),
-    *("stiffness", "integration", "precision", "lanes"),
+    *("stiffness", "integration", "stages", "precision", "lanes"),
     *("instructions", "loader", "cold", "memory", "startup", "storage", "workers", "quickstart"),
     *("indicators", "pages", "house", "engines", "audit"),
 )

@@ -12,38 +12,25 @@ FIGURE = Path(__file__).resolve().parents[1] / "figures" / "exported_model.png"
 
 
 def integrate(model, times, rtol=1e-6):
-    """Return approach [m], mesh force [N] and tilt [rad] at `times`, from the start of the transient on.
+    """Return approach [m], mesh force [N] and, where gears tilt, tilt [rad] of every mesh at `times`.
 
     `rtol` of every step. The absolute tolerance is that of displacements of 1 µm (or µrad) and of 20 mm/s, such as
     vibrations of some kHz have: small coordinates must not force small steps.
     """
-    n, p = len(model["coordinates"]), model["mesh_vector"]
-    law = LAWS[str(model["law"])](model)
+    n = len(model["coordinates"])
+    meshes = meshes_of(model)
     inverse = np.linalg.inv(model["mass"])
-    turn, turn_x = model.get("tilt_vector", np.zeros(n)), model.get("tilt_friction_vector", np.zeros(n))
-    static_tilt = model.get("static_tilt_rad", 0.0)
-    sums = np.stack([p, *model["sliding_vectors"], turn, turn_x])
-    pushed, moved = inverse @ sums.T, -inverse @ np.hstack([model["stiffness"], model["damping"]])
-    rolling = rigid_sliding(model)
+    moved = -inverse @ np.hstack([model["stiffness"], model["damping"]])
+    pushed = inverse @ np.vstack([mesh.rows for mesh in meshes]).T
     drive = Drive(model, inverse)
 
-    def forces(t, z):
-        pitches, speed_ratio, _ = drive.at(t)
-        displaced, moving = (sums @ z[:n]).tolist(), (sums @ z[n:]).tolist()
-        slides = [v + speed_ratio * r for v, r in zip(moving[1:3], rolling, strict=True)]
-        return law.forces(
-            State(model["static_approach_m"] + displaced[0], moving[0], *slides, static_tilt + displaced[3], moving[3]),
-            pitches,
-        )
-
     def rate(t, z):
-        found = forces(t, z)
-        loads = [found.normal - model["static_force_n"], found.friction, found.friction_moment]
-        loads += [found.across, found.friction_across]
-        return np.concatenate([z[n:], moved @ z - pushed @ loads + drive.at(t)[2]])
+        angle, speed_ratio, other = drive.at(t)
+        loads = np.concatenate([mesh.loads(z, angle, speed_ratio) for mesh in meshes])
+        return np.concatenate([z[n:], moved @ z - pushed @ loads + other])
 
     # A step must not pass over a whole engagement: a tenth of one at most.
-    longest = 0.1 / (model["speed_hz"] * 2 * np.pi * model["pitches_per_rad"])
+    longest = 0.1 / (model["speed_hz"] * 2 * np.pi * max(mesh.own["pitches_per_rad"] for mesh in meshes))
     found = solve_ivp(
         rate,
         (model["start_s"], times[-1]),
@@ -54,21 +41,69 @@ def integrate(model, times, rtol=1e-6):
         atol=rtol * np.repeat([1e-6, 2e-2], n),
         max_step=longest,
     )
-    mesh = np.array([forces(t, z).normal for t, z in zip(times, found.y.T, strict=True)])
-    return model["static_approach_m"] + p @ found.y[:n], mesh, static_tilt + turn @ found.y[:n]
+    return [values for mesh in meshes for values in mesh.seen(times, found.y.T, drive)]
 
 
-def rigid_sliding(model):
-    """Return both parts of the sliding speed of the rigid rotation: that of a pair at s is the first + s the second."""
-    names, p = list(model["coordinates"]), model["mesh_vector"]
-    pinion, gear = names.index("theta_1"), names.index("theta_2")
-    rolling = np.zeros(len(names))
-    rolling[pinion], rolling[gear] = 1.0, -p[pinion] / p[gear]
-    return (model["sliding_vectors"] @ rolling * 2 * np.pi * model["speed_hz"]).tolist()
+def meshes_of(model):
+    """Return the meshes of a model in the order of power."""
+    found, speed = [], 2 * np.pi * model["speed_hz"]  # of the shaft of the mesh's first gear [rad/s]
+    for number in range(int(model["meshes"])):
+        mesh = Mesh(model, number, speed)
+        speed = mesh.next_speed
+        found.append(mesh)
+    return found
+
+
+class Mesh:
+    """One mesh: what it sees of a state, and what it pushes."""
+
+    def __init__(self, model, number, speed):
+        beginning = f"mesh.{number}."
+        own = {name.removeprefix(beginning): value for name, value in model.items() if name.startswith(beginning)}
+        self.own, self.law = own, LAWS[str(model["law"])](own)
+        names, p = list(model["coordinates"]), own["vector"]
+        none = np.zeros(len(names))
+        turn, turn_x = own.get("tilt_vector", none), own.get("tilt_friction_vector", none)
+        self.tilts, self.static_tilt = "tilt_vector" in own, own.get("static_tilt_rad", 0.0)
+        self.rows = np.stack([p, *own["sliding_vectors"], turn, turn_x])
+        driving, driven = (names.index(name) for name in own["rotations"])
+        rolling = none.copy()
+        rolling[driving], rolling[driven] = speed, -speed * p[driving] / p[driven]
+        self.next_speed = rolling[driven]
+        # Sliding speed by the rigid rotation: that of a pair at s is the first + s the second.
+        self.rolling = (own["sliding_vectors"] @ rolling).tolist()
+
+    @property
+    def names(self):
+        """What siggen calls the quantities of `seen`."""
+        before = f"{self.own['name']}_" if self.own["name"] else ""
+        return [before + name for name in ("approach_m", "mesh_force_n", "mesh_tilt_rad")[: 3 if self.tilts else 2]]
+
+    def forces(self, z, angle, speed_ratio):
+        """Return the forces in a state z, at an angle of the first shaft."""
+        own, n = self.own, self.rows.shape[1]
+        displaced, moving = (self.rows @ z[:n]).tolist(), (self.rows @ z[n:]).tolist()
+        slides = [v + speed_ratio * r for v, r in zip(moving[1:3], self.rolling, strict=True)]
+        tilt = self.static_tilt + displaced[3], moving[3]
+        state = State(own["static_approach_m"] + displaced[0], moving[0], *slides, *tilt)
+        return self.law.forces(state, angle * own["pitches_per_rad"] + own["begins_pitches"])
+
+    def loads(self, z, angle, speed_ratio):
+        """Return what acts along its rows, beyond the static force."""
+        found = self.forces(z, angle, speed_ratio)
+        excess = found.normal - self.own["static_force_n"]
+        return [excess, found.friction, found.friction_moment, found.across, found.friction_across]
+
+    def seen(self, times, states, drive):
+        """Return approach, force and, where gears tilt, tilt."""
+        moved = states[:, : self.rows.shape[1]]
+        pushes = (self.forces(z, *drive.at(t)[:2]).normal for t, z in zip(times, states, strict=True))
+        found = [self.own["static_approach_m"] + moved @ self.rows[0], np.array([*pushes])]
+        return [*found, self.static_tilt + moved @ self.rows[3]] if self.tilts else found
 
 
 class Drive:
-    """The pinion's angle in base pitches, its speed over the nominal one, and accelerations by other forces."""
+    """The first pinion's angle, its speed over the nominal one, and accelerations by other forces."""
 
     def __init__(self, model, inverse):
         self.model, self.none = model, np.zeros(len(inverse))
@@ -79,16 +114,15 @@ class Drive:
         """Return all three at a time; what varies is linear between the steps of siggen."""
         model = self.model
         if "inputs" not in model:
-            angle = model["start_angle_rad"] + 2 * np.pi * model["speed_hz"] * t
-            return angle * model["pitches_per_rad"] + model["ahead_pitches"], 1.0, self.none
-        cell, weight = place_in(len(model["pitches"]), (t - model["start_s"]) / model["step_s"])
+            return model["start_angle_rad"] + 2 * np.pi * model["speed_hz"] * t, 1.0, self.none
+        cell, weight = place_in(len(model["angle_rad"]), (t - model["start_s"]) / model["step_s"])
         inputs = between(model["inputs"], cell, weight)
         ratio = 1.0 if model["speed_input"] < 0 else 1.0 + inputs[model["speed_input"]]
-        return between(model["pitches"], cell, weight), ratio, self.pushed @ inputs
+        return between(model["angle_rad"], cell, weight), ratio, self.pushed @ inputs
 
 
 def compare(config, overrides, samples=600, record=0, rtol=1e-6):
-    """Return times [s], then approach [m], mesh force [N] and, where gears tilt, tilt [rad] by siggen and by scipy."""
+    """Return times [s], then approach [m], mesh force [N] and tilt [rad] of every mesh by siggen and by scipy."""
     from siggen.checks.loading import load_config
     from siggen.config import by_reference
     from siggen.record.internals import internals_table
@@ -104,9 +138,8 @@ def compare(config, overrides, samples=600, record=0, rtol=1e-6):
             model = {name: value[()] for name, value in file.items()}  # [()]: plain numbers instead of 0-d arrays
     inner = internals_table(loaded, record)
     times = np.arange(samples) / model["fs_hz"]
-    names = ["approach_m", "mesh_force_n", *(["mesh_tilt_rad"] if "tilt_vector" in model else [])]
-    own = tuple(inner[name].to_numpy() for name in names)
-    return times, own, integrate(model, times, rtol)[: len(own)]
+    own = tuple(inner[name].to_numpy() for mesh in meshes_of(model) for name in mesh.names)
+    return times, own, integrate(model, times, rtol)
 
 
 IDEAL = ["manufacture=null", "dynamics.shafts=null"]

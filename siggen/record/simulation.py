@@ -118,7 +118,8 @@ def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     angle_rad = start_angle_rad(config, specimen, record)
-    return record_drive(config, specimen, state.mesh.structure, point, record, angle_rad, state.parts)
+    structure = state.mesh.structure
+    return record_drive(config, specimen, structure, point, record, angle_rad, state.parts, state.parts_behind)
 
 
 def simulated(

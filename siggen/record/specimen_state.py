@@ -25,6 +25,7 @@ from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
 from siggen.specimen.gears import stiffness_options
+from siggen.specimen.lost_mass import MeshPlace
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import MeshBehind, SpecimenMesh
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
@@ -46,6 +47,15 @@ class SpecimenState:
     static: StaticMesh
     parts: Parts = ()
     behind: tuple[SpecimenState, ...] = ()
+
+    @property
+    def parts_behind(self) -> list[tuple[GearPair, Parts, MeshPlace]]:
+        """Pair and parts of the further meshes, and where those are."""
+        both = zip(self.behind, self.mesh.behind, strict=True)
+        return [
+            (own.pair, own.parts, MeshPlace(number, mesh.turning, mesh.turned_pitches))
+            for number, (own, mesh) in enumerate(both, start=1)
+        ]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -19,6 +20,7 @@ from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.damage.part import Parts
+from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
@@ -28,7 +30,7 @@ from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread
 from siggen.specimen.bearing_spalls import spall_sources
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.lost_mass import lost_mass_sources
+from siggen.specimen.lost_mass import MeshPlace, lost_mass_sources
 from siggen.specimen.shaft_forces import force_sources
 
 MARGIN_S = 1.0
@@ -56,10 +58,11 @@ def record_drive(
     record: PlannedRecord,
     start_angle_rad: float,
     parts: Parts = (),
+    behind: Sequence[tuple[GearPair, Parts, MeshPlace]] = (),
 ) -> RecordDrive:
     """Return how a record is driven; without variation and forces at constant speed, with nothing else acting.
 
-    `parts` are those of the state's damage: some push.
+    `parts` are those of the state's damage: some push. `behind` has those of the further meshes.
 
     Raises
     ------
@@ -70,6 +73,7 @@ def record_drive(
     forces = (
         *force_sources(config, specimen, structure),
         *lost_mass_sources(gear_pair(specimen.gears), structure, parts),
+        *(source for pair, own, place in behind for source in lost_mass_sources(pair, structure, own, place)),
         *spall_sources(config, specimen, structure, point, record, rotation, parts),
     )
     if not config.variation.active:

@@ -10,22 +10,36 @@ from __future__ import annotations
 
 from cmath import exp, phase
 from math import pi
+from typing import NamedTuple
 
-from siggen.dynamics.drive.external_forces import Unbalance, shaft_directions, turning_sense
+from siggen.dynamics.drive.external_forces import Unbalance, bearing_places, gear_directions, turning_sense
 from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.lost_mass import LostMetals, lost_moment_kg_m, without_metal
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 
 
-def lost_mass_sources(pair: GearPair, structure: Structure, parts: Parts) -> tuple[Unbalance, ...]:
-    """Return the unbalance of each gear that has lost metal, by all of its teeth together.
+class MeshPlace(NamedTuple):
+    """Number of a mesh, the turns of its pinion per turn of the first one, and `MeshBehind.turned_pitches`."""
+
+    number: int = 0
+    turning: float = 1.0
+    turned_pitches: float = 0.0
+
+
+FIRST = MeshPlace()
+
+
+def lost_mass_sources(
+    pair: GearPair, structure: Structure, parts: Parts, place: MeshPlace = FIRST
+) -> tuple[Unbalance, ...]:
+    """Return the unbalance of each gear of a mesh that has lost metal, by all of its teeth together.
 
     In a model of rotations alone no shaft can shake, so there is none.
     """
     lost = without_metal(parts) if structure.bearing_directions else ()
-    gears = [which for which in ("pinion", "gear") if any(one.gear == which for one in lost)]
-    return tuple(_unbalance(pair, structure, which, tuple(one for one in lost if one.gear == which)) for which in gears)
+    by_gear = {which: tuple(one for one in lost if one.gear == which) for which in ("pinion", "gear")}
+    return tuple(_unbalance(pair, structure, which, own, place) for which, own in by_gear.items() if own)
 
 
 def tooth_angle_rad(pair: GearPair, which: str, tooth: int) -> float:
@@ -38,14 +52,17 @@ def tooth_angle_rad(pair: GearPair, which: str, tooth: int) -> float:
     return gear.base_half_angle_rad - own_end / gear.base_radius_m - behind
 
 
-def _unbalance(pair: GearPair, structure: Structure, which: str, lost: LostMetals) -> Unbalance:
-    gear, place = pair.member(which), f"{which}_bearing"
-    sense, directions = turning_sense(structure, place), shaft_directions(structure, place)
+def _unbalance(pair: GearPair, structure: Structure, which: str, lost: LostMetals, at: MeshPlace) -> Unbalance:
+    gear, driven = pair.member(which), int(which == "gear")
+    place = bearing_places(structure)[at.number + driven]
+    sense, directions = turning_sense(structure, place), gear_directions(structure, place, 2 * at.number + 1 + driven)
+    begins_rad = 2.0 * pi * at.turned_pitches / gear.teeth
     moment = -sum(
-        lost_moment_kg_m(gear, one, pair.face_width_m) * exp(1j * sense * tooth_angle_rad(pair, which, one.tooth))
+        lost_moment_kg_m(gear, one, pair.face_width_m)
+        * exp(1j * sense * (tooth_angle_rad(pair, which, one.tooth) + begins_rad))
         for one in lost
     )
     # A gear that moves along -e slides its flank forwards over its mate's.
-    horizontal, vertical = -(directions @ structure.mesh.sliding[0])
-    order = sense * pair.pinion.teeth / gear.teeth
+    horizontal, vertical = -(directions @ structure.meshes[at.number].sliding[0])
+    order = sense * at.turning * pair.pinion.teeth / gear.teeth
     return Unbalance(directions, abs(moment), order, phase(moment) + phase(complex(horizontal, vertical)))

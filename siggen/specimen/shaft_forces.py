@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from math import pi
 
-import numpy as np
-
 from siggen.config import Config
 from siggen.config.stages import turned
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.external_forces import (
     Unbalance,
-    shaft_directions,
+    bearing_places,
+    shaft_mass,
     turning_sense,
 )
 from siggen.dynamics.structure.structure import Structure
@@ -20,7 +19,7 @@ from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 
 RATED_SPEED_HZ = 50.0
-"""Of the pinion shaft, to which a grade of balance belongs; the gear's by the ratio."""
+"""Of the pinion shaft, to which a grade of balance belongs; that of the others by their ratios."""
 
 
 def force_sources(config: Config, specimen: Specimen, structure: Structure) -> tuple[Source, ...]:
@@ -33,22 +32,19 @@ def force_sources(config: Config, specimen: Specimen, structure: Structure) -> t
     """
     if constant(specimen.dynamics.unbalance.grade_mm_s) <= 0.0:
         return ()
-    behind = turned(specimen.gears, specimen.stages)
-    names = ["gear_bearing", *(f"{stage.name}_bearing" for stage in specimen.stages)]
-    orders = {"pinion_bearing": 1.0, **{name: float(order) for name, order in zip(names, behind, strict=True)}}
-    return tuple(_unbalance(config, specimen, structure, place, order) for place, order in orders.items())
+    orders = [1.0, *map(float, turned(specimen.gears, specimen.stages))]
+    by_shaft = zip(bearing_places(structure), orders, strict=True)
+    return tuple(_unbalance(config, specimen, structure, place, order) for place, order in by_shaft)
 
 
 def _unbalance(config: Config, specimen: Specimen, structure: Structure, place: str, order: float) -> Unbalance:
     section = specimen.dynamics.unbalance
     uniform = named_uniforms(config.seed, Stage.SUPPORTS, specimen.specimen_id)
-    directions = shaft_directions(structure, place)
-    moved = zip(structure.coordinates, np.diag(structure.mass), np.abs(directions).sum(axis=0), strict=True)
-    mass_kg = sum(mass for name, mass, share in moved if name.startswith("x_") and share > 0.0)
+    mass_kg, directions = shaft_mass(structure, place)
     rated_rad_s = 2.0 * pi * RATED_SPEED_HZ * order
     return Unbalance(
         directions=directions,
-        moment_kg_m=float(mass_kg) * 1e-3 * constant(section.grade_mm_s) / rated_rad_s,
+        moment_kg_m=mass_kg * 1e-3 * constant(section.grade_mm_s) / rated_rad_s,
         order=order * turning_sense(structure, place),
         phase_rad=2.0 * pi * uniform(f"dynamics.unbalance.{place}.phase"),
     )

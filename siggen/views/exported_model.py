@@ -1,6 +1,7 @@
 """One record's equations of motion as plain arrays, so that anybody can integrate the same record with other tools.
 
-Every key is described in docs/reference/exported_model.md. Numbers and tables of a mesh law stand under `law.`.
+Every key is described in docs/reference/exported_model.md. What belongs to a mesh stands under `mesh.0.`, `mesh.1.`,
+in the order of power; numbers and tables of its law under `mesh.0.law.`.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.structure.mesh_vectors import friction_tilt
+from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations
@@ -34,7 +35,7 @@ from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
 from siggen.specimen.step_choice import stepped_motion
 
-FORMAT_VERSION = 4
+FORMAT_VERSION = 5
 """Raised when a key changes its meaning or goes away; new keys leave it."""
 
 ENDING = ".npz"
@@ -64,10 +65,11 @@ def exported_model(whole: Config, record_id: int) -> Model:
     with refused_as("outside_model"):
         specimen, state = at_point(config, specimen, state, record)
         angle = start_angle_rad(config, specimen, record)
-        driven = record_drive(config, specimen, state.mesh.structure, point, record, angle, state.parts)
+        built, parts = state.mesh.structure, (state.parts, state.parts_behind)
+        driven = record_drive(config, specimen, built, point, record, angle, *parts)
         (steps, _), motion, _ = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
-        grid = _time_grid(config, specimen, motion, driven.rotation, steps)
-        start = motion.start(grid["start_pitches"])
+        grid = _time_grid(config, specimen, motion, steps)
+        start = motion.start(_first_pitches(motion, driven.rotation, grid["start_s"]))
     return {
         "format": "siggen exported model",
         "format_version": FORMAT_VERSION,
@@ -77,8 +79,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         "record_id": record_id,
         "state": config.states[record.state_id].name,
         **_structure(motion.structure),
-        **_tilt(motion.structure, motion.equations),
-        **_static_part(motion.equations),
+        "static_deflection": motion.equations.static_deflection,
         "torque_nm": point.torque_nm,
         "integrator": specimen.dynamics.method,
         "speed_hz": point.speed_hz,
@@ -87,7 +88,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         **_inputs(driven, grid, motion.structure),
         "start_state": start,
         "law": specimen.dynamics.mesh.law,
-        **_law(motion.law),
+        **_meshes(motion),
     }
 
 
@@ -131,10 +132,7 @@ def _structure(structure: Structure) -> dict[str, Any]:
         "mass": structure.mass,
         "damping": structure.damping,
         "stiffness": structure.stiffness,
-        "mesh_vector": structure.mesh.vector,
-        "sliding_vectors": structure.mesh.sliding,
         "torque_vector": structure.torque_vector,
-        "equivalent_mesh_mass_kg": structure.mesh.mass_kg,
         "motion_names": np.array(list(structure.motions), dtype=np.str_),
         "motion_rows": np.array(list(structure.motions.values())) if structure.motions else empty,
         "bearing_force_names": np.array(list(structure.bearing_forces), dtype=np.str_),
@@ -143,42 +141,63 @@ def _structure(structure: Structure) -> dict[str, Any]:
     }
 
 
-def _tilt(structure: Structure, equations: Equations) -> dict[str, Any]:
-    """Return how gears tilt, where they do."""
-    if structure.mesh.tilt is None:
+def _meshes(motion: Motion) -> dict[str, Any]:
+    """Return how many meshes there are, and what belongs to each."""
+    found: dict[str, Any] = {"meshes": len(motion.structure.meshes)}
+    per_radian = motion.teeth / (2.0 * np.pi)
+    for number, (mesh, law) in enumerate(zip(motion.structure.meshes, motion.laws, strict=True)):
+        rate, begins = motion.places[number]
+        own = {
+            "name": mesh.name,
+            "vector": mesh.vector,
+            "sliding_vectors": mesh.sliding,
+            "rotations": np.array(mesh.turning),
+            "equivalent_mass_kg": mesh.mass_kg,
+            "pitches_per_rad": per_radian * rate,
+            "begins_pitches": begins + mesh.flanks.ahead_pitches,
+            **_static_part(motion.equations, number),
+            **_tilt(motion.structure, mesh, motion.equations),
+            **_law(law),
+        }
+        found |= {f"mesh.{number}.{name}": value for name, value in own.items()}
+    return found
+
+
+def _tilt(structure: Structure, mesh: MeshVectors, equations: Equations) -> dict[str, Any]:
+    """Return how gears of a mesh tilt, where they do."""
+    if mesh.tilt is None:
         return {}
     return {
-        "tilt_vector": structure.mesh.tilt,
-        "tilt_friction_vector": friction_tilt(structure.coordinates, structure.mesh),
-        "static_tilt_rad": float(structure.mesh.tilt @ equations.static_deflection),
+        "tilt_vector": mesh.tilt,
+        "tilt_friction_vector": friction_tilt(structure.coordinates, mesh),
+        "static_tilt_rad": float(mesh.tilt @ equations.static_deflection),
     }
 
 
-def _static_part(equations: Equations) -> dict[str, Any]:
+def _static_part(equations: Equations, mesh: int) -> dict[str, Any]:
     return {
-        "static_deflection": equations.static_deflection,
-        "static_force_n": float(equations.static_force[0]),
-        "static_approach_m": float(equations.static_approach[0]),
-        "reference_stiffness_n_per_m": float(equations.reference_stiffness[0]),
+        "static_force_n": float(equations.static_force[mesh]),
+        "static_approach_m": float(equations.static_approach[mesh]),
+        "reference_stiffness_n_per_m": float(equations.reference_stiffness[mesh]),
     }
 
 
-def _time_grid(config: Config, specimen: Specimen, motion: Motion, rotation: Rotation, steps: int) -> dict[str, Any]:
-    """Return rate, steps and the phase of the mesh; the transient lies before time 0."""
+def _first_pitches(motion: Motion, rotation: Rotation, time_s: float) -> float:
+    """Return the base pitches that the first mesh has turned at a time."""
+    turned = float(rotation.angle_rad(np.array([time_s]))[0]) * (motion.teeth / (2.0 * np.pi))
+    return turned + motion.structure.mesh.flanks.ahead_pitches
+
+
+def _time_grid(config: Config, specimen: Specimen, motion: Motion, steps: int) -> dict[str, Any]:
+    """Return rate and steps; the transient lies before time 0."""
     step_s = 1.0 / (config.fs_hz * steps)
     settling = settling_steps(motion.transient_s, settle_s(config, specimen), config.fs_hz * steps)
-    start_s = -(half_length(steps) + settling) * step_s
-    per_radian = motion.teeth / (2.0 * np.pi)
     return {
         "fs_hz": config.fs_hz,
         "samples": config.samples,
         "steps_per_sample": steps,
         "step_s": step_s,
-        "start_s": start_s,
-        "start_pitches": float(rotation.angle_rad(np.array([start_s]))[0]) * per_radian
-        + motion.structure.mesh.flanks.ahead_pitches,
-        "pitches_per_rad": per_radian,
-        "ahead_pitches": motion.structure.mesh.flanks.ahead_pitches,
+        "start_s": -(half_length(steps) + settling) * step_s,
     }
 
 
@@ -190,7 +209,7 @@ def _inputs(driven: RecordDrive, grid: Mapping[str, Any], structure: Structure) 
     time_s = grid["start_s"] + np.arange(count + half_length(grid["steps_per_sample"]) + 1) * grid["step_s"]
     rows = driven.excitation.seat_force_rows(tuple(structure.bearing_forces))
     return {
-        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"] + structure.mesh.flanks.ahead_pitches,
+        "angle_rad": driven.rotation.angle_rad(time_s),
         "inputs": driven.excitation.inputs(time_s, driven.rotation),
         "input_vectors": driven.excitation.vectors,
         "speed_input": driven.speed_input,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import importlib.util
 import io
+import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import FORMAT_VERSION, exported_model
+from tests.specimen.test_two_stages import two_stages
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "docs" / "scripts" / "exported_model.py"
@@ -70,7 +72,7 @@ def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
 
 
 MATRICES = ("mass", "damping", "stiffness")
-VECTORS = ("mesh_vector", "sliding_vectors")
+VECTORS = ("mesh.0.vector", "mesh.0.sliding_vectors")
 Change = Callable[[np.ndarray], np.ndarray]
 
 
@@ -81,15 +83,15 @@ def last_bits(seed: int) -> Change:
 
 
 def beginning(
-    config: str, record: int, samples: int, steps: int, *overrides: str, change: Change = np.array
+    config: str | dict, record: int, samples: int, steps: int, *overrides: str, change: Change = np.array
 ) -> tuple[dict, list]:
-    """Return the model as a file gives it; approach, mesh force and tilt of the loop from its start on.
+    """Return the model as a file gives it; approach, mesh force and tilt of all meshes of the loop from its start on.
 
     The beginning, not the record behind it: before that the housing settles for 0.6 s, which scipy needs minutes for.
     Both have the matrices as `change` leaves them.
     """
     loaded = load_config(
-        ROOT / config,
+        ROOT / config if isinstance(config, str) else config,
         ["duration_s=0.01", f"dynamics.steps_per_sample={steps}", *overrides],
     )
     loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
@@ -101,21 +103,23 @@ def beginning(
     driven = record_drive(loaded, specimen, state.mesh.structure, point, planned, angle)
     built = state.mesh.structure
     matrices = {name: change(getattr(built, name)) for name in MATRICES}
-    vectors = replace(built.mesh, vector=change(built.mesh.vector), sliding=change(built.mesh.sliding))
-    mesh = replace(state.mesh, structure=replace(built, meshes=(vectors,), **matrices))
+    vectors = tuple(replace(one, vector=change(one.vector), sliding=change(one.sliding)) for one in built.meshes)
+    mesh = replace(state.mesh, structure=replace(built, meshes=vectors, **matrices))
     motion = specimen_motion(specimen.dynamics, mesh, point, 1.0 / (loaded.fs_hz * steps), driven)
     buffer = io.BytesIO()
     np.savez(buffer, **{name: np.asarray(value) for name, value in exported_model(loaded, record).items()})
     buffer.seek(0)
     model = {name: value[()] for name, value in np.load(buffer, allow_pickle=False).items()}
     times = model["start_s"] + np.arange(samples * steps + 1) / (loaded.fs_hz * steps)
-    pitches = driven.rotation.angle_rad(times) * model["pitches_per_rad"]
+    pitches = driven.rotation.angle_rad(times) * model["mesh.0.pitches_per_rad"]
     inputs = no_inputs(pitches) if driven.excitation is None else driven.excitation.inputs(times, driven.rotation)
     states = np.empty((times.size, model["start_state"].size))
     states[0] = model["start_state"]
     motion.advance(pitches, inputs, states)
     inner = motion.internals(states[::steps], pitches[::steps], inputs[::steps])
-    names = [name for name in ("approach_m", "mesh_force_n", "mesh_tilt_rad") if name in motion.internal_names]
+    before = [f"{one.name}_" if one.name else "" for one in built.meshes]
+    seen = [first + name for first in before for name in ("approach_m", "mesh_force_n", "mesh_tilt_rad")]
+    names = [name for name in seen if name in motion.internal_names]
     own = [inner[:, motion.internal_names.index(name)] for name in names]
     return model | {name: change(model[name]) for name in (*MATRICES, *VECTORS)}, own
 
@@ -146,13 +150,8 @@ def test_scipy_gives_the_motion_of_a_damaged_misaligned_record_of_bench_from_its
     model, own = beginning("configs/bench.yaml", 5, 330, 8, "manufacture.lead_misalignment_um=5")
     assert len(own) == 3
     assert largest(own, by_scipy(model, own, 1e-5)) < 1e-3
-    sound = model | {"law.table_of_pair": np.zeros_like(model["law.table_of_pair"])}
+    sound = model | {"mesh.0.law.table_of_pair": np.zeros_like(model["mesh.0.law.table_of_pair"])}
     assert largest(own, by_scipy(sound, own, 1e-4)) > 0.05
-
-
-def begun_with_film(coupling: str, samples: int = 300, change: Change = np.array) -> tuple[dict, list]:
-    overrides = (f"stiffness.coupling={coupling}", "dynamics.mesh.squeeze_film=on")
-    return beginning("tests/configs/casing.yaml", 12, samples, 32, *overrides, change=change)
 
 
 FINE = 1e-6
@@ -160,12 +159,32 @@ FINE = 1e-6
 that chooses its steps: the last bits decide where its steps pass those of the force. With 1e-5 they moved one sample,
 under an impact of 250 N, by up to 5e-3 of the mesh force, with 1e-6 by 2e-4."""
 
+SLOW_SPALL = (
+    "states.4.damage={kind: spall, gear: slow.pinion, teeth: 17, centre_height_mm: pitch, face_length_mm: 30.0, "
+    "depth_mm: 0.2, profile_length_mm: 1.0}"
+)
+
+
+def test_scipy_gives_the_motion_of_two_stages_from_their_file_alone() -> None:
+    """Every tooth of the second pinion is spalled through the face; friction and errors in both meshes."""
+    model, own = beginning(two_stages(), 14, 350, 8, SLOW_SPALL, "manufacture={accuracy_class: 6}")
+    assert model["meshes"] == 2
+    assert len(own) == 4
+    assert largest(own, by_scipy(model, own, FINE)) < 1e-3  # 2e-4 of the first mesh's force
+    sound = model | {"mesh.1.law.table_of_pair": np.zeros_like(model["mesh.1.law.table_of_pair"])}
+    assert largest(own[2:], by_scipy(sound, own, 1e-4)[2:]) > 0.05
+
+
+def begun_with_film(coupling: str, samples: int = 300, change: Change = np.array) -> tuple[dict, list]:
+    overrides = (f"stiffness.coupling={coupling}", "dynamics.mesh.squeeze_film=on")
+    return beginning("tests/configs/casing.yaml", 12, samples, 32, *overrides, change=change)
+
 
 @pytest.mark.parametrize("coupling", ["none", "body"])
 def test_scipy_gives_the_motion_with_film_and_damping_by_asperity_share(coupling: str) -> None:
     model, own = begun_with_film(coupling)
-    assert {"law.contact.touch_m", "law.damping_film_root_kg"} <= set(model)
-    assert model["law.film_n_s_per_m"] > 0.0
+    assert {"mesh.0.law.contact.touch_m", "mesh.0.law.damping_film_root_kg"} <= set(model)
+    assert model["mesh.0.law.film_n_s_per_m"] > 0.0
     motion, spikes = with_spikes(own, by_scipy(model, own, FINE))
     assert motion < 1e-3
     assert spikes < 0.01
@@ -192,10 +211,19 @@ def test_last_bits_of_the_matrices_move_neither_the_motion_nor_what_scipy_makes_
     ],
 )
 def test_every_key_is_described(file: str, record: int, overrides: list[str]) -> None:
-    model = exported_model(load_config(ROOT / file, ["duration_s=0.01", *overrides]), record)
-    missing = [key for key in model if f"`{key}`" not in PAGE]
+    described(exported_model(load_config(ROOT / file, ["duration_s=0.01", *overrides]), record), 1)
+
+
+def test_every_key_of_two_stages_is_described() -> None:
+    described(exported_model(load_config(two_stages(), ["duration_s=0.01"]), 0), 2)
+
+
+def described(model: Mapping, meshes: int) -> None:
+    missing = [key for key in model if f"`{re.sub(r'^mesh[.][0-9][.]', 'mesh.M.', key)}`" not in PAGE]
     assert not missing, f"docs/reference/exported_model.md does not describe {missing}"
     assert model["format_version"] == FORMAT_VERSION
+    assert model["meshes"] == meshes
+    assert {key.split(".")[1] for key in model if key.startswith("mesh.")} == {str(m) for m in range(meshes)}
 
 
 def test_the_archive_is_the_same_whenever_it_is_written_and_needs_no_pickle(tmp_path: Path) -> None:
@@ -211,7 +239,9 @@ def test_the_archive_is_the_same_whenever_it_is_written_and_needs_no_pickle(tmp_
             f"{gear}_bearing/{axis}" for gear in ("pinion", "gear") for axis in ("vertical", "horizontal")
         }
         # Static equilibrium: K q_s + p F_s is the torque and its balance.
-        residual = model["stiffness"] @ model["static_deflection"] + model["mesh_vector"] * model["static_force_n"]
+        residual = (
+            model["stiffness"] @ model["static_deflection"] + model["mesh.0.vector"] * model["mesh.0.static_force_n"]
+        )
         np.testing.assert_allclose(residual, model["torque_vector"] * model["torque_nm"], atol=1e-8)
 
 

@@ -48,8 +48,9 @@ def knocked(torque_nm: float, knock_m_s: float, steps: int, samples: int = SAMPL
     mesh = specimen_state(config, specimen, planned.state_id).mesh
     point = draw_operating_point(config, planned.specimen_id, planned.operating_point_id)
     motion = specimen_motion(specimen.dynamics, mesh, point, 1.0 / (config.fs_hz * steps))
-    turned = 2.0 * np.pi * point.speed_hz * np.arange(samples * steps + 1) / (config.fs_hz * steps)
-    pitches = model["start_pitches"] + turned * model["pitches_per_rad"]
+    times = model["start_s"] + np.arange(samples * steps + 1) / (config.fs_hz * steps)
+    turned = model["start_angle_rad"] + 2.0 * np.pi * point.speed_hz * times
+    pitches = turned * model["mesh.0.pitches_per_rad"] + model["mesh.0.begins_pitches"]
     states = np.empty((pitches.size, model["start_state"].size))
     states[0] = model["start_state"]
     motion.advance(pitches, no_inputs(pitches), states)
@@ -62,7 +63,7 @@ def after(model: dict, knock_m_s: float) -> FloatArray:
     names = list(model["coordinates"])
     turning = np.isin(names, ["theta_m", "theta_1"]).astype(float)
     return model["start_state"] + np.concatenate(
-        [np.zeros(len(names)), knock_m_s / (model["mesh_vector"] @ turning) * turning]
+        [np.zeros(len(names)), knock_m_s / (model["mesh.0.vector"] @ turning) * turning]
     )
 
 
@@ -84,7 +85,7 @@ def test_scipy_gives_the_motion_of_flanks_that_bounce_within_the_backlash(torque
     # Two steps per sample, as presets take, err more in the force, whose impacts are four samples long.
     assert largest(knocked(torque_nm, knock_m_s, 2)[1][:1], other[:1]) < 1e-3
     # It would be seen: 2 % less backlash gives another motion.
-    closer = model | {"law.backlash_m": 0.98 * model["law.backlash_m"]}
+    closer = model | {"mesh.0.law.backlash_m": 0.98 * model["mesh.0.law.backlash_m"]}
     assert largest(own, by_scipy(closer, own, 1e-5)) > 0.02
 
 

@@ -66,29 +66,64 @@ def shaft_directions(structure: Structure, place: str) -> FloatArray:
 def shaft_direction(structure: Structure, name: str) -> FloatArray:
     """Return the generalised force (n,) of 1 N on the rotor at a bearing along an axis, by place/axis."""
     place, axis = name.split("/")
-    return _on_shaft(structure, bearing_direction(structure, place, axis))
+    return _on_shaft(structure, place, bearing_direction(structure, place, axis))
+
+
+def bearing_places(structure: Structure) -> tuple[str, ...]:
+    """Return what the bearings of each shaft are called, in the order of power."""
+    return ("pinion_bearing", "gear_bearing", *(f"{mesh.name}_bearing" for mesh in structure.meshes[1:]))
+
+
+def gear_directions(structure: Structure, place: str, gear: int) -> FloatArray:
+    """Return the generalised forces (2, n) of 1 N on one gear of the shaft at a bearing, horizontal and vertical.
+
+    Gears are counted from the first pinion, 1, in the order of power.
+    """
+    along = shaft_directions(structure, place)
+    if len(_gears(structure, place)) == 1:
+        return along
+    own = [name in (f"x_{gear}", f"y_{gear}") for name in structure.coordinates]
+    along = np.where(own, along, 0.0)
+    return np.asarray(along / np.sqrt((along**2).sum(axis=1))[:, None])
+
+
+def shaft_mass(structure: Structure, place: str) -> tuple[float, FloatArray]:
+    """Return the mass [kg] of all gears of the shaft at a bearing, and 1 N (2, n) that acts on each by its share."""
+    gears = _gears(structure, place)
+    masses = [float(structure.mass[(structure.coordinates.index(f"x_{gear}"),) * 2]) for gear in gears]
+    whole = sum(masses)
+    shares = [m / whole * gear_directions(structure, place, gear) for m, gear in zip(masses, gears, strict=True)]
+    return whole, np.add.reduce(shares)
 
 
 def turning_sense(structure: Structure, place: str) -> float:
     """Return +1 if the shaft at a bearing turns from horizontal to vertical, -1 if back (derived).
 
     With g along the line of action and w the direction in which flanks slide positively, both in the plane of the
-    coordinates, a point of the pinion's flank at arm s slides by s Ω along w: so w is g turned by a quarter in the
-    sense of the pinion. Every shaft behind turns the other way than the one in front.
+    coordinates, a point of the driving flank at arm s slides by s Ω along w: so w is g turned by a quarter in the
+    sense of the driving gear. The driven gear turns the other way.
     """
-    rows = [structure.coordinates.index(name) for name in ("x_1", "y_1")]
-    along, across = structure.mesh.vector[rows], structure.mesh.sliding[0][rows]
-    first, *_ = places = list(dict.fromkeys(name.split("/")[0] for name in structure.bearing_directions))
-    horizontal, vertical = shaft_directions(structure, first)[:, rows]
-    pinion = np.sign(_cross(along, across)) * np.sign(_cross(horizontal, vertical))
-    return float(-pinion if places.index(place) % 2 else pinion)
+    gear = _gears(structure, place)[0]
+    mesh = structure.meshes[(gear - 1) // 2]
+    rows = [structure.coordinates.index(f"{axis}_{gear}") for axis in "xy"]
+    along, across = mesh.vector[rows], mesh.sliding[0][rows]
+    horizontal, vertical = shaft_directions(structure, place)[:, rows]
+    driving = np.sign(_cross(along, across)) * np.sign(_cross(horizontal, vertical))
+    return float(driving if gear % 2 == 1 else -driving)
 
 
 def _cross(first: FloatArray, second: FloatArray) -> float:
     return float(first[0] * second[1] - first[1] * second[0])
 
 
-def _on_shaft(structure: Structure, values: FloatArray) -> FloatArray:
-    """Return a vector (n,) with its entries at shifts of gears alone."""
-    at_rotor = [name[:2] in {"x_", "y_"} and name[2:].isdigit() for name in structure.coordinates]
-    return np.where(at_rotor, values, 0.0)
+def _gears(structure: Structure, place: str) -> tuple[int, ...]:
+    """Return the numbers of the gears on the shaft at a bearing: between two meshes a driven and a driving one."""
+    shaft = bearing_places(structure).index(place)
+    found = (2 * shaft, 2 * shaft + 1)
+    return tuple(gear for gear in found if 1 <= gear <= 2 * len(structure.meshes))
+
+
+def _on_shaft(structure: Structure, place: str, values: FloatArray) -> FloatArray:
+    """Return a vector (n,) with its entries at the gears of a shaft alone."""
+    own = {f"{axis}_{gear}" for gear in _gears(structure, place) for axis in "xy"}
+    return np.where([name in own for name in structure.coordinates], values, 0.0)

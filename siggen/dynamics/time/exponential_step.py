@@ -126,7 +126,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     scheme, laws = loop.scheme, loop.laws
     response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
     excess, seen, start, end, between = work.excess, work.seen, work.state, work.end, work.between
-    size, channels, columns, meshes = scheme.transition.shape[1], response.shape[1], end.size, len(laws)
+    size, channels, meshes = scheme.transition.shape[1], response.shape[1], len(laws)
     tilts = channels > 3 * meshes
     first, sight, kept = size + -size % LANES, (3 if tilts else 2) * LANES, CHANNELS * meshes
     free_motion(scheme.transition, scheme.input_response, level, start, between, end)
@@ -148,7 +148,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
         settled = True
         for mesh in range(meshes):
             law, node, own = laws[mesh], work.nodes[mesh], first + mesh * sight
-            add_response(response, level, excess, first, columns, end, seen)
+            add_response(response, level, excess, own, own + sight, end, seen)
             see(linear, mesh, seen, own, speed_ratio, node, tilts)
             from_0 = pitches_0 * scheme.places[mesh, 0] + scheme.places[mesh, 1]
             to_1 = pitches_1 * scheme.places[mesh, 0] + scheme.places[mesh, 1]

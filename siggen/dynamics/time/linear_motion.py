@@ -102,7 +102,7 @@ class LinearMotion:
         self._law = mesh_law(tables, damping, backlash_m)
         self.equations = equations_of_motion(structure, self._law, torque_nm, stiffness, input_vectors)
         self.transient_s = transient_s(structure, self.equations, np.array([damping]))
-        self.teeth = self._law.table_of_pair.shape[0]
+        self.teeth, self.laws = self._law.table_of_pair.shape[0], (self._law,)
         self.limits_m = np.array([0.5 * backlash_m + APPROACH_LIMIT_PITCHES * tables.base_pitch_m])
         self._integrator = INTEGRATORS[integrator](self.equations, self._law, step_s)
 
@@ -110,6 +110,11 @@ class LinearMotion:
     def law(self) -> MeshLaw:
         """The mesh law with its tables."""
         return self._law
+
+    @property
+    def places(self) -> FloatArray:
+        """The only mesh turns as the first one."""
+        return np.array([[1.0, 0.0]])
 
     def start(self, pitches: float) -> FloatArray:
         """Return the static state (2n,) at a pinion angle in base pitches."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -34,8 +35,12 @@ class Motion(Protocol):
     starts_settled: bool
 
     @property
-    def law(self) -> NamedTuple:
-        """The law of the first mesh: tables and numbers."""
+    def laws(self) -> Sequence[NamedTuple]:
+        """The laws of the meshes: tables and numbers."""
+
+    @property
+    def places(self) -> FloatArray:
+        """How base pitches of every mesh follow from those of the first (meshes, 2), as in `PairEquations`."""
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state at the start, at a pinion angle in base pitches."""

@@ -113,6 +113,11 @@ class PairMotion:
         return self.laws[0]
 
     @property
+    def places(self) -> FloatArray:
+        """How base pitches of every mesh follow from those of the first."""
+        return self.pair_equations.places
+
+    @property
     def damping(self) -> FloatArray:
         """Damping (meshes,) of the linear part [N s/m]."""
         return np.asarray(np.array([law.damping_root_kg for law in self.laws]) * np.sqrt(self._stiffness))
@@ -142,7 +147,7 @@ class PairMotion:
         ValueError
             If shafts are so soft that gears tilt or move beyond the model.
         """
-        if self.tilts:
+        if self.tilts or len(self.meshes) > 1:
             self._refuse_soft_shafts()
         state = self._standing(pitches)
         state[: self._rest.size] += self._rest
@@ -221,8 +226,9 @@ class PairMotion:
             self._refuse_tilt(m, static[TILT : TILT + 1], static[APPROACH : APPROACH + 1], "under the mean torque")
             shift = max(moved[name.replace("theta", axis)] for name in mesh.turning for axis in "xy")
             if not shift <= allowed:
+                where = "stages" if len(self.meshes) > 1 else "dynamics.shafts"
                 raise ValueError(
-                    f"dynamics.shafts: a gear moves by {1e3 * shift:.3g} mm under the mean torque; allowed: at most "
+                    f"{where}: a gear moves by {1e3 * shift:.3g} mm under the mean torque; allowed: at most "
                     f"{1e3 * allowed:.3g} mm. Take thicker or shorter shafts, or a smaller torque"
                 )
 
