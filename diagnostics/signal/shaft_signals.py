@@ -197,6 +197,15 @@ def own_band(average: np.ndarray, shaft: Shaft) -> np.ndarray:
     return np.asarray(fft.irfft(np.where(_is_foreign(spectrum.size, shaft), 0.0, spectrum), n=average.size))
 
 
+def without_mesh_lines(average: np.ndarray, teeth: int) -> np.ndarray:
+    """Return an average without its mean and the mesh lines of a gear on the shaft."""
+    from scipy import fft
+
+    spectrum = fft.rfft(average)
+    spectrum[::teeth] = 0.0
+    return np.asarray(fft.irfft(spectrum, n=average.size))
+
+
 def _is_foreign(orders: int, shaft: Shaft) -> np.ndarray:
     order = np.arange(orders)
     return np.asarray((order > 0) & (order % shaft.beside == 0) & (order % shaft.teeth != 0))
