@@ -107,9 +107,14 @@ def rig_teeth(rig: Path) -> tuple[dict[str, Any], tuple[int, int]]:
     Raises
     ------
     UsageError
-        If its model has no bearings, or its gears are drawn.
+        If its model has no bearings, it has further meshes, or its gears are drawn.
     """
     config = siggen.load_config(rig).canonical()
+    if stages := config.get("stages"):
+        raise UsageError(
+            f"{rig}: stages: received {', '.join(stage['name'] for stage in stages)}; a calibration is of the pair of "
+            "`gears` alone. Leave `stages` out: lines of another stage are then found in the recordings."
+        )
     if config["dynamics"]["model"] == "torsional":
         raise UsageError(f"{rig}: dynamics.model torsional has no bearing forces; allowed: 6dof, 8dof or casing")
     gears = config["gears"]

@@ -297,7 +297,7 @@ def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[s
 
 def _indicators(table: RecordTable, rows: np.ndarray, held: Mapping[str, ShownQuantity]) -> list[dict[str, Any]]:
     names = table.names()
-    return packed_indicators(names, table.values(names)[rows], table.settings, table.own, held)
+    return packed_indicators(names, table.values(names)[rows], table.settings, table.own, held, table.meshes)
 
 
 def packed_indicators(
@@ -306,10 +306,12 @@ def packed_indicators(
     settings: IndicatorSettings,
     own: Collection[str] = (),
     held: Mapping[str, ShownQuantity] = MappingProxyType({}),
+    meshes: Sequence[str] = (),
 ) -> list[dict[str, Any]]:
     """Return name, title, definition and packed values (records, names) of every indicator that some record defines."""
-    titles = {unit: indicator_titles(settings, unit) for unit in {RECORDED.unit, *(one.unit for one in held.values())}}
-    definitions, found = indicator_definitions(settings), []
+    units = {RECORDED.unit, *(one.unit for one in held.values())}
+    titles = {unit: indicator_titles(settings, unit, meshes) for unit in units}
+    definitions, found = indicator_definitions(settings, meshes), []
     for name, column in zip(names, values.T, strict=True):
         base, _, channel = name.rpartition("__") if name not in own else (name, "", "")
         if np.isfinite(column).any():

@@ -23,7 +23,7 @@ from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_baseband
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signal
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_lines import ripple_bins, shaft_lines
-from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals
+from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals, without_mesh_lines
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES, spectral_kurtosis
 
 SHAFT_SIGNALS = ("average", "lines", "sideband_lines", "sideband_average")
@@ -62,6 +62,7 @@ class ChannelSignals:
     ) -> None:
         self.signal, self.fs_hz, self.grid, self.shafts, self.settings = signal, fs_hz, grid, shafts, settings
         self._of_shaft: dict[str, ShaftSignals] = {}
+        self._without_front = np.empty(0)
         self._modulations: dict[tuple[str, int], Modulation] = {}
         self._bands: dict[tuple[str, str], np.ndarray] = {}
 
@@ -98,9 +99,23 @@ class ChannelSignals:
                 raise UndefinedSignalError
             own = self.settings
             self._of_shaft[name] = shaft_signals(
-                self.steps, shaft, own.samples_per_tooth, own.shaft_orders, own.difference_sidebands
+                self._steps_of(shaft), shaft, own.samples_per_tooth, own.shaft_orders, own.difference_sidebands
             )
         return self._of_shaft[name]
+
+    def _steps_of(self, shaft: Shaft) -> np.ndarray:
+        """Return what a shaft's average is taken of: the record, for a gear without the lines of meshes in front.
+
+        The lines of a mesh in front are often ten times as strong, and a slow gear turns too seldom to average them
+        away. They are locked to the pinion's shaft, whose average holds them; lines of the own mesh stay.
+        """
+        pinion = self.shafts[0]
+        if shaft is pinion or not pinion.beside or pinion.revolutions < 1:
+            return self.steps
+        if not self._without_front.size:
+            locked = without_mesh_lines(self.shaft(pinion.name).average, pinion.teeth)
+            self._without_front = (self.steps.reshape(-1, locked.size) - locked).ravel()
+        return self._without_front
 
     def _shaft(self, name: str) -> Shaft:
         return next(shaft for shaft in self.shafts if shaft.name == name)
@@ -148,8 +163,8 @@ class ChannelSignals:
         }[name](shaft, field)
 
     def _revolutions(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002 - one signature for all
-        size = self.shaft(shaft).average.size
-        return self.steps[: self.steps.size // size * size].reshape(-1, size)
+        size, steps = self.shaft(shaft).average.size, self._steps_of(self._shaft(shaft))
+        return steps[: steps.size // size * size].reshape(-1, size)
 
     def _modulation(self, shaft: str, field: dict[str, Any]) -> Modulation:
         """Return amplitude and phase of a mesh harmonic; undefined where the first sideband is not resolved."""

@@ -88,9 +88,28 @@ class Indicator:
         return _fields(self.column)
 
     @property
+    def is_of_mesh(self) -> bool:
+        """Whether every mesh has its columns: they differ by shaft or mesh line, which a record as a whole lacks."""
+        return bool(self.fields)
+
+    @property
     def parameters(self) -> tuple[str, ...]:
         """What its formula takes; a parameter with a default only where its columns differ by it."""
         return _parameters(self.function, self.fields)
+
+
+FIELD_PATTERNS = {"shaft": "(pinion|gear)", "side": "(lower|upper)", "band": r"o\d+_\d+"}
+"""What the fields of columns look like; all others are numbers."""
+
+
+@cache
+def _with_mesh(column: str) -> re.Pattern[str]:
+    """Return the pattern of the columns of a further mesh, by an indicator's template."""
+    parts = [
+        re.escape(text) + (FIELD_PATTERNS.get(name, r"\d+") if name else "")
+        for text, name, _, _ in Formatter().parse(column)
+    ]
+    return re.compile("".join(parts) + "_(?P<mesh>[a-z][a-z0-9_]*)")
 
 
 @cache  # asked for at every value of every record
@@ -144,4 +163,19 @@ def only_of(*quantities: str) -> Callable[[Formula], Formula]:
 
 def base_name(column: str) -> str:
     """Return the indicator's name of a column such as `fm0_pinion_h5__bearing_vertical`."""
-    return SUFFIX.sub("", column.split("__", maxsplit=1)[0])
+    name, _ = without_mesh(column)
+    return SUFFIX.sub("", name)
+
+
+@cache
+def without_mesh(column: str) -> tuple[str, str]:
+    """Return a column as the first mesh has it, without channel, and the name of its mesh, empty for the first one."""
+    name = column.split("__", maxsplit=1)[0]
+    patterns = (_with_mesh(entry.column) for entry in INDICATORS if entry.is_of_mesh)
+    mesh = next((match["mesh"] for pattern in patterns if (match := pattern.fullmatch(name))), "")
+    return name.removesuffix(of_mesh("", mesh)), mesh
+
+
+def of_mesh(column: str, mesh: str) -> str:
+    """Return the column of a mesh by that of the first one, whose name is empty."""
+    return f"{column}_{mesh}" if mesh else column

@@ -17,6 +17,7 @@ import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import SETTINGS_KEY
 from diagnostics.indicators.history import history_indicators
+from diagnostics.indicators.indicator import of_mesh
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
@@ -186,7 +187,12 @@ def _histories(
 ) -> dict[str, np.ndarray]:
     found = {name: values[rows] for name, values in table.moments(channel).items()}
     moments = {name: np.where(unusable, np.nan, values) for name, values in found.items()}
-    return {f"{name}__{channel}": values for name, values in history_indicators(labels, moments).items()}
+    columns: dict[str, np.ndarray] = {}
+    for mesh in ("", *table.meshes):
+        ending = of_mesh("", mesh)
+        own = {name.removesuffix(ending): values for name, values in moments.items() if name.endswith(ending)}
+        columns |= {of_mesh(name, mesh): values for name, values in history_indicators(labels, own).items()}
+    return {f"{name}__{channel}": values for name, values in columns.items()}
 
 
 def _revolutions(table: RecordTable, rows: np.ndarray) -> np.ndarray:

@@ -17,17 +17,18 @@ import numpy as np
 from diagnostics.indicators.channel_signals import ChannelSignals
 from diagnostics.indicators.indicator import Indicator
 from diagnostics.indicators.line_levels import LEVELS, record_levels
+from diagnostics.indicators.mesh_signals import MeshSignals, mesh_signals
 from diagnostics.indicators.registry import taken_of
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
+from diagnostics.records.gear_train import Mesh, gear_train
 from diagnostics.records.record_problems import RecordProblem, clipped_channels, record_problems
 from diagnostics.records.recording import Recording
 from diagnostics.records.sample_bytes import sample_bytes
 from diagnostics.records.usable_records import refused_parts
 from diagnostics.signal.mesh_pulses import mesh_pulses
 from diagnostics.signal.noise_sketch import noise_sketch
-from diagnostics.signal.order_domain import AngleGrid, angle_grid, speed_variation_percent
-from diagnostics.signal.shaft_signals import Shaft, record_shafts
+from diagnostics.signal.order_domain import AngleGrid, speed_variation_percent
 from siggen.errors import UsageError
 
 WAVEFORM_HARMONICS = 20
@@ -106,21 +107,6 @@ class RecordValues:
     waveforms: dict[str, np.ndarray] = field(default_factory=dict)
 
 
-def record_signals(
-    channels: Mapping[str, np.ndarray],
-    tacho_s: np.ndarray,
-    fs_hz: float,
-    teeth: tuple[int, int],
-    settings: IndicatorSettings,
-) -> tuple[dict[str, ChannelSignals], tuple[Shaft, Shaft]]:
-    """Return the signals of every channel, which formulas read from, and the shafts of the record."""
-    grid = angle_grid(tacho_s, teeth[0] * settings.samples_per_tooth) if len(tacho_s) > 1 else None
-    shafts = record_shafts(grid, teeth, settings.samples_per_tooth, settings.sidebands)
-    return {
-        name: ChannelSignals(_float64(signal), fs_hz, grid, shafts, settings) for name, signal in channels.items()
-    }, shafts
-
-
 def record_values(
     channels: Mapping[str, np.ndarray],
     tacho_s: np.ndarray,
@@ -128,6 +114,7 @@ def record_values(
     teeth: tuple[int, int],
     settings: IndicatorSettings | None = None,
     quantities: Mapping[str, str] = MappingProxyType({}),
+    train: tuple[Mesh, ...] = (),
 ) -> RecordValues:
     """Return the indicators of a record that is not one of a set: a window, or a piece of a recording.
 
@@ -145,23 +132,33 @@ def record_values(
         Default: `IndicatorSettings()`.
     quantities : mapping of str to str
         What channels hold that hold no acceleration.
+    train : tuple of Mesh
+        All meshes of the gearbox; empty: one, of these teeth.
     """
-    signals, shafts = record_signals(channels, tacho_s, fs_hz, teeth, settings or IndicatorSettings())
+    signals = {name: _float64(signal) for name, signal in channels.items()}
+    meshes = mesh_signals(signals, tacho_s, fs_hz, train or (Mesh("", teeth),), settings or IndicatorSettings())
     values = {
         f"{name}__{channel}": value
-        for channel, own in signals.items()
-        for name, value in own.values(taken_of(quantities.get(channel, RECORDED.word))).items()
+        for channel in signals
+        for mesh in meshes
+        for name, value in mesh.values(channel, taken_of(quantities.get(channel, RECORDED.word))).items()
     }
-    turns = (shafts[0].revolutions, shafts[1].revolutions)
-    waveforms = {}
+    turns, waveforms = revolutions(meshes[0]), {}
     if turns[0] >= FEWEST_AUDIT_TURNS:
-        waveforms = {name: _waveform(own.shaft("pinion").average, teeth[0]) for name, own in signals.items()}
-    return RecordValues(values, turns, shaft_notes(shafts), waveforms)
+        first = meshes[0].channels
+        waveforms = {name: _waveform(own.shaft("pinion").average, teeth[0]) for name, own in first.items()}
+    return RecordValues(values, turns, shaft_notes(meshes), waveforms)
 
 
-def shaft_notes(shafts: tuple[Shaft, Shaft]) -> str:
+def revolutions(mesh: MeshSignals) -> tuple[int, int]:
+    """Return the whole revolutions of pinion and gear."""
+    pinion, gear = mesh.shafts
+    return pinion.revolutions, gear.revolutions
+
+
+def shaft_notes(meshes: tuple[MeshSignals, ...]) -> str:
     """Return what the shafts leave undefined, and why."""
-    return "; ".join(shaft.note for shaft in shafts if shaft.note)
+    return "; ".join(note for mesh in meshes for note in mesh.notes())
 
 
 def record_result(record: Recording, settings: IndicatorSettings | None = None) -> RecordResult:
@@ -191,27 +188,29 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
     channels = {name: ChannelResult({}, conditions=_channel_conditions(s)) for name, s in record.channels.items()}
     turns, notes = (0, 0), ""
     if usable:
-        signals, shafts = record_signals(usable, pulses, record.fs_hz, _teeth(record), chosen)
-        turns, notes = (shafts[0].revolutions, shafts[1].revolutions), shaft_notes(shafts)
-        for name, own in signals.items():
+        meshes = mesh_signals(usable, pulses, record.fs_hz, gear_train(record.labels), chosen)
+        turns, notes = revolutions(meshes[0]), shaft_notes(meshes)
+        for name in usable:
             taken = taken_of(record.quantities.get(name, RECORDED.word))
-            channels[name] = _channel_result(own, taken, record.channels[name], pulses)
+            channels[name] = _channel_result(meshes, name, taken, record.channels[name], pulses)
     conditions = _pulse_conditions(pulses)
     return RecordResult(record.labels, channels, pulses, turns, conditions, notes, problems, refused, clipped)
 
 
 def _channel_result(
-    signals: ChannelSignals, taken: tuple[Indicator, ...], raw: np.ndarray, pulses: np.ndarray
+    meshes: tuple[MeshSignals, ...], channel: str, taken: tuple[Indicator, ...], raw: np.ndarray, pulses: np.ndarray
 ) -> ChannelResult:
-    values = signals.values(taken)
+    signals = meshes[0].channels[channel]
+    values = {name: value for mesh in meshes for name, value in mesh.values(channel, taken).items()}
+    moments = {name: value for mesh in meshes for name, value in mesh.moments(channel).items()}
     conditions, grid = _channel_conditions(raw), signals.grid
     if grid is None or grid.revolutions < FEWEST_AUDIT_TURNS:
-        return ChannelResult(values | dict.fromkeys(LEVELS, math.nan), signals.moments(), conditions=conditions)
+        return ChannelResult(values | dict.fromkeys(LEVELS, math.nan), moments, conditions=conditions)
     values |= _levels(signals, grid, pulses)
     teeth = (signals.shafts[0].teeth, signals.shafts[1].teeth)
     return ChannelResult(
         values,
-        signals.moments(),
+        moments,
         _waveform(signals.shaft("pinion").average, teeth[0]),
         noise_sketch(signals.signal, signals.fs_hz, signals.steps, teeth, grid),
         conditions,

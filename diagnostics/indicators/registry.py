@@ -5,13 +5,13 @@ What people call the columns of indicators: `sideband_pinion_h2_upper1` is a sid
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from itertools import product
 from typing import Any
 
 from diagnostics.indicators import angle, average, cepstrum, history, level, sidebands
-from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator, base_name
+from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator, base_name, of_mesh
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
 from siggen.errors import UsageError
@@ -65,23 +65,38 @@ def check_quantity(column: str, quantities: Mapping[str, str]) -> None:
     )
 
 
-def indicator_titles(settings: IndicatorSettings, channel_unit: str = RECORDED.unit) -> dict[str, str]:
-    """Return the title of every column of a channel of this unit, with its unit, without the channel's name."""
+def indicator_titles(
+    settings: IndicatorSettings, channel_unit: str = RECORDED.unit, meshes: Sequence[str] = ()
+) -> dict[str, str]:
+    """Return the title of every column of a channel of this unit, with its unit, without the channel's name.
+
+    `meshes` are the names of the further ones.
+    """
     found: dict[str, str] = {}
-    for entry in ALL:
-        for values in product(*(settings.choices(field) for field in entry.fields)):
-            chosen: dict[str, Any] = dict(zip(entry.fields, values, strict=True))
-            title = ", ".join([entry.title, *_words(chosen)])
-            unit = channel_unit if entry.unit == OF_CHANNEL else entry.unit
-            found[entry.column.format(**chosen)] = f"{title} [{unit}]" if unit else title
+    for mesh in ("", *meshes):
+        for entry in (entry for entry in ALL if entry.is_of_mesh or not mesh):
+            for values in product(*(settings.choices(field) for field in entry.fields)):
+                chosen: dict[str, Any] = dict(zip(entry.fields, values, strict=True))
+                title = ", ".join([entry.title, *_words(chosen), *([mesh_words(mesh)] if mesh else [])])
+                unit = channel_unit if entry.unit == OF_CHANNEL else entry.unit
+                found[of_mesh(entry.column.format(**chosen), mesh)] = f"{title} [{unit}]" if unit else title
     return found
 
 
-def indicator_definitions(settings: IndicatorSettings) -> dict[str, str]:
-    """Return by column how the value is taken."""
+def mesh_words(mesh: str) -> str:
+    """Return a further mesh as titles name it."""
+    return f"mesh {mesh}"
+
+
+def indicator_definitions(settings: IndicatorSettings, meshes: Sequence[str] = ()) -> dict[str, str]:
+    """Return by column how the value is taken; `meshes` are the names of the further ones."""
     return {
-        entry.column.format(**dict(zip(entry.fields, values, strict=True))): f"{entry.formula}; from {entry.signal}"
+        of_mesh(entry.column.format(**dict(zip(entry.fields, values, strict=True))), mesh): (
+            f"{entry.formula}; from {entry.signal}"
+        )
+        for mesh in ("", *meshes)
         for entry in ALL
+        if entry.is_of_mesh or not mesh
         for values in product(*(settings.choices(field) for field in entry.fields))
     }
 
@@ -112,11 +127,15 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def columns(settings: IndicatorSettings, quantity: str = RECORDED.word) -> tuple[str, ...]:
-    """Return the columns of one channel that a record alone gives, without the channel's name."""
+def columns(settings: IndicatorSettings, quantity: str = RECORDED.word, meshes: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the columns of one channel that a record alone gives, without the channel's name.
+
+    `meshes` are the names of the further ones.
+    """
     return tuple(
-        entry.column.format(**dict(zip(entry.fields, chosen, strict=True)))
+        of_mesh(entry.column.format(**dict(zip(entry.fields, chosen, strict=True))), mesh)
+        for mesh in ("", *meshes)
         for entry in taken_of(quantity)
-        if not entry.history
+        if not entry.history and (entry.is_of_mesh or not mesh)
         for chosen in product(*(settings.choices(field) for field in entry.fields))
     )

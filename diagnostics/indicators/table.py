@@ -33,7 +33,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.record_problems import RecordProblem
-from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
+from diagnostics.records.recording import LABEL_NAMES, Recording, meshes_behind, recordings
 from diagnostics.records.sample_bytes import BYTES
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
@@ -143,6 +143,8 @@ class RecordTable:
         Why the table could not be kept on disk, or empty.
     quantities : dict of str to str
         What channels hold.
+    meshes : tuple of str
+        Names of the meshes behind the first one.
     """
 
     source: pa.Table | Path
@@ -152,6 +154,7 @@ class RecordTable:
     own_problems: tuple[RecordProblem, ...] = ()
     note: str = ""
     quantities: dict[str, str] = field(default_factory=dict)
+    meshes: tuple[str, ...] = ()
 
     def select(self, names: Sequence[str]) -> pa.Table:
         """Return the named columns."""
@@ -206,7 +209,7 @@ class RecordTable:
         per_channel = [
             f"{name}__{channel}"
             for channel in self.channels
-            for name in columns(self.settings, self.quantities.get(channel, RECORDED.word))
+            for name in columns(self.settings, self.quantities.get(channel, RECORDED.word), self.meshes)
         ]
         return (*per_channel, *self.own)
 
@@ -259,7 +262,7 @@ def record_table(
         source = _computed(dataset, chosen, channels, workers, advance)
         note = keep_table(source, files[-1]) if files and files[-1] is not None else ""
     held = {channel.name: channel.quantity for channel in dataset.channels}
-    table = RecordTable(source, chosen, channels, note=note, quantities=held)
+    table = RecordTable(source, chosen, channels, note=note, quantities=held, meshes=meshes_behind(dataset))
     pulses = [np.asarray(row.values, np.float64) for row in table.select(["pulses_s"]).column("pulses_s")]
     refused = table.texts("refused")
     found, problems = own_columns(dataset, mine, pulses, refused, workers=workers, advance=advance if kept else None)
@@ -273,7 +276,7 @@ def _computed(
     if not results:
         raise DatasetError(f"{dataset.path}: no records to take indicators of; received splits {list(dataset.splits)}")
     held = {channel.name: channel.quantity for channel in dataset.channels}
-    return _as_table(results, settings, {name: held[name] for name in channels})
+    return _as_table(results, settings, {name: held[name] for name in channels}, meshes_behind(dataset))
 
 
 def _results(
@@ -290,7 +293,9 @@ def _record_result(settings: IndicatorSettings, record: Recording) -> RecordResu
     return record_result(record, settings)
 
 
-def _as_table(results: list[RecordResult], settings: IndicatorSettings, held: Mapping[str, str]) -> pa.Table:
+def _as_table(
+    results: list[RecordResult], settings: IndicatorSettings, held: Mapping[str, str], meshes: tuple[str, ...]
+) -> pa.Table:
     found: dict[str, Any] = {name: [result.labels[name] for result in results] for name in LABEL_NAMES}
     found |= {
         "revolutions_pinion": [result.revolutions[0] for result in results],
@@ -303,7 +308,7 @@ def _as_table(results: list[RecordResult], settings: IndicatorSettings, held: Ma
         **{name: [float(result.conditions[name]) for result in results] for name in PULSE_CONDITIONS},
     }
     for channel, quantity in held.items():
-        names = columns(settings, quantity)
+        names = columns(settings, quantity, meshes)
         found |= _channel_columns([result.channels[channel] for result in results], names, channel)
     return pa.table(found)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import missing_packages
-from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.indicator import base_name, without_mesh
 from diagnostics.indicators.own_indicator import OwnIndicator, all_own
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.settings import IndicatorSettings
@@ -192,6 +192,7 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     circular = _circular(folder) if CIRCULAR_FILE in loadable else None
     classifiers = {prefix: load_classifier(folder, prefix) for prefix in ("", *([REFERENCED] if referenced else []))}
     _check_folder(folder, facts, classifiers, network, circular)
+    _check_meshes(folder, classifiers)
     return ReleasedModel(
         folder=folder,
         facts=facts,
@@ -206,6 +207,23 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         own=_own_of(folder, classifiers, own),
         circular=circular,
     )
+
+
+def _check_meshes(folder: Path, classifiers: Mapping[str, FeatureClassifier]) -> None:
+    """Check that the classifiers take the features of one mesh alone, whose teeth are all that a recording tells.
+
+    Raises
+    ------
+    UsageError
+        Naming the further meshes.
+    """
+    features = [name for classifier in classifiers.values() for name in classifier.features]
+    if meshes := sorted({mesh for name in features if (mesh := without_mesh(name)[1])}):
+        raise UsageError(
+            f"{folder}: was trained on gearboxes with the further meshes {', '.join(meshes)}; a recording is judged by "
+            "the teeth of one pair. Train on a set without `stages`, or judge sets that have them with "
+            "`siggen-diagnostics report SET --test OTHER`."
+        )
 
 
 def _own_of(

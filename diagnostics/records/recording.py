@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from diagnostics.records.gear_train import further_meshes, teeth_columns
 from siggen.dataset.reading import Dataset
 
 LABEL_NAMES = (
@@ -51,18 +52,24 @@ def recordings(
     states : sequence of str, optional
         States to read; default all.
     """
-    columns = [*LABEL_NAMES, *(channel.column for channel in dataset.channels), TACHO_NAME]
+    labels = [*LABEL_NAMES, *teeth_columns(meshes_behind(dataset))]
+    columns = [*labels, *(channel.column for channel in dataset.channels), TACHO_NAME]
     for split in dataset.splits if splits is None else splits:
         for batch in dataset.records(split=split, columns=columns, batch_rows=BATCH_ROWS):
-            yield from _rows(batch if states is None else _in_states(batch, states), dataset)
+            yield from _rows(batch if states is None else _in_states(batch, states), dataset, labels)
+
+
+def meshes_behind(dataset: Dataset) -> tuple[str, ...]:
+    """Return the names of a set's meshes behind the first one; none for gearboxes with one mesh."""
+    return further_meshes(dataset.labels().column_names)
 
 
 def _in_states(batch: Any, states: Sequence[str]) -> Any:
     return batch.filter(pc.is_in(batch.column("state"), value_set=pa.array(states)))
 
 
-def _rows(batch: Any, dataset: Dataset) -> Iterator[Recording]:
-    labels = batch.select(list(LABEL_NAMES)).to_pylist()
+def _rows(batch: Any, dataset: Dataset, names: list[str]) -> Iterator[Recording]:
+    labels = batch.select(names).to_pylist()
     # flatten() respects the offset of a sliced batch, .values does not
     signals = {
         channel.name: batch.column(channel.column).flatten().to_numpy().reshape(batch.num_rows, -1)

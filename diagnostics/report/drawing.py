@@ -15,13 +15,14 @@ import numpy as np
 
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.registry import mesh_words
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, SLANTED, new_figure, state_colours, state_ticks
 from diagnostics.page.tables import explorer_link, indicator_links, records_line, state_links
 from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures
-from diagnostics.report.examples import Example, ExampleSet, example_set
+from diagnostics.report.examples import Example, ExampleSet, around_mesh, example_set
 from diagnostics.report.indicator_figures import column_title
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.statistics.separability import Separability
@@ -272,6 +273,12 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
         caption = f"Order spectrum ({window}) around mesh harmonic {harmonic}: {which}."
         drawing.vibration[f"spectrum_h{harmonic}"] = (figure, caption)
         drawing.behind[f"spectrum_h{harmonic}"] = behind
+    for mesh in examples.train[1:]:
+        figure = spectrum_figure(around_mesh(examples, mesh), colours, 1)
+        window = f"Hann, {spectra[0].revolutions} revolutions of the first pinion"
+        caption = f"Order spectrum ({window}) around mesh harmonic 1 of {mesh_words(mesh.name)}: {which}."
+        drawing.vibration[f"spectrum_h1_{mesh.name}"] = (figure, caption)
+        drawing.behind[f"spectrum_h1_{mesh.name}"] = behind
 
 
 def _draw_damage(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from diagnostics.records.gear_train import Mesh, gear_train
 from diagnostics.records.recording import TACHO_NAME
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
@@ -39,6 +40,7 @@ class ExampleSet:
     torque_nm: float
     teeth: tuple[int, int]
     fs_hz: float
+    train: tuple[Mesh, ...]
 
     @property
     def healthy(self) -> Example | None:
@@ -70,7 +72,27 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
         torque_nm=float(first["torque_nm"]),
         teeth=(int(first["teeth_pinion"]), int(first["teeth_gear"])),
         fs_hz=dataset.fs_hz,
+        train=gear_train(first),
     )
+
+
+def around_mesh(examples: ExampleSet, mesh: Mesh) -> ExampleSet:
+    """Return examples with the teeth, the speed and the orders of a mesh's own pinion."""
+    turns = float(mesh.turns)
+    shown = [
+        example
+        if example.spectrum is None
+        else replace(
+            example,
+            spectrum=replace(
+                example.spectrum,
+                order=example.spectrum.order / turns,
+                revolutions=max(1, int(example.spectrum.revolutions * turns)),
+            ),
+        )
+        for example in examples.examples
+    ]
+    return replace(examples, examples=tuple(shown), speed_hz=examples.speed_hz * turns, teeth=mesh.teeth)
 
 
 def _example(record: dict[str, Any], column: str, fs_hz: float) -> Example:

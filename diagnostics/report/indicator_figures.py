@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.indicators.indicator import OF_CHANNEL, base_name
+from diagnostics.indicators.indicator import OF_CHANNEL, base_name, without_mesh
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.registry import BY_NAME, indicator_titles
+from diagnostics.indicators.registry import BY_NAME, indicator_titles, mesh_words
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.html import Cell
 from diagnostics.page.style import fault_colours, new_figure, state_ticks
@@ -50,8 +50,9 @@ def _titles() -> dict[str, str]:
 
 def column_title(column: str) -> str:
     """Return what people call a column; the user's own indicators keep their names."""
-    name = column.partition("__")[0]
-    return _titles().get(name, name).rsplit(" [", 1)[0]
+    name, mesh = without_mesh(column)
+    title = _titles().get(name, name).rsplit(" [", 1)[0]
+    return f"{title}, {mesh_words(mesh)}" if mesh else title
 
 
 def channel_title(channel: str) -> str:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 
 import numpy as np
@@ -97,6 +98,37 @@ def angle_grid(tacho_s: np.ndarray, samples_per_revolution: int) -> AngleGrid:
         time_s = (time_s + row[:, None]) * fraction
     time_s = time_s + coefficients[-1][:, None]
     return AngleGrid(time_s.ravel(), pulses.size - 1, samples_per_revolution, float(1.0 / np.diff(pulses).max()))
+
+
+def shaft_grid(tacho_s: np.ndarray, samples_per_revolution: int, turns: Fraction) -> AngleGrid | None:
+    """Return the times of equal angle steps of a shaft that is geared to the one with the pulses.
+
+    Parameters
+    ----------
+    tacho_s : (k,) float64
+        Pulse times, as of `angle_grid`; both angles are zero at the first pulse.
+    samples_per_revolution : int
+        Angle steps per revolution of the geared shaft.
+    turns : Fraction
+        Its revolutions per revolution of the shaft with the pulses, exact: steps do not drift apart from teeth.
+
+    Returns
+    -------
+    AngleGrid, optional
+        Its revolutions are those of the geared shaft; None where that turns less than once.
+    """
+    pulses = np.asarray(tacho_s, dtype=np.float64)
+    revolutions = math.floor((pulses.size - 1) * turns)
+    if pulses.size < 2 or revolutions < 1:
+        return None
+    steps_per_pulse = turns.numerator * samples_per_revolution
+    whole, rest = np.divmod(np.arange(revolutions * samples_per_revolution) * turns.denominator, steps_per_pulse)
+    fraction = rest / steps_per_pulse
+    time_s = np.zeros(fraction.size)
+    for row in _polynomials(pulses):
+        time_s = time_s * fraction + row[whole]
+    slowest_hz = float(turns) / float(np.diff(pulses).max())
+    return AngleGrid(time_s, revolutions, samples_per_revolution, slowest_hz)
 
 
 def _polynomials(pulses: np.ndarray) -> np.ndarray:

@@ -43,6 +43,7 @@ def separated_average(
     shaft_orders: int = SHAFT_ORDERS,
     sidebands: int = SIDEBANDS,
     harmonics: int | None = None,
+    beside: int = 0,
 ) -> SeparatedAverage:
     """Separate one averaged revolution.
 
@@ -58,6 +59,8 @@ def separated_average(
         Sidebands on each side of every mesh harmonic that count as regular.
     harmonics : int, optional
         Mesh harmonics that count as regular; default all up to the band edge.
+    beside : int
+        Teeth of another gear on the shaft, whose mesh harmonics count as regular too; 0: there is none.
     """
     from scipy import fft
 
@@ -66,21 +69,33 @@ def separated_average(
     harmonic = np.round(order / teeth)
     last = np.inf if harmonics is None else harmonics
     distance = np.where((harmonic > 0) & (harmonic <= last), np.abs(order - harmonic * teeth), np.inf)
+    if beside:
+        distance = np.minimum(distance, _distance(order, beside))
     shaft = order <= shaft_orders
     residual = fft.irfft(np.where(shaft | (distance == 0), 0.0, spectrum), n=average.size)
     difference = fft.irfft(np.where(shaft | (distance <= sidebands), 0.0, spectrum), n=average.size)
     return SeparatedAverage(average - difference, residual, difference)
 
 
+def _distance(order: np.ndarray, teeth: int) -> np.ndarray:
+    """Return how far orders of a shaft lie from the next mesh line of a gear on it."""
+    harmonic = np.maximum(np.round(order / teeth), 1)
+    return np.asarray(np.abs(order - harmonic * teeth))
+
+
 @dataclass(frozen=True, slots=True)
 class Shaft:
-    """One shaft of a record: its name, teeth, whole revolutions, which sidebands are resolved, and what is not."""
+    """One shaft of a record: its name, teeth, whole revolutions, which sidebands are resolved, and what is not.
+
+    `beside` are the teeth of another gear on it, which takes part in another mesh; 0: there is none.
+    """
 
     name: str
     teeth: int
     revolutions: int
     resolved: np.ndarray
     note: str
+    beside: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,10 +173,39 @@ def shaft_signals(
     """
     average = synchronous_average(steps, shaft.teeth, samples_per_tooth).signal
     lines = line_amplitudes(average)
-    parts = separated_average(average, shaft.teeth, shaft_orders, difference_sidebands)
+    parts = separated_average(average, shaft.teeth, shaft_orders, difference_sidebands, beside=shaft.beside)
     if shaft.name != "gear":
-        return ShaftSignals(shaft, average, lines, average, lines, parts)
+        return ShaftSignals(shaft, average, lines, own_band(average, shaft), own_lines(lines, shaft), parts)
     weights = hann_weights(shaft.revolutions * average.size)
     weighted = synchronous_average(steps, shaft.teeth, samples_per_tooth, weights).signal
     resolved = resolved_lines(line_amplitudes(weighted), shaft.resolved, shaft.teeth)
-    return ShaftSignals(shaft, average, lines, weighted, resolved, parts)
+    return ShaftSignals(shaft, average, lines, own_band(weighted, shaft), own_lines(resolved, shaft), parts)
+
+
+def own_lines(lines: np.ndarray, shaft: Shaft) -> np.ndarray:
+    """Return lines at whole orders of a shaft, NaN where another gear on it has its mesh lines and this one has not."""
+    return np.where(_is_foreign(lines.size, shaft), np.nan, lines) if shaft.beside else lines
+
+
+def own_band(average: np.ndarray, shaft: Shaft) -> np.ndarray:
+    """Return an average without the mesh lines that only another gear on the shaft has."""
+    from scipy import fft
+
+    if not shaft.beside:
+        return average
+    spectrum = fft.rfft(average)
+    return np.asarray(fft.irfft(np.where(_is_foreign(spectrum.size, shaft), 0.0, spectrum), n=average.size))
+
+
+def without_mesh_lines(average: np.ndarray, teeth: int) -> np.ndarray:
+    """Return an average without its mean and the mesh lines of a gear on the shaft."""
+    from scipy import fft
+
+    spectrum = fft.rfft(average)
+    spectrum[::teeth] = 0.0
+    return np.asarray(fft.irfft(spectrum, n=average.size))
+
+
+def _is_foreign(orders: int, shaft: Shaft) -> np.ndarray:
+    order = np.arange(orders)
+    return np.asarray((order > 0) & (order % shaft.beside == 0) & (order % shaft.teeth != 0))

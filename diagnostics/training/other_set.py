@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.records.recording import meshes_behind
 from diagnostics.records.state_classes import HEALTHY, class_names
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.training.baselines import FeatureClassifier, state_index
@@ -39,6 +40,12 @@ def check_other_set(dataset: Dataset, other: Dataset) -> None:
             f"--test {other.path}: received a sampling rate of {other.fs_hz:g} Hz; the classifiers were trained at "
             f"{dataset.fs_hz:g} Hz, and indicators of another band are others. Generate it with `fs_hz: "
             f"{dataset.fs_hz:g}`."
+        )
+    meshes = [", ".join(meshes_behind(found)) or "none" for found in (dataset, other)]
+    if meshes[0] != meshes[1]:
+        raise UsageError(
+            f"--test {other.path}: received the further meshes {meshes[1]}; the classifiers take indicators of "
+            f"{meshes[0]}. Generate it with the same names in `stages`."
         )
     known, found = (_states(each) for each in (dataset, other))
     if not found <= known:  # any healthy state belongs to the healthy class, whatever its name

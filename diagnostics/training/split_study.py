@@ -18,6 +18,7 @@ import numpy as np
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.record import record_values
+from diagnostics.records.gear_train import gear_train
 from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.records.state_classes import CLASS, class_names
 from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
@@ -55,10 +56,12 @@ def window_matrix(
     rows: list[dict[str, float]] = []
     labels: list[dict[str, Any]] = []
     for record in recordings(dataset):
-        teeth = (int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"]))
+        train = gear_train(record.labels)
         for window in windows_of(record):
             rows.append(
-                record_values(window.channels, window.tacho_s, window.fs_hz, teeth, None, record.quantities).values
+                record_values(
+                    window.channels, window.tacho_s, window.fs_hz, train[0].teeth, None, record.quantities, train
+                ).values
             )
             labels.append(dict(record.labels))
         if advance:

@@ -1,0 +1,100 @@
+"""Signals of all meshes of a gearbox: each over the angle of its own pinion, averaged over whole turns of its shafts.
+
+Columns of the first mesh have no ending; those of a further mesh end in its name. What has no shaft and no mesh line,
+such as the rms of the record, stands once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnostics.indicators.channel_signals import ChannelSignals
+from diagnostics.indicators.indicator import Indicator, of_mesh
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.gear_train import Mesh
+from diagnostics.signal.order_domain import AngleGrid, angle_grid, shaft_grid
+from diagnostics.signal.shaft_signals import Shaft, record_shafts
+
+FEWEST_TURNS = 8
+"""Of a shaft behind the first mesh: what is not locked to it falls as one over the turns, and all other meshes are."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeshSignals:
+    """One mesh of a record: its shafts, and the signals of every channel over its angle."""
+
+    mesh: Mesh
+    shafts: tuple[Shaft, Shaft]
+    channels: Mapping[str, ChannelSignals]
+
+    def values(self, channel: str, taken: tuple[Indicator, ...]) -> dict[str, float]:
+        """Return the values of a channel by column."""
+        own = taken if not self.mesh.name else tuple(entry for entry in taken if entry.is_of_mesh)
+        return self._named(self.channels[channel].values(own))
+
+    def moments(self, channel: str) -> dict[str, float]:
+        """Return what indicators with a history need of a channel."""
+        return self._named(self.channels[channel].moments())
+
+    def notes(self) -> list[str]:
+        """Return what its shafts leave undefined, and why."""
+        return [shaft.note for shaft in self.shafts if shaft.note]
+
+    def _named(self, found: Mapping[str, float]) -> dict[str, float]:
+        return {of_mesh(name, self.mesh.name): value for name, value in found.items()}
+
+
+def mesh_signals(
+    channels: Mapping[str, np.ndarray],
+    tacho_s: np.ndarray,
+    fs_hz: float,
+    train: tuple[Mesh, ...],
+    settings: IndicatorSettings,
+) -> tuple[MeshSignals, ...]:
+    """Return the signals of every mesh, the first one first.
+
+    Parameters
+    ----------
+    channels : mapping of str to (n,) float64
+        Signals by channel name.
+    tacho_s : (k,) float64
+        Pulse times of the first pinion.
+    fs_hz : float
+        Sampling frequency [Hz].
+    train : tuple of Mesh
+        As of `gear_train`.
+    settings : IndicatorSettings
+        How values are taken.
+    """
+    found = []
+    for mesh in train:
+        grid = _grid(tacho_s, mesh, settings.samples_per_tooth)
+        shafts = _shafts(grid, mesh, settings)
+        signals = {name: ChannelSignals(signal, fs_hz, grid, shafts, settings) for name, signal in channels.items()}
+        found.append(MeshSignals(mesh, shafts, signals))
+    return tuple(found)
+
+
+def _grid(tacho_s: np.ndarray, mesh: Mesh, samples_per_tooth: int) -> AngleGrid | None:
+    if len(tacho_s) < 2:
+        return None
+    steps = mesh.teeth[0] * samples_per_tooth
+    return shaft_grid(tacho_s, steps, mesh.turns) if mesh.name else angle_grid(tacho_s, steps)
+
+
+def _shafts(grid: AngleGrid | None, mesh: Mesh, settings: IndicatorSettings) -> tuple[Shaft, Shaft]:
+    pinion, gear = record_shafts(grid, mesh.teeth, settings.samples_per_tooth, settings.sidebands)
+    if mesh.name:
+        pinion, gear = _behind(pinion, mesh.name), _behind(gear, mesh.name)
+    return replace(pinion, beside=mesh.before), replace(gear, beside=mesh.behind)
+
+
+def _behind(shaft: Shaft, mesh: str) -> Shaft:
+    """Return a shaft of a further mesh, without revolutions where they are too few, with notes that name the mesh."""
+    if shaft.revolutions >= FEWEST_TURNS:
+        return replace(shaft, note=f"mesh {mesh}: {shaft.note}" if shaft.note else "")
+    note = f"mesh {mesh}: all {shaft.name} averages undefined, since they need {FEWEST_TURNS} {shaft.name} revolutions"
+    return replace(shaft, revolutions=0, note=note)

@@ -1,0 +1,110 @@
+"""A set of gearboxes with two meshes by command, each in a process of its own: generated, ranked, trained, looked at.
+
+Slow: eight gearboxes are simulated.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+import yaml
+
+from tests.config.staged import SPALL, staged
+
+pytestmark = pytest.mark.slow
+
+STATES = [
+    {"name": "healthy"},
+    {"name": "behind", "severity": "severe", "damage": {**SPALL, "gear": "slow.pinion", "teeth": 1}},
+]
+
+
+def run(app: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", f"from {app}.cli.app import main; main()", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=500,
+    )
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("two_stages")
+    sensors = [{"name": "lid", "place": "gear_bearing"}]
+    raw = staged(specimens=8, fs_hz=12_800.0, duration_s=1.2, sensors=sensors, states=STATES)
+    (folder / "two.yaml").write_text(yaml.safe_dump(raw), encoding="utf-8")
+    done = run("siggen", "generate", str(folder / "two.yaml"), "--out", str(folder / "set"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def ranked(made: Path) -> pa.Table:
+    done = run("diagnostics", "indicators", str(made / "set"), "--out", str(made / "ranked"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    return pq.read_table(made / "ranked/indicators.parquet")
+
+
+def medians(table: pa.Table, name: str) -> tuple[float, float]:
+    """Return the medians of the healthy and of the damaged records."""
+    states, values = np.array(table.column("state").to_pylist()), table.column(name).to_numpy()
+    return float(np.median(values[states == "healthy"])), float(np.median(values[states == "behind"]))
+
+
+def test_damage_of_the_second_mesh_shows_in_the_sidebands_of_that_mesh(ranked: pa.Table) -> None:
+    """The damaged tooth meets once per turn of its own shaft: sidebands of its mesh line grow, not those of the first.
+
+    Perfect gears without noise: what a healthy record has in sidebands is below a hundredth of the line.
+    """
+    healthy, damaged = medians(ranked, "sideband_ratio_pinion_h1_k3_slow__lid_vertical")
+    assert healthy < 0.01
+    assert damaged > 5.0 * healthy
+    first = medians(ranked, "sideband_ratio_pinion_h1_k3__lid_vertical")
+    assert damaged / healthy > 2.0 * first[1] / first[0]
+
+
+def test_a_slow_gear_of_four_turns_is_undefined_and_the_page_says_so_once(made: Path, ranked: pa.Table) -> None:
+    gear = [name for name in ranked.column_names if re.search(r"_gear.*_slow__", name)]
+    assert len(gear) > 100
+    assert not np.isfinite(np.concatenate([ranked.column(name).to_numpy() for name in gear])).any()
+    page = (made / "ranked/indicators.html").read_text(encoding="utf-8")
+    assert page.count("mesh slow: all gear averages undefined, since they need 8 gear revolutions") == 1
+    assert "pinion, mesh harmonic 1, sidebands 1 to 3, mesh slow" in page
+
+
+def test_classifiers_take_features_of_both_meshes_and_predict_refuses_them(made: Path) -> None:
+    folder = made / "report"
+    done = run("diagnostics", "report", str(made / "set"), "--out", str(folder))
+    assert done.returncode == 0, done.stdout + done.stderr
+    names = json.loads((folder / "models/feature_names.json").read_text(encoding="utf-8"))
+    assert "sideband_ratio_pinion_h1_k3_slow__lid_vertical" in json.dumps(names)
+    assert "around mesh harmonic 1 of mesh slow" in (folder / "report.html").read_text(encoding="utf-8")
+    record = made / "record.csv"
+    record.write_text("lid_vertical\n" + "\n".join(str(k % 7) for k in range(20_000)), encoding="utf-8")
+    told = run("diagnostics", "predict", str(folder), str(record), "--fs", "12800", "--teeth", "18,47")
+    assert told.returncode != 0
+    assert "further meshes slow" in told.stderr
+
+
+def test_audit_explorer_and_calibration_take_the_set_or_say_why_not(made: Path) -> None:
+    for arguments in (("audit", str(made / "set")), ("explore", str(made / "set"), "--out", str(made / "look.html"))):
+        done = run("diagnostics", *arguments)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert "mesh slow" in (made / "look.html").read_text(encoding="utf-8")
+    record = made / "healthy.csv"
+    record.write_text("lid_vertical\n" + "\n".join(str(k % 7) for k in range(20_000)), encoding="utf-8")
+    new = made / "mine.yaml"
+    told = run("diagnostics", "calibrate", str(made / "two.yaml"), str(record), "--fs", "12800", "--out", str(new))
+    assert told.returncode != 0
+    assert "stages: received slow" in told.stderr
+    assert not new.exists()
