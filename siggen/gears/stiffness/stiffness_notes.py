@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import normal_gear
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.body_coupling import outside_coupling
 from siggen.gears.stiffness.calibration import outside_calibration
@@ -41,14 +42,14 @@ def stiffness_notes(pair: GearPair, options: StiffnessOptions) -> tuple[str, ...
     Source: derived; limits of the sources named in this module's docstring.
     """
     return (
-        *_gear_notes("pinion", pair.pinion, options),
-        *_gear_notes("gear", pair.gear, options),
+        *_gear_notes("pinion", normal_gear(pair, "pinion"), options),
+        *_gear_notes("gear", normal_gear(pair, "gear"), options),
         *_pair(pair, options),
     )
 
 
 def _gear_notes(which: str, gear: SpurGear, options: StiffnessOptions) -> Iterator[str]:
-    name = f"{which} ({gear.teeth} teeth)"
+    name = f"{which} ({gear.teeth:.4g} teeth)"
     if options.beam == "calibrated":
         # The factor was made against the extrapolated foundation, so the fit range is no limit of the product.
         for sentence in outside_calibration(gear):
