@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow.csv
+import pytest
 import yaml
 from typer.testing import CliRunner
 
@@ -33,12 +34,12 @@ def curve(config: Path, helix_deg: float) -> np.ndarray:
     return pyarrow.csv.read_csv(table)["healthy_n_per_m"].to_numpy()[400:801]
 
 
+@pytest.mark.slow  # three curves of the contact across the face
 def test_a_vanishing_helix_is_the_spur_pair_and_a_real_one_is_more_even(tmp_path: Path) -> None:
     config = healthy_set(tmp_path)
-    spur, near, left, right = (curve(config, helix) for helix in (0.0, 0.001, -15.0, 15.0))
+    spur, near, right = (curve(config, helix) for helix in (0.0, 0.001, 15.0))
     # 0.001° moves the ends of the face by 0.3 µm of the path; where a pair enters the curve is steep.
     assert np.abs(near / spur - 1.0).mean() < 1e-4
-    assert np.allclose(left, right, rtol=1e-6)  # the hand is a mirror of the face
     assert np.ptp(right) < 0.6 * np.ptp(spur)
     assert 0.9 < right.mean() / spur.mean() < 1.0
 
@@ -46,6 +47,6 @@ def test_a_vanishing_helix_is_the_spur_pair_and_a_real_one_is_more_even(tmp_path
 def test_what_helical_teeth_cannot_do_yet_is_refused_by_its_path() -> None:
     result = runner.invoke(app, ["inspect", "tvms", "quickstart", "--set", "gears.helix_deg=15", "--out", "never.csv"])
     assert result.exit_code != 0
-    told = " ".join(result.output.split())
+    told = " ".join(f"{result.output} {result.exception}".split())
     for path in ("dynamics.friction.model", "dynamics.shafts", "manufacture", "states."):
         assert path in told

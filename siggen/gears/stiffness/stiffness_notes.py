@@ -7,6 +7,7 @@ out or invents; contact width against tooth thickness).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import tan
 
 import numpy as np
 
@@ -45,6 +46,7 @@ def stiffness_notes(pair: GearPair, options: StiffnessOptions) -> tuple[str, ...
         *_gear_notes("pinion", normal_gear(pair, "pinion"), options),
         *_gear_notes("gear", normal_gear(pair, "gear"), options),
         *_pair(pair, options),
+        *_helix(pair),
     )
 
 
@@ -89,6 +91,15 @@ def _pair(pair: GearPair, options: StiffnessOptions) -> Iterator[str]:
                 f"pair: at {options.hertz_force_n:g} N the contact is {ratio:.2g} of the tooth's half thickness wide "
                 f"(half width); weber_banaschek holds up to {WIDE_CONTACT:g}"
             )
+
+
+def _helix(pair: GearPair) -> Iterator[str]:
+    if pair.helix_rad != 0.0:
+        total = pair.contact_ratio + pair.overlap_ratio
+        yield (
+            f"pair: helical teeth of overlap ratio {pair.overlap_ratio:.3g}, total contact ratio {total:.3g}; the "
+            f"axial force, {abs(tan(pair.helix_rad)):.3g} of the tangential one on the pitch circle, moves no shaft"
+        )
 
 
 def _widest_contact(pair: GearPair, force_n: float) -> float:
