@@ -118,7 +118,7 @@ def delivered_error(case: RecordCase, gearbox: int) -> DeliveredError:
 def _solver(case: RecordCase, gearbox: int) -> tuple[TableSolver, list[KindRow]]:
     """Return the solver with the record's lead, and all kinds of its pairs."""
     pair, damage, teeth = case.state.pair, case.state.damage, case.state.options
-    options = face_options(case.specimen.dynamics, largest_force_n(case.config.operating_points, pair))
+    options = face_options(case.specimen.dynamics, largest_force_n(case.config.operating_points, pair), pair)
     errors = specimen_errors(case.config, pair, gearbox, case.state_id)
     slices = face_slices(pair, options)
     lead = np.zeros(slices) if errors is None or errors.even else errors.lead_m(slices)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
 from siggen.config.states import SEVERITIES, State
@@ -37,6 +38,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _sensors_beside,
         _sensor_turns,
         _mesh_law,
+        helical_problems,
         _flank_shapes,
         _manufacture,
         _forces_at_bearings,

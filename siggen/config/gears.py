@@ -32,6 +32,11 @@ class Pair(Section):
     pressure_angle_deg: Annotated[Number, Within(least=10, most=35)] = Field(
         default=20.0, description="generating pressure angle"
     )
+    helix_deg: Annotated[Number, Within(least=-45, most=45)] = Field(
+        default=0.0,
+        description="helix angle on the pitch cylinder, positive: right-handed pinion; modules, coefficients and "
+        "pressure angle stay those of the normal section",
+    )
     face_width_mm: Annotated[Number, Within(above=0)] = Field(description="width of the teeth in contact")
     youngs_modulus_gpa: Annotated[Number, Within(above=0)] = Field(
         default=206.0, description="Young's modulus of both gears"

@@ -50,6 +50,13 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
         yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {beside}")
     if "gears" in sections and sections["gears"].pairs:
         yield Problem("gears.pairs", f"{len(sections['gears'].pairs)} pairs", f"allowed: none {beside}")
+    pairs = {
+        "gears": sections.get("gears"),
+        **{f"stages.{i}.gears": one.gears for i, one in enumerate(sections["stages"])},
+    }
+    for where, pair in pairs.items():
+        if pair is not None and bounds(pair.helix_deg) != (0.0, 0.0):
+            yield Problem(f"{where}.helix_deg", str(pair.helix_deg), f"allowed: 0 {beside}")
     for which in ("pinion", "gear"):
         if getattr(dynamics, which).bearing is not None:
             yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null {beside}")

@@ -14,10 +14,14 @@ from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import TipRelief
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.number import bounds, constant
+
+RELIEF_LENGTH = 0.25
+"""Length of the tip relief along the line of action, in base pitches (assumed)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,22 +62,28 @@ def tooth_tables(
     ValueError
         If the stiffness model does not know such damage.
     """
-    along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    along = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
     coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
     if not solves_across_the_face(dynamics):
         return ToothTables(mesh_tables(pair, damage, options, points=points), coupling)
-    face = face_options(dynamics, largest_force_n)
+    face = face_options(dynamics, largest_force_n, pair)
     lead = None if lead_m is None else lead_m(face_slices(pair, face))
     table = contact_table(pair, damage, options, face, points, lead)
     return ToothTables(whole_face(pair, damage, options, points), coupling, table)
 
 
-def face_options(dynamics: Dynamics, largest_force_n: float) -> TableOptions:
+def face_options(dynamics: Dynamics, largest_force_n: float, pair: GearPair) -> TableOptions:
     """Return how the contact of a drawn `dynamics` section is tabulated across the face, up to a force [N]."""
     return TableOptions(
         largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
         section_loss=dynamics.mesh.damage == "all", tilts=dynamics.shafts is not None,
+        relief=tip_relief(dynamics, pair) if pair.helix_rad != 0.0 else None,
     )  # fmt: skip
+
+
+def tip_relief(dynamics: Dynamics, pair: GearPair) -> TipRelief:
+    """Return the relief of a drawn `dynamics` section."""
+    return TipRelief(1e-6 * constant(dynamics.mesh.tip_relief_um), RELIEF_LENGTH * pair.base_pitch_m)
 
 
 def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:

@@ -6,6 +6,7 @@ import math
 
 from siggen.config import Config, Pair, Stiffness, Wheel
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.geometry.helical import transverse_gear
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.drawing import corners
@@ -28,6 +29,7 @@ def gear_pair(gears: Pair) -> GearPair:
         youngs_modulus_pa=constant(gears.youngs_modulus_gpa) * 1e9,
         poisson_ratio=constant(gears.poisson_ratio),
         centre_distance_m=None if distance_mm is None else constant(distance_mm) / 1e3,
+        helix_rad=math.radians(constant(gears.helix_deg)),
     )
 
 
@@ -44,7 +46,7 @@ def model_notes(config: Config) -> tuple[str, ...]:
 
 
 def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
-    return SpurGear(
+    normal = SpurGear(
         teeth=wheel.teeth,
         module_m=constant(gears.module_mm) / 1e3,
         pressure_angle_rad=math.radians(constant(gears.pressure_angle_deg)),
@@ -53,3 +55,4 @@ def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
         clearance_coefficient=constant(gears.clearance_coefficient),
         bore_radius_m=constant(wheel.bore_radius_mm) / 1e3,
     )
+    return transverse_gear(normal, math.radians(constant(gears.helix_deg)))

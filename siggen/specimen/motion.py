@@ -28,19 +28,16 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import (
     CORNER_REACH_PITCHES,
     MissingMaterial,
-    TipRelief,
     missing_material,
 )
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 from siggen.planning.stages import stage_point
-from siggen.specimen.contact import solves_across_the_face
+from siggen.specimen.contact import solves_across_the_face, tip_relief
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh, specimen_friction
 
-RELIEF_LENGTH = 0.25
-"""Length of the tip relief along the line of action, in base pitches (assumed)."""
 FILM_VISCOSITY_PA_S = 0.112
 """Of the squeezed film: ISO VG 220 at 50 °C."""
 FILM_FLOOR_M = 0.8e-6
@@ -117,9 +114,7 @@ def teeth_missing(
     dynamics: Dynamics, pair: GearPair, points: int, reach_pitches: float = CORNER_REACH_PITCHES
 ) -> MissingMaterial:
     """Return the missing material of the teeth of a drawn `dynamics` section; corners are followed for a reach."""
-    mesh = dynamics.mesh
-    relief = TipRelief(1e-6 * constant(mesh.tip_relief_um), RELIEF_LENGTH * pair.base_pitch_m)
-    return missing_material(pair, relief, points=points, reach_pitches=reach_pitches)
+    return missing_material(pair, tip_relief(dynamics, pair), points=points, reach_pitches=reach_pitches)
 
 
 def specimen_motion(

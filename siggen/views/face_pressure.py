@@ -154,7 +154,7 @@ def _solved(
 ) -> FacePressure:
     gear, tooth, number = looked_at
     pair, specimen = state.pair, draw_specimen(config, record.specimen_id)
-    options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair))
+    options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair), pair)
     errors = specimen_errors(config, pair, record.specimen_id, record.state_id)
     slices = face_slices(pair, options)
     lead = np.zeros(slices) if errors is None else errors.lead_m(slices)

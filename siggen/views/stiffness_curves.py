@@ -153,7 +153,7 @@ def _as_simulated(
             "across the face end: three times the largest torque of the set, or 1.4 GPa on steel"
         )
     stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
-    position = pair.contact_start_m + pair.pinion.base_radius_m * angle
+    position = pair.engagement_start_m + pair.pinion.base_radius_m * angle
     energy = curve.mesh_stiffness_n_per_m
     found = simulated_contact(state.static, contact, state.damage, engagement, position, energy, torque_nm)
     teeth = {name: value for name, value in curve.parts_m_per_n.items() if name != "contact"}
@@ -178,8 +178,8 @@ def _parts(
 
     With `open_face` the contact's may be infinite: damage through the face leaves none.
     """
-    position = pair.contact_start_m + pair.pinion.base_radius_m * angle
-    inside = (angle >= 0.0) & (position <= pair.contact_end_m)
+    position = pair.engagement_start_m + pair.pinion.base_radius_m * angle
+    inside = (angle >= 0.0) & (position >= pair.contact_start_m) & (position <= pair.contact_end_m)
     on_pinion = pits_of(damage, "pinion", engagement % pair.pinion.teeth)
     on_gear = pits_of(damage, "gear", engagement % pair.gear.teeth)
     found = pair_compliance(pair, position[inside], options, on_pinion, on_gear, through_face=open_face)

@@ -71,7 +71,7 @@ def worst_contact_table_error(
     config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
     pair, teeth = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
-    options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair))
+    options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair), pair)
     force_n = mean_force_n(pair, draw_operating_point(config, specimen_id, 0))
     milder = {config.grown_from(index) for index in range(len(config.states))}
     drawn = {i: on_teeth(state_damage(config, specimen_id, pair, i)) for i in range(len(config.states))}

@@ -49,7 +49,8 @@ def mesh_law(tables: MeshTables, damping_n_s_per_m: float, backlash_m: float) ->
         if not (np.isfinite(value) and value >= 0.0):
             raise ValueError(f"{name}: received {value}; allowed are finite values from 0")
     stiffness = read_only(tables.contributions_n_per_m, np.float64)
-    if not (np.isfinite(stiffness).all() and (stiffness > 0.0).all()):
+    # A pair of helical teeth begins and ends with nothing.
+    if not (np.isfinite(stiffness).all() and (stiffness >= 0.0).all() and (stiffness[:, 1:-1] > 0.0).all()):
         raise ValueError(f"pair stiffness: received minimum {stiffness.min()} N/m; allowed are finite values above 0")
     length = tables.end_m - tables.start_m
     return MeshLaw(

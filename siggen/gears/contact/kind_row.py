@@ -11,12 +11,14 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
+from siggen.gears.contact.helical_slices import helical_gaps, helical_missing_m, helical_rest
 from siggen.gears.contact.pair_rest import PairRest, pair_rest
 from siggen.gears.contact.table_options import TableOptions, face_slices, half_width, reference_force_n
 from siggen.gears.damage.flank_chords import FlankChords, flank_chords
 from siggen.gears.damage.part_chip import standing_share
 from siggen.gears.damage.tooth_damage import Damage, acts_unevenly, goes_through, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import carrying_middle_m, slice_shifts_m
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -29,7 +31,8 @@ class KindRow(NamedTuple):
     """One kind of pair on the fine grid (points,): positions, gaps, compliance of all but the contact, radius of edges.
 
     `gaps` are those of the points from `first` on, `elsewhere` those of the healthy pair at all points; `edge_radius_m`
-    is the mean of those that the damage of both teeth states, or else that of the options.
+    is the mean of those that the damage of both teeth states, or else that of the options. Of a helical pair
+    `position_m` is where the middle of the face is, `slice_missing_m` (points, n) what slices miss beside the lead.
     """
 
     position_m: FloatArray
@@ -38,6 +41,11 @@ class KindRow(NamedTuple):
     elsewhere: FaceGaps
     rest: PairRest
     edge_radius_m: float
+    slice_missing_m: FloatArray | None = None
+
+    def lead_at(self, chosen: IntArray, lead_m: FloatArray) -> FloatArray:
+        """Return what slices miss at fine points (chosen, n), or (n,) where it is the same at all [m]."""
+        return lead_m if self.slice_missing_m is None else self.slice_missing_m[chosen] + lead_m
 
     def gaps_at(self, chosen: IntArray) -> FaceGaps:
         """Return the gaps at fine points (chosen,)."""
@@ -65,6 +73,8 @@ def kind_row(
     healthy: KindRow | None = None,
 ) -> KindRow:
     """Return one kind of pair on a grid of points from s_A to s_E; without `healthy` its gaps are found everywhere."""
+    if pair.helix_rad != 0.0:
+        return _helical_row(pair, stiffness, options, points)
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     rolls, flanks = rolls_at(pair, position), ("pinion", "gear")
     slices = face_slices(pair, options)
@@ -86,6 +96,14 @@ def kind_row(
     window = slice(0, points) if healthy is None else _window(pair, chords, position)
     gaps = face_gaps(pair, chords[0], chords[1], position[window])
     return KindRow(position, gaps, window.start, gaps if healthy is None else healthy.elsewhere, rest, edge_radius)
+
+
+def _helical_row(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, points: int) -> KindRow:
+    """Return the row of healthy helical teeth."""
+    position = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
+    place = position[:, np.newaxis] + slice_shifts_m(pair, face_slices(pair, options))
+    gaps, missing = helical_gaps(pair, place), helical_missing_m(pair, place, options.relief)
+    return KindRow(position, gaps, 0, gaps, helical_rest(pair, place, stiffness), options.edge_radius_m, missing)
 
 
 def _rest(
@@ -136,7 +154,10 @@ def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
 
 def first_touch(pair: GearPair, row: KindRow, chosen: IntArray, lead_m: FloatArray) -> FloatArray:
     """Return the least rigid sink of all slices, missing material across the face included (chosen,) [m]."""
-    return _least_sink(pair, row.position_m[chosen], row.gaps_at(chosen), row.edge_radius_m, lead_m)
+    lead = row.lead_at(chosen, lead_m)
+    return _least_sink(
+        pair, carrying_middle_m(pair, row.position_m[chosen]), row.gaps_at(chosen), row.edge_radius_m, lead
+    )
 
 
 def touch_along(pair: GearPair, row: KindRow, healthy_m: FloatArray, lead_m: FloatArray) -> FloatArray:

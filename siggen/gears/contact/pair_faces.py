@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import pi
+from math import cos, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -33,8 +33,8 @@ class FaceOptions(NamedTuple):
 
 
 def contact_kappa(pair: GearPair) -> float:
-    """Return κ = 2/(π E*) = 4 (1 - ν²)/(π E) of two gears of one material [1/Pa]."""
-    return 4.0 * (1.0 - pair.poisson_ratio**2) / (pi * pair.youngs_modulus_pa)
+    """Return κ = 2/(π E*) = 4 (1 - ν²)/(π E) of gears of one material [1/Pa]; over cos β_b in the transverse plane."""
+    return 4.0 * (1.0 - pair.poisson_ratio**2) / (pi * pair.youngs_modulus_pa) / cos(pair.base_helix_rad)
 
 
 def pair_faces(
@@ -56,7 +56,7 @@ def pair_faces(
     rest : PairRest
         Compliance of the pair without its contact, (k,).
     options : FaceOptions
-    lead_m : (n,) or None
+    lead_m : (n,), (k, n) or None
         Missing material across the face, of any sign; None: none.
 
     Raises
@@ -70,9 +70,9 @@ def pair_faces(
             f"gaps at {gaps.left_m.shape[0]} and compliances at {rest.rigid_m_per_n.size} positions; "
             f"allowed: as many as positions ({position_m.size})"
         )
-    lead = np.zeros(count) if lead_m is None else np.ascontiguousarray(lead_m, dtype=np.float64)
-    if lead.shape != (count,):
-        raise ValueError(f"lead_m: received shape {lead.shape}; allowed: ({count},), one for each slice")
+    leads = np.zeros(count) if lead_m is None else np.ascontiguousarray(lead_m, dtype=np.float64)
+    if leads.shape not in ((count,), (position_m.size, count)):
+        raise ValueError(f"lead_m: received shape {leads.shape}; allowed: ({count},), one for each slice")
     cell = pair.face_width_m / count
     face = cell * (np.arange(count) + 0.5) - 0.5 * pair.face_width_m
     rolls = {"pinion": position_m / pair.pinion.base_radius_m}
@@ -88,6 +88,7 @@ def pair_faces(
     for i in range(position_m.size):
         here = FaceGaps(*(np.ascontiguousarray(array[i]) for array in gaps))
         load = kappa * options.line_load_n_per_m
+        lead = leads if leads.ndim == 1 else leads[i]
         slices = FaceSlices(
             left_m=here.left_m,
             right_m=here.right_m,

@@ -14,7 +14,7 @@ single gears tilt errs by up to 21 %, the other way on either.
 
 from __future__ import annotations
 
-from math import exp, sinh
+from math import cos, exp, sinh
 from typing import NamedTuple
 
 import numpy as np
@@ -98,5 +98,5 @@ def strip_factor(pair: GearPair, share: float) -> float:
 
 def bending_length_m(pair: GearPair) -> float:
     """Return the length across the face over which teeth bend together [m]."""
-    module = pair.pinion.module_m
+    module = pair.pinion.module_m * cos(pair.helix_rad)
     return WIDE_MODULES * module * (1.0 - exp(-pair.face_width_m / (NARROW_MODULES * module)))

@@ -19,6 +19,7 @@ from siggen.gears.contact.pair_faces import FaceOptions, contact_kappa, pair_fac
 from siggen.gears.contact.table_options import TableOptions, half_width, reference_force_n
 from siggen.gears.contact.tilt_rays import RAYS, UPRIGHT, along_ray, ray_way
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import carrying_middle_m
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.hertz import centre_line_depth
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
@@ -84,10 +85,10 @@ def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceS
     return pair_faces(
         solver.pair,
         row.gaps_at(chosen),
-        row.position_m[chosen],
+        carrying_middle_m(solver.pair, row.position_m[chosen]),
         row.rest.at(chosen),
         FaceOptions(typical, row.edge_radius_m, options.coupled),
-        solver.lead_m,
+        row.lead_at(chosen, solver.lead_m),
     )
 
 

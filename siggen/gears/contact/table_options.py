@@ -8,6 +8,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import TipRelief
 from siggen.gears.stiffness.hertz import contact_half_width
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 
@@ -27,7 +28,7 @@ class TableOptions(NamedTuple):
     `cell_widths`: width of a slice in Hertz half widths of the reference force; `nodes`: approaches up to that of the
     reference force; `healthy_columns`; `finest`: intervals of the fine grid below which columns are not refined;
     `section_loss`: whether damage also weakens the tooth's sections; `coupled`: whether slices feel each other;
-    `tilts`: whether gears do.
+    `tilts`: whether gears do; `relief`: of helical teeth, whose slices meet it one after the other.
 
     All but the last nodes follow from the pair alone, so that no load moves the numbers of a smaller one.
     """
@@ -41,6 +42,7 @@ class TableOptions(NamedTuple):
     section_loss: bool = False
     coupled: bool = True
     tilts: bool = False
+    relief: TipRelief | None = None
 
 
 def reference_force_n(pair: GearPair) -> float:

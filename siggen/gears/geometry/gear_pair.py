@@ -1,15 +1,15 @@
-"""A pair of spur gears in mesh, and what makes a pair impossible.
+"""A pair of spur or helical gears in mesh, and what makes a pair impossible.
 
 Equations: reference, standard literature (involute gearing; ISO 21771). Positions s along the line of action count
 from the pinion's base tangent point, so that the roll angles of the two flanks at the contact are s/R_b1 and (T -
-s)/R_b2.
+s)/R_b2. The gears are those of the transverse plane; a helix turns their sections across the face (`helical`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import acos, cos, isfinite, pi, radians, tan
+from math import acos, atan, cos, isfinite, pi, radians, tan
 
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -34,6 +34,8 @@ class GearPair:
     poisson_ratio : float
     centre_distance_m : float or None
         Working centre distance [m]; None for the one without backlash.
+    helix_rad : float
+        Helix angle on the generating pitch cylinder, positive where the pinion is right-handed [rad].
     """
 
     pinion: SpurGear
@@ -42,6 +44,7 @@ class GearPair:
     youngs_modulus_pa: float
     poisson_ratio: float
     centre_distance_m: float | None = None
+    helix_rad: float = 0.0
 
     @property
     def tight_pressure_angle_rad(self) -> float:
@@ -97,6 +100,31 @@ class GearPair:
     def contact_ratio(self) -> float:
         """Transverse contact ratio (s_E - s_A)/p_b."""
         return (self.contact_end_m - self.contact_start_m) / self.base_pitch_m
+
+    @property
+    def base_helix_rad(self) -> float:
+        """Helix angle on the base cylinder, tan(beta_b) = tan(beta) cos(alpha_t) [rad]."""
+        return atan(tan(self.helix_rad) * cos(self.pinion.pressure_angle_rad))
+
+    @property
+    def face_travel_m(self) -> float:
+        """How far the contact of one end of the face is ahead of the other's, L |tan(beta_b)| [m]."""
+        return self.face_width_m * abs(tan(self.base_helix_rad))
+
+    @property
+    def overlap_ratio(self) -> float:
+        """Overlap ratio, the part of the total contact ratio that the helix adds."""
+        return self.face_travel_m / self.base_pitch_m
+
+    @property
+    def engagement_start_m(self) -> float:
+        """Position of the middle of the face where the first end of the face enters contact; s_A of spur gears [m]."""
+        return self.contact_start_m - 0.5 * self.face_travel_m
+
+    @property
+    def engagement_end_m(self) -> float:
+        """Position of the middle of the face where the last end of the face leaves contact; s_E of spur gears [m]."""
+        return self.contact_end_m + 0.5 * self.face_travel_m
 
     @property
     def active_flank(self) -> tuple[tuple[float, float], tuple[float, float]]:

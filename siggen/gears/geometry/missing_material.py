@@ -61,6 +61,8 @@ def missing_material(
 ) -> MissingMaterial:
     """Return the missing material of gears whose teeth are all alike.
 
+    Of a helical pair positions are those of the middle of the face, and only what all slices miss is in the tables.
+
     Without corner contact the tables end with the path of contact: a pair that enters is loaded at once. With it they
     reach `reach_pitches` base pitches further at both ends.
 
@@ -75,10 +77,19 @@ def missing_material(
         allowed = f"allowed are amounts from 0 and lengths above 0 up to a base pitch, {pair.base_pitch_m:.6g} m"
         raise ValueError(f"tip relief: received {relief.amount_m} m over {relief.length_m} m; {allowed}")
     reach_m = reach_pitches * pair.base_pitch_m if corner_contact else 0.0
-    start_m, end_m = pair.contact_start_m - reach_m, pair.contact_end_m + reach_m
+    start_m, end_m = pair.engagement_start_m - reach_m, pair.engagement_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)
+    if pair.helix_rad != 0.0:
+        relief, position_m = None, _of_nearest_end(pair, position_m)
     pinion, gear = (_teeth(pair, which, relief, position_m) for which in ("pinion", "gear"))
     return MissingMaterial(start_m, end_m, pinion, gear)
+
+
+def _of_nearest_end(pair: GearPair, position_m: FloatArray) -> FloatArray:
+    """Return where that part of the face is which is nearest to the path of contact; slices miss what they do alone."""
+    half = 0.5 * pair.face_travel_m
+    middle = np.clip(position_m, pair.contact_start_m, pair.contact_end_m)
+    return position_m + np.clip(middle - position_m, -half, half)
 
 
 def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:

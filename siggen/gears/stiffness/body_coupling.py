@@ -20,6 +20,7 @@ from numpy.polynomial import chebyshev
 
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import carrying_middle_m
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, unit_coordinates
@@ -49,17 +50,18 @@ def body_coupling(pair: GearPair, options: StiffnessOptions, position_m: FloatAr
 
     Source: derived, see this module.
     """
-    apart = max(1, floor(pair.contact_ratio + 2.0 * CORNER_REACH_PITCHES))
+    apart = max(1, floor(pair.contact_ratio + pair.overlap_ratio + 2.0 * CORNER_REACH_PITCHES))
     position = np.asarray(position_m, dtype=np.float64)
     out = np.zeros((apart, position.size))
     if options.coupling == "none":
         return out
     scale = pair.youngs_modulus_pa * pair.face_width_m
+    behind = carrying_middle_m(pair, position)
     for row in range(apart):
-        ahead = position + (row + 1) * pair.base_pitch_m
+        ahead = carrying_middle_m(pair, position + (row + 1) * pair.base_pitch_m)
         # The pair that entered later is nearer the pinion's root and nearer the gear's tip.
         on_gear = (pair.line_of_action_m - ahead) / pair.gear.base_radius_m
-        both = neighbour_compliance(pair.pinion, position / pair.pinion.base_radius_m, row + 1, pair.poisson_ratio)
+        both = neighbour_compliance(pair.pinion, behind / pair.pinion.base_radius_m, row + 1, pair.poisson_ratio)
         both = both + neighbour_compliance(pair.gear, on_gear, row + 1, pair.poisson_ratio)
         out[row] = both / scale
     return out

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
+from math import cos
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +27,7 @@ from siggen.gears.damage.kinks import section_kinks
 from siggen.gears.damage.tooth_damage import Damage, ToothDamage, goes_through
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import normal_pair, normal_rolls
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.beams import beam_integrals, first_roll
 from siggen.gears.stiffness.calibration import calibration_factor
@@ -85,12 +87,28 @@ def tooth_compliances(
     pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
 ) -> list[ToothCompliance]:
     """Return `tooth_compliance` of several teeth of one gear by their pits: what all share is computed once."""
+    if pair.helix_rad != 0.0:
+        return _in_normal_section(pair, which, roll, options, teeth)
     gear = pair.member(which)
     damages = [tuple(pits) for pits in teeth]
     angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
     arms = _arms(gear, angles)
     healthy = _healthy(pair, gear, angles, arms, options)
     return [_damaged(pair, gear, angles, arms, options, pits, healthy) for pits in damages]
+
+
+def _in_normal_section(
+    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
+) -> list[ToothCompliance]:
+    """Return the compliances of helical teeth in the transverse plane from those of their normal section."""
+    normal, share = normal_pair(pair), cos(pair.base_helix_rad) ** 2
+    first = first_roll(normal.member(which), options.shape)
+    rolls = np.maximum(normal_rolls(pair, which, np.atleast_1d(np.asarray(roll, dtype=np.float64))), first)
+    found = tooth_compliances(normal, which, rolls, options, teeth)
+    return [
+        ToothCompliance(one.bending / share, one.shear / share, one.axial / share, one.foundation / share)
+        for one in found
+    ]
 
 
 def _healthy(

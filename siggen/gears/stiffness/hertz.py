@@ -20,7 +20,7 @@ and state.
 
 from __future__ import annotations
 
-from math import pi
+from math import cos, pi
 
 import numpy as np
 
@@ -108,4 +108,5 @@ def centre_line_depth(pair: GearPair, which: str, roll: FloatArray) -> FloatArra
 
 
 def _plane_modulus(pair: GearPair) -> float:
-    return pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
+    # Of a helical pair length and force are those of the transverse plane: see `helical`.
+    return pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2) * cos(pair.base_helix_rad)

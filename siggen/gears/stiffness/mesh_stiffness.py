@@ -20,6 +20,7 @@ from siggen.gears.damage.union import lengths_covered
 from siggen.gears.damage.whole_loss import WHOLE_FACE
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import slice_shifts_m
 from siggen.gears.stiffness.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
 from siggen.gears.stiffness.coupled_pairs import coupled_sum
 from siggen.gears.stiffness.hertz import linear_compliance, weber_banaschek_compliance
@@ -37,6 +38,8 @@ __all__ = [
 ]
 
 
+SLICES = 41
+"""Of a helical face, for the curve over the angle; tables take the mean over the face itself."""
 LINEAR = StiffnessOptions()
 """The options of a contact that does not depend on the force."""
 
@@ -220,6 +223,19 @@ def mesh_stiffness(
     angle = np.atleast_1d(np.asarray(angle_rad, dtype=np.float64))
     if not np.all(np.isfinite(angle)):
         raise ValueError("angle_rad holds values that are not finite; allowed: finite angles")
+    if pair.helix_rad == 0.0:
+        return _of_sections(pair, angle, options, damage, through_face=through_face)
+    # Slices of a helical face are ahead of each other, and do not act on each other here.
+    ahead = pair.engagement_start_m - pair.contact_start_m + slice_shifts_m(pair, SLICES)
+    turned = (angle[:, np.newaxis] + ahead / pair.pinion.base_radius_m).ravel()
+    found = _of_sections(pair, turned, options, damage, through_face=through_face)
+    return np.asarray(found.reshape(angle.size, SLICES).mean(axis=1))
+
+
+def _of_sections(
+    pair: GearPair, angle: FloatArray, options: StiffnessOptions, damage: Damage, *, through_face: bool
+) -> FloatArray:
+    """Return the mesh stiffness of teeth whose sections are all at one place of the path (k,) [N/m]."""
     index, count, position = pairs_in_contact(pair, angle)
     pinion_bad, gear_bad = damaged_teeth(damage, "pinion"), damaged_teeth(damage, "gear")
     pinion_tooth, gear_tooth = count % pair.pinion.teeth, count % pair.gear.teeth

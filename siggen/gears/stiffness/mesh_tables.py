@@ -19,6 +19,7 @@ from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.row_columns import HEIGHT, HIGHEST, LOWEST
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import mean_over_face
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.compliance import tooth_compliances
 from siggen.gears.stiffness.coupled_pairs import approach_forces
@@ -98,15 +99,27 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
     rows = table_of_pair(pair, kinds)
     alone = kind_stiffness(pair, damage, options, kinds, position)
     coupled = None if options.coupling == "none" else _coupled(pair, damage, options, rows, position, alone)
+    if pair.helix_rad != 0.0:
+        alone, coupled = mean_over_face(pair, alone), _over_face(pair, options, coupled, points)
     return MeshTables(
-        start_m=pair.contact_start_m,
-        end_m=pair.contact_end_m,
-        step_m=(pair.contact_end_m - pair.contact_start_m) / (points - 1),
+        start_m=pair.engagement_start_m,
+        end_m=pair.engagement_end_m,
+        step_m=(pair.engagement_end_m - pair.engagement_start_m) / (points - 1),
         base_pitch_m=pair.base_pitch_m,
         pair_stiffness_n_per_m=alone,
         table_of_pair=rows,
         coupled=coupled,
     )
+
+
+def _over_face(
+    pair: GearPair, options: StiffnessOptions, slices: CoupledRows | None, points: int
+) -> CoupledRows | None:
+    if slices is None:
+        return None
+    position = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
+    stiffness = mean_over_face(pair, slices.stiffness_n_per_m)
+    return CoupledRows(stiffness, slices.row_of_pair, body_coupling(pair, options, position))
 
 
 def _coupled(

@@ -7,10 +7,12 @@ out or invents; contact width against tooth thickness).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import tan
 
 import numpy as np
 
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import normal_gear
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.body_coupling import outside_coupling
 from siggen.gears.stiffness.calibration import outside_calibration
@@ -41,14 +43,15 @@ def stiffness_notes(pair: GearPair, options: StiffnessOptions) -> tuple[str, ...
     Source: derived; limits of the sources named in this module's docstring.
     """
     return (
-        *_gear_notes("pinion", pair.pinion, options),
-        *_gear_notes("gear", pair.gear, options),
+        *_gear_notes("pinion", normal_gear(pair, "pinion"), options),
+        *_gear_notes("gear", normal_gear(pair, "gear"), options),
         *_pair(pair, options),
+        *_helix(pair),
     )
 
 
 def _gear_notes(which: str, gear: SpurGear, options: StiffnessOptions) -> Iterator[str]:
-    name = f"{which} ({gear.teeth} teeth)"
+    name = f"{which} ({gear.teeth:.4g} teeth)"
     if options.beam == "calibrated":
         # The factor was made against the extrapolated foundation, so the fit range is no limit of the product.
         for sentence in outside_calibration(gear):
@@ -88,6 +91,15 @@ def _pair(pair: GearPair, options: StiffnessOptions) -> Iterator[str]:
                 f"pair: at {options.hertz_force_n:g} N the contact is {ratio:.2g} of the tooth's half thickness wide "
                 f"(half width); weber_banaschek holds up to {WIDE_CONTACT:g}"
             )
+
+
+def _helix(pair: GearPair) -> Iterator[str]:
+    if pair.helix_rad != 0.0:
+        total = pair.contact_ratio + pair.overlap_ratio
+        yield (
+            f"pair: helical teeth of overlap ratio {pair.overlap_ratio:.3g}, total contact ratio {total:.3g}; the "
+            f"axial force, {abs(tan(pair.helix_rad)):.3g} of the tangential one on the pitch circle, moves no shaft"
+        )
 
 
 def _widest_contact(pair: GearPair, force_n: float) -> float:

@@ -1,0 +1,36 @@
+"""What helical teeth do not go with; each is refused where it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from siggen.errors import Problem
+from siggen.keys.number import bounds
+
+SPUR = "or gears.helix_deg: 0"
+
+
+def helical_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield what helical teeth are asked for that only spur teeth can do."""
+    if "gears" not in sections or bounds(sections["gears"].helix_deg) == (0.0, 0.0):
+        return
+    if "dynamics" in sections:
+        yield from _of_dynamics(sections["dynamics"])
+    if sections.get("manufacture") is not None:
+        yield Problem("manufacture", "errors of single teeth", f"allowed: null with helical teeth; {SPUR}")
+    for index, state in sections.get("states", {}).items():
+        for where, one in state.placed(f"states.{index}"):
+            allowed = f"allowed: healthy with helical teeth, whose contact lines cross damage aslant; {SPUR}"
+            yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
+
+
+def _of_dynamics(dynamics: Any) -> Iterator[Problem]:
+    if dynamics.mesh.law == "pairs" and dynamics.friction.model != "off":
+        allowed = f"allowed: off with helical teeth, whose slices slide at different speeds; {SPUR}"
+        yield Problem("dynamics.friction.model", f"'{dynamics.friction.model}'", allowed)
+    if dynamics.mesh.squeeze_film != "off":
+        yield Problem("dynamics.mesh.squeeze_film", "'on'", f"allowed: off with helical teeth; {SPUR}")
+    if dynamics.shafts is not None:
+        allowed = f"allowed: null with helical teeth, whose axial force would tilt the gears too; {SPUR}"
+        yield Problem("dynamics.shafts", "shafts that bend", allowed)

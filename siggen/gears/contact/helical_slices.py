@@ -1,0 +1,65 @@
+"""Slices of healthy helical teeth: what each meets and how its teeth give way, at its own place on the path.
+
+A slice beside the path of contact is that at the end of the path, and misses what the corner of the tip leaves there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
+from siggen.gears.contact.pair_rest import PairRest, bending_length_m
+from siggen.gears.contact.uneven_teeth import UnevenTeeth
+from siggen.gears.damage.flank_chords import flank_chords
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import TipRelief, missing_material
+from siggen.gears.stiffness.body_coupling import ring_torsion
+from siggen.gears.stiffness.compliance import tooth_compliance
+from siggen.gears.stiffness.mesh_stiffness import rolls_at
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+
+POINTS = 2049
+"""Of curves over the path that slices are interpolated in."""
+CORNERS = 0.3
+"""How far beside the path corners are followed, in base pitches; farther slices miss more by as much as they go on."""
+
+
+def helical_gaps(pair: GearPair, place_m: FloatArray) -> FaceGaps:
+    """Return the gaps of the tips at places of slices (k, n) [m]."""
+    ends = [flank_chords(pair.member(which), (), pair.face_width_m, 1) for which in ("pinion", "gear")]
+    found = face_gaps(pair, ends[0], ends[1], _on_path(pair, place_m).ravel())
+    left, right = found.left_m.reshape(place_m.shape), found.right_m.reshape(place_m.shape)
+    none, whole = np.zeros(place_m.shape), np.ones(place_m.shape)
+    return FaceGaps(left, right, none, none, none, whole, np.zeros((len(place_m), 2)))
+
+
+def helical_missing_m(pair: GearPair, place_m: FloatArray, relief: TipRelief | None) -> FloatArray:
+    """Return what relief and corners leave out at places of slices (k, n) [m]."""
+    one = missing_material(replace(pair, helix_rad=0.0), relief, points=POINTS, reach_pitches=CORNERS)
+    along = np.linspace(one.start_m, one.end_m, POINTS)
+    beyond = np.abs(place_m - np.clip(place_m, one.start_m, one.end_m))
+    return np.asarray(np.interp(place_m, along, one.pinion.profile_m[0] + one.gear.profile_m[0]) + beyond)
+
+
+def helical_rest(pair: GearPair, place_m: FloatArray, options: StiffnessOptions) -> PairRest:
+    """Return how both teeth give way at places of slices (k, n) [m], each slice as at its own height."""
+    along = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
+    place, own, twists = _on_path(pair, place_m), [], 0.0
+    for which, rolls in zip(("pinion", "gear"), rolls_at(pair, along), strict=True):
+        twist = 0.0
+        if options.foundation != "none":
+            twist = ring_torsion(pair.member(which), pair.poisson_ratio) / (pair.youngs_modulus_pa * pair.face_width_m)
+        bends = np.maximum(tooth_compliance(pair, which, rolls, options).total - twist, 0.0)
+        own.append(np.interp(place, along, bends))
+        twists += twist
+    sound = np.stack([one.min(axis=1) for one in own])
+    added = np.stack(own) - sound[:, :, np.newaxis]
+    mean = np.sum([one.mean(axis=1) for one in own], axis=0)
+    return PairRest(np.full(len(place), twists), mean, bending_length_m(pair), UnevenTeeth(sound, added))
+
+
+def _on_path(pair: GearPair, place_m: FloatArray) -> FloatArray:
+    return np.asarray(np.clip(place_m, pair.contact_start_m, pair.contact_end_m))

@@ -1,0 +1,52 @@
+"""Helical teeth as a user asks for them: the curve of `siggen inspect tvms`, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow.csv
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+
+runner = CliRunner()
+
+
+def healthy_set(folder: Path) -> Path:
+    content = yaml.safe_load(Path("configs/ideal.yaml").read_text())
+    content["states"], content["specimens"] = [{"name": "healthy"}], 1
+    content["splits"] = {"train": 20, "validation": 0, "test": 0}
+    content["dynamics"]["friction"] = {"model": "off"}
+    content["mesh_harmonics"] = 8
+    path = folder / "helical.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def curve(config: Path, helix_deg: float) -> np.ndarray:
+    table = config.with_suffix(".csv")
+    options = ["--set", f"gears.helix_deg={helix_deg}", "--torque", "60", "--out", str(table)]
+    result = runner.invoke(app, ["inspect", "tvms", str(config), *options])
+    assert result.exit_code == 0, result.output
+    return pyarrow.csv.read_csv(table)["healthy_n_per_m"].to_numpy()[400:801]
+
+
+@pytest.mark.slow  # three curves of the contact across the face
+def test_a_vanishing_helix_is_the_spur_pair_and_a_real_one_is_more_even(tmp_path: Path) -> None:
+    config = healthy_set(tmp_path)
+    spur, near, right = (curve(config, helix) for helix in (0.0, 0.001, 15.0))
+    # 0.001° moves the ends of the face by 0.3 µm of the path; where a pair enters the curve is steep.
+    assert np.abs(near / spur - 1.0).mean() < 1e-4
+    assert np.ptp(right) < 0.6 * np.ptp(spur)
+    assert 0.9 < right.mean() / spur.mean() < 1.0
+
+
+def test_what_helical_teeth_cannot_do_yet_is_refused_by_its_path() -> None:
+    result = runner.invoke(app, ["inspect", "tvms", "quickstart", "--set", "gears.helix_deg=15", "--out", "never.csv"])
+    assert result.exit_code != 0
+    told = " ".join(f"{result.output} {result.exception}".split())
+    for path in ("dynamics.friction.model", "dynamics.shafts", "manufacture", "states."):
+        assert path in told
