@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from dataclasses import replace
 
 from siggen.config import Config, by_reference
 from siggen.dynamics.structure.structure import Structure
@@ -12,10 +13,11 @@ from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
 from siggen.keys.drawing import corners
 from siggen.planning.gearbox import pair_configs
-from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.planning.stages import turns
 from siggen.specimen.flank_waves import WavyTeeth
 from siggen.specimen.gears import gear_pair, stiffness_options
-from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
+from siggen.specimen.motion import MeshBehind, SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.structure import structure
 
 NEAREST = 3
@@ -51,18 +53,27 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     reaches = (one.reach_pitches(pair) for state in own.states for one in state.damages)
     reach = max(reaches, default=CORNER_REACH_PITCHES)
     specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
-    mesh = SpecimenMesh(
-        pair,
-        structure(own, specimen),
-        mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=TABLE_POINTS),
-        WavyTeeth(teeth_missing(specimen.dynamics, pair, TABLE_POINTS, reach), pair),
+    assembled = structure(own, specimen)
+    behind = tuple(
+        MeshBehind(_tabulated(gear_pair(stage.gears), specimen, assembled), turning)
+        for stage, turning in zip(specimen.stages, turns(specimen), strict=True)
     )
+    mesh = replace(_tabulated(pair, specimen, assembled, reach), behind=behind)
     step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
     dynamics = specimen.dynamics
     if dynamics.mesh.law == "pairs":  # every integrator has the same quantities; this one starts no motion
         dynamics = by_reference(dynamics)
     motion = specimen_motion(dynamics, mesh, point, step_s)
     return quantity_names(motion.structure, motion.internal_names)
+
+
+def _tabulated(
+    pair: GearPair, specimen: Specimen, assembled: Structure, reach: float = CORNER_REACH_PITCHES
+) -> SpecimenMesh:
+    """Return a healthy mesh of a gearbox, whose corners are followed for a reach."""
+    tables = mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=TABLE_POINTS)
+    teeth = WavyTeeth(teeth_missing(specimen.dynamics, pair, TABLE_POINTS, reach), pair)
+    return SpecimenMesh(pair, assembled, tables, teeth)
 
 
 def quantity_names(assembled: Structure, internal_names: tuple[str, ...]) -> tuple[str, ...]:

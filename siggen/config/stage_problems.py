@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from siggen.config.gears import Pair
+from siggen.config.dynamics import Dynamics
+from siggen.config.gears import Gears, Pair
 from siggen.config.housing import RigidHousing
-from siggen.config.stages import turned_teeth
+from siggen.config.stages import Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
 
@@ -31,38 +32,46 @@ def pair_of(sections: Mapping[str, Any], gear: str) -> Pair | None:
     return stages.get(name) if name else sections["gears"]
 
 
+BESIDE = "in a set with stages"
+
+
 def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield what gearboxes with further meshes cannot have."""
-    if not sections.get("stages") or "dynamics" not in sections:
+    if not sections.get("stages"):
         return
-    dynamics = sections["dynamics"]
-    beside = "in a set with stages"
-    if dynamics.model not in {"8dof", "casing"}:
-        yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof or casing {beside}")
-    if dynamics.model == "casing" and not isinstance(sections.get("housing"), RigidHousing | None):
-        yield Problem("housing.kind", "plates or modal", f"allowed: rigid {beside}, or dynamics.model: 8dof")
+    if "dynamics" in sections:
+        yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
+    if "gears" in sections:
+        yield from _of_gears(sections["gears"], sections["stages"])
     background = sections.get("background")
     if background is not None and background.second_stage is not None:
-        yield Problem("background.second_stage", "a section", f"allowed: null {beside}, which has one of its own")
-    if dynamics.shafts is not None:
-        yield Problem("dynamics.shafts", "a section", f"allowed: null {beside}")
-    if dynamics.mesh.law != "pairs":
-        yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {beside}")
-    if "gears" in sections and sections["gears"].pairs:
-        yield Problem("gears.pairs", f"{len(sections['gears'].pairs)} pairs", f"allowed: none {beside}")
-    pairs = {
-        "gears": sections.get("gears"),
-        **{f"stages.{i}.gears": one.gears for i, one in enumerate(sections["stages"])},
-    }
-    for where, pair in pairs.items():
-        if pair is not None and bounds(pair.helix_deg) != (0.0, 0.0):
-            yield Problem(f"{where}.helix_deg", str(pair.helix_deg), f"allowed: 0 {beside}")
-    for which in ("pinion", "gear"):
-        if getattr(dynamics, which).bearing is not None:
-            yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null {beside}")
+        yield Problem("background.second_stage", "a section", f"allowed: null {BESIDE}, which has one of its own")
     for index, point in enumerate(sections.get("operating_points", ())):
         if bounds(point.torque_nm)[0] <= 0.0:
-            yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {beside}")
+            yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")
+
+
+def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
+    if dynamics.model not in {"8dof", "casing"}:
+        yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof or casing {BESIDE}")
+    if dynamics.model == "casing" and not isinstance(housing, RigidHousing | None):
+        yield Problem("housing.kind", "plates or modal", f"allowed: rigid {BESIDE}, or dynamics.model: 8dof")
+    if dynamics.shafts is not None:
+        yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
+    if dynamics.mesh.law != "pairs":
+        yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {BESIDE}")
+    for which in ("pinion", "gear"):
+        if getattr(dynamics, which).bearing is not None:
+            yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null {BESIDE}")
+
+
+def _of_gears(gears: Gears, stages: tuple[Stage, ...]) -> Iterator[Problem]:
+    if gears.pairs:
+        yield Problem("gears.pairs", f"{len(gears.pairs)} pairs", f"allowed: none {BESIDE}")
+    every: dict[str, Pair] = {"gears": gears, **{f"stages.{i}.gears": one.gears for i, one in enumerate(stages)}}
+    for where, pair in every.items():
+        if bounds(pair.helix_deg) != (0.0, 0.0):
+            yield Problem(f"{where}.helix_deg", str(pair.helix_deg), f"allowed: 0 {BESIDE}")
 
 
 def _named(sections: Mapping[str, Any]) -> Iterator[Problem]:
