@@ -121,3 +121,14 @@ def test_modes_are_those_of_all_shafts(tmp_path: Path) -> None:
     done = run("inspect", "modes", written(tmp_path), "--json")
     assert done.returncode == 0, done.stderr
     assert "shape_theta_4" in done.stdout
+
+
+def test_the_preset_of_two_stages_is_generated_and_verified(tmp_path: Path) -> None:
+    little = ("--set", "specimens=1", "--set", "duration_s=0.1")
+    done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"))
+    assert done.returncode == 0, done.stderr
+    states = {row["state"]: row["faulty_gear"] for row in rows(tmp_path / "set", "metadata")}
+    expected = {"slight": "slow.pinion", "severe": "slow.pinion", "fast_severe": "pinion"}
+    assert states == {"healthy": "none", **expected, "sham": "none"}
+    done = run("verify", str(tmp_path / "set"), "--physics", "1")
+    assert done.returncode == 0, done.stdout + done.stderr
