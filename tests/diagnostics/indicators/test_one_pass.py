@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from diagnostics.audit import signal_attackers
 from diagnostics.cli.app import main
 from diagnostics.indicators import channel_signals
 from diagnostics.indicators.ranking_table import ranking_table
@@ -73,6 +74,8 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     calls = counted(monkeypatch)
+    # What the audit's networks learn is not asked here: a few epochs read as many records as hundreds of them do.
+    monkeypatch.setattr(signal_attackers, "SHOWN", 0)
     for command, *options in (
         ("indicators", "--out", "ranking"),
         ("report", "--models-only", "--no-cnn", "--out", "models"),
