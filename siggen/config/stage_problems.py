@@ -55,7 +55,10 @@ def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
     if dynamics.model not in {"8dof", "casing"}:
         yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof or casing {BESIDE}")
     if dynamics.model == "casing" and not isinstance(housing, RigidHousing | None):
-        yield Problem("housing.kind", "plates or modal", f"allowed: rigid {BESIDE}, or dynamics.model: 8dof")
+        kind = getattr(housing, "kind", "plates")
+        yield Problem(
+            "housing.kind", f"'{kind}' (plates by default)", f"allowed: rigid {BESIDE}, or dynamics.model: 8dof"
+        )
     if dynamics.shafts is not None:
         yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
     if dynamics.mesh.law != "pairs":

@@ -48,13 +48,25 @@ def test_a_casing_on_hard_bolts_is_the_ground_seen_in_a_mirror() -> None:
 
 
 def test_bolts_carry_what_all_shafts_press_with() -> None:
-    """Meshes are forces inside the casing: bearings of all shafts together press with nothing but their moment."""
-    found = built("casing")
+    """Meshes are forces inside the casing: bearings of all shafts press with the moment of motor and load alone.
+
+    Moments count as the first pinion turns, from vertical to horizontal; the load's shaft turns as that does.
+    """
+    found, torque_nm = built("casing"), 20.0
     rest, places = at_rest(found), dict.fromkeys(name.split("/")[0] for name in found.bearing_forces)
     forces = {name: float(row @ rest) for name, (row, _) in found.bearing_forces.items()}
     largest = max(abs(force) for force in forces.values())
     for axis in ("horizontal", "vertical"):
         assert abs(sum(forces[f"{place}/{axis}"] for place in places)) < 1e-9 * largest
+    parsed = parse(staged(stages=[{**SLOW, "direction_deg": 35.0}]))
+    assert parsed.config is not None
+    axes = axis_places_m(draw_specimen(parsed.config, 0))
+    moment = sum(
+        axes[place][1] * forces[f"{place}/horizontal"] - axes[place][0] * forces[f"{place}/vertical"]
+        for place in places
+    )
+    loaded = torque_nm * (47 / 18) * (52 / 17)
+    assert moment == pytest.approx(torque_nm - loaded, rel=1e-9)
 
 
 def test_shafts_stand_at_their_centre_distances_in_their_directions() -> None:
