@@ -14,9 +14,9 @@ from siggen.gears.damage.wear import POINTS, Wear, Worn, worn_until
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.contact import tooth_tables
+from siggen.specimen.contact import RELIEF_LENGTH, tooth_tables
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.motion import RELIEF_LENGTH, teeth_missing
+from siggen.specimen.motion import teeth_missing
 from siggen.specimen.worn_loads import load_at_rest
 from tests.faults.test_damage import config_with
 from tests.specimen.worn_by_hand import SlowPair
