@@ -52,6 +52,8 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     gears: Gears | None = parsed.sections.get("gears")
     if gears is None:
         return ()
+    if gears.pairs and parsed.sections.get("stages"):  # refused together
+        return ()
     if gears.pairs:
         return pair_problems(parsed.sections, _problems)
     behind = (_located_in(path, one) for path, own in stage_sections(parsed.sections) for one in _problems(own))

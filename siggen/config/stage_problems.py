@@ -15,6 +15,7 @@ from siggen.keys.number import bounds
 
 def stage_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield what is wrong about further meshes between the valid sections of a configuration."""
+    yield from _names(sections)
     yield from _beside(sections)
     yield from _named(sections)
 
@@ -30,6 +31,16 @@ def pair_of(sections: Mapping[str, Any], gear: str) -> Pair | None:
     name = gear.rpartition(".")[0]
     stages = {stage.name: stage.gears for stage in sections.get("stages", ())}
     return stages.get(name) if name else sections["gears"]
+
+
+TAKEN = ("pinion", "gear", "either")
+"""Words of the first mesh: a stage of such a name would take its places, labels and gears for its own."""
+
+
+def _names(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    for index, stage in enumerate(sections.get("stages", ())):
+        if stage.name in TAKEN:
+            yield Problem(f"stages.{index}.name", f"'{stage.name}'", f"allowed: another name than {', '.join(TAKEN)}")
 
 
 BESIDE = "in a set with stages"

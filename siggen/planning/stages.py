@@ -45,8 +45,8 @@ def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
 
 def first_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return valid sections of a configuration as those of its first mesh alone."""
-    # stages that are wrong themselves are not there, while damage may be on them
-    return sections if sections.get("stages") == () else _sections_on(sections, "")
+    # also without stages: damage may name one that is wrong itself, or not there
+    return _sections_on(sections, "")
 
 
 def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:

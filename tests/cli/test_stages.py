@@ -71,10 +71,20 @@ def test_the_card_and_the_plan_name_every_mesh(made: Path) -> None:
     assert f"{30.0 * 18 / 47 * 17:.6g} Hz" in told.stdout
 
 
+IRREGULAR = [
+    {"name": "healthy"},
+    {
+        "name": "severe",
+        "damage": {"kind": "irregular", "gear": "slow.pinion", "profile_length_mm": 1.0, "face_share": 0.5},
+    },
+]
+
+
 @pytest.mark.parametrize(
     ("changes", "path", "allowed"),
     [
         ({"stages": [SLOW, SLOW]}, "stages.1.name", "does not have already"),
+        ({"stages": [SLOW, {**SLOW, "name": "gear"}]}, "stages.1.name", "another name than pinion, gear, either"),
         (
             {"states": [{"name": "severe", "damage": {**SPALL, "gear": "fast.pinion"}}]},
             "states.0.damage.gear", "slow.gear",
@@ -90,6 +100,7 @@ def test_the_card_and_the_plan_name_every_mesh(made: Path) -> None:
             "stages.0.gears.pinion.bore_radius_mm", "below the root radius",
         ),
         ({"fs_hz": 2_560.0}, "fs_hz", "mesh harmonic"),
+        ({"stages": [], "states": IRREGULAR}, "states.1.damage.gear", "allowed: pinion, gear"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_with_its_path_and_what_is_allowed(
