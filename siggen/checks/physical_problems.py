@@ -31,7 +31,7 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
-from siggen.planning.stages import first_sections, stage_sections
+from siggen.planning.stages import first_sections, stage_of, stage_sections
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.gears import gear_pair, stiffness_options
 
@@ -52,12 +52,18 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     gears: Gears | None = parsed.sections.get("gears")
     if gears is None:
         return ()
-    if gears.pairs and parsed.sections.get("stages"):  # refused together
+    if gears.pairs and _has_stages(parsed.sections):  # refused together
         return ()
     if gears.pairs:
         return pair_problems(parsed.sections, _problems)
     behind = (_located_in(path, one) for path, own in stage_sections(parsed.sections) for one in _problems(own))
     return (*_problems(first_sections(parsed.sections)), *behind)
+
+
+def _has_stages(sections: Mapping[str, Any]) -> bool:
+    """Return whether there are further meshes, or damage names one."""
+    damages = (one for state in sections.get("states", {}).values() for one in state.damages)
+    return bool(sections.get("stages")) or any(stage_of(one) for one in damages)
 
 
 def _located_in(path: str, problem: Problem) -> Problem:
