@@ -23,7 +23,7 @@ from siggen.specimen.motion import specimen_motion
 from siggen.specimen.step_choice import stepped_motion
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-PRESETS = ("bench", "confusers", "families", "ideal", "industrial", "paper_b", "quickstart")
+PRESETS = ("bench", "confusers", "families", "ideal", "industrial", "paper_b", "quickstart", "two_stage")
 """Those with the law pairs."""
 REFERENCE_STEPS = 64
 WINDOW_S, STARTING_S = 0.04, 0.01
