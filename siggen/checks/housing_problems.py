@@ -19,9 +19,9 @@ from siggen.specimen.housing_layout import (
     ABOVE_SHARE,
     CLEARANCE_M,
     IRON_WALL,
-    LEAST_BOSS,
     STEEL_WALL,
     end_for_bearings_m,
+    height_for_bearings_m,
     housing_contents,
     least_wall_m,
 )
@@ -98,8 +98,8 @@ def _least(contents: Contents, wall_m: float) -> Iterator[Least]:
     tips_m, tip_m = sum(contents.tip_radius_m), max(contents.tip_radius_m)
     end_m = max(CLEARANCE_M, end_for_bearings_m(contents, wall_m))
     yield Least("length_mm", contents.centre_distance_m + tips_m + 2.0 * end_m, "the gears, and bearings in the walls")
-    lid_m = 0.5 * bounds(PlateNumbers.model_fields["lid"].default)[0] * wall_m
-    above_m = max(CLEARANCE_M, 0.5 * LEAST_BOSS * max(contents.bearing_outer_m) + wall_m - lid_m - tip_m)
+    lid = bounds(PlateNumbers.model_fields["lid"].default)[0]
+    above_m = max(CLEARANCE_M, height_for_bearings_m(contents, wall_m, lid))
     yield Least("height_mm", 2.0 * tip_m + above_m / ABOVE_SHARE, "the larger gear, a third of the rest above it")
     yield Least("width_mm", contents.face_width_m + 2.0 * CLEARANCE_M, "the gears' faces (gears.face_width_mm)")
 

@@ -59,7 +59,8 @@ def _proportions(numbers: PlateNumbers, shafts: Shafts | None, contents: Content
     wall, overhang = _wall_m(numbers, centre), constant(numbers.overhang) * centre
     end = max(constant(n.end) * centre, end_for_bearings_m(contents, wall))
     side = constant(n.side) * centre
-    above, sump = constant(n.above) * centre, constant(n.sump) * centre
+    above = _height_m(constant(n.above) * centre, contents, wall, constant(n.lid))
+    sump = _height_m(constant(n.sump) * centre, contents, wall, constant(n.floor))
     if shafts is not None:
         spans = [1e-3 * constant(shaft.bearing_span_mm) for shaft in (shafts.gear, shafts.pinion)]
         side = max(0.5 * (sum(spans) / 2.0 - wall - contents.face_width_m) - overhang, CLEARANCE_M)
@@ -96,6 +97,21 @@ def end_for_bearings_m(contents: Contents, wall_m: float) -> float:
     """Return the least distance of the teeth from the ends, so that bosses end a wall's thickness before them."""
     pairs = zip(contents.bearing_outer_m, contents.tip_radius_m, strict=True)
     return max(0.5 * LEAST_BOSS * outer + 0.5 * wall_m - tip for outer, tip in pairs)
+
+
+def height_for_bearings_m(contents: Contents, wall_m: float, plate: float, boss: float = LEAST_BOSS) -> float:
+    """Return the least distance [m] of the larger gear from lid or floor, `plate` walls thick, for bosses so large."""
+    widest = 0.5 * boss * max(contents.bearing_outer_m)
+    return widest + wall_m - 0.5 * plate * wall_m - max(contents.tip_radius_m)
+
+
+def _height_m(drawn_m: float, contents: Contents, wall_m: float, plate: float) -> float:
+    """Return what was drawn where bearings fit into the wall; else what a least boss asks for.
+
+    Two small gears of equal size turn between bearings that are larger than they are.
+    """
+    fits = drawn_m > height_for_bearings_m(contents, wall_m, plate, boss=1.0)
+    return drawn_m if fits else height_for_bearings_m(contents, wall_m, plate)
 
 
 def _bolt_n_per_m(numbers: PlateNumbers, centre_m: float) -> tuple[float, float]:

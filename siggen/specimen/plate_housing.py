@@ -35,7 +35,7 @@ from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing_layout import specimen_layout
-from siggen.specimen.specimen_housing import BoltMotions, SpecimenHousing, second_stage
+from siggen.specimen.specimen_housing import MODES_ON_BOLTS, BoltMotions, SpecimenHousing, second_stage
 
 AXES = {"horizontal": Axis.X, "vertical": Axis.Y, "axial": Axis.Z}
 EDGE_M = 8e-3
@@ -91,7 +91,12 @@ def _made(
     contents: Contents, proportions: Proportions, material: Material, highest_hz: float
 ) -> tuple[Box, HousingModes]:
     box = layout(contents, proportions, material)
-    return box, housing_modes(box, min(highest_hz, BEYOND * resolved_hz(box)), WAVES)
+    highest_hz = min(highest_hz, BEYOND * resolved_hz(box))
+    modes = housing_modes(box, highest_hz, WAVES)
+    while modes.vibrating <= MODES_ON_BOLTS:  # a small box with thick walls bends above the band: a label tells where
+        highest_hz *= 2.0
+        modes = housing_modes(box, highest_hz, WAVES)
+    return box, modes
 
 
 def _seats(box: Box, modes: BoxModes, shafts: Shafts | None) -> dict[str, Motion]:

@@ -9,10 +9,12 @@ import pytest
 
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.loading import load_config
-from siggen.config import yaml_text
+from siggen.config import inherited, parse_yaml, yaml_text
 from siggen.dynamics.housing.layout import layout
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
+from siggen.rig.rig_answers import rig_of
+from siggen.rig.rig_text import rig_text
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing_layout import specimen_layout
 from tests.config.minimal import minimal
@@ -81,6 +83,19 @@ def test_the_least_lengths_that_are_let_through_can_be_built(shafts: object, mat
         )
         assert inner == pytest.approx(tuple(least.values()), rel=1e-9)
         assert min(seat.boss_radius_m / seat.bore_radius_m for seat in box.seats.values()) >= 1.19
+
+
+@pytest.mark.parametrize(("teeth", "module_mm"), [("17,17", "0.8"), ("20,20", "1"), ("23,23", "1.5")])
+def test_small_equal_gears_turn_in_bearings_larger_than_they_are(teeth: str, module_mm: str) -> None:
+    """Gears of 14 mm on shafts of 9 mm, as `siggen init` proposes them, under a lid over which nobody gave a height."""
+    rig, _ = rig_of({"teeth": teeth, "module": module_mm, "speed": "1450rpm"})
+    config = load_config({**inherited(parse_yaml(rig_text(rig, "rig", "bench"), "rig"))})
+    pair = gear_pair(config.gears)
+    for specimen_id in range(config.specimens):
+        specimen = draw_specimen(config, specimen_id)
+        box = layout(*specimen_layout(specimen.housing, specimen.dynamics.shafts, pair))
+        assert all(seat.boss_radius_m > seat.bore_radius_m for seat in box.seats.values())
+        assert min(seat.y_m for seat in box.seats.values()) > pair.gear.tip_radius_m
 
 
 def test_a_length_below_the_least_cannot_be_built() -> None:
