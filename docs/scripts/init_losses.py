@@ -1,9 +1,9 @@
 """The table of docs/start/own_gearbox.md: `python docs/scripts/init_losses.py [PAIRS] [GEARBOXES] [TURNS]`.
 
 Which share of the records of `siggen init` machines leaves the model: gear pairs of module 0.8 to 8 mm and ratio 1 to
-5, face width, shafts, bearings and accuracy as proposed for the torque that they are rated for. Gearboxes run in turn at
-that torque, at a tenth of it and at none. A short record of every state is simulated, as `siggen plan` does; TURNS other
-than its 8 says what longer records lose. 30 pairs with 3 gearboxes each take 6 minutes of CPU time on one core;
+5, face width, shafts, bearings and accuracy as proposed for the torque that they are rated for. Gearboxes run in turn
+at that torque, at a tenth of it and at none. A short record of every state is simulated, as `siggen plan` does; TURNS
+other than its 8 says what longer records lose. 30 pairs with 3 gearboxes each take 6 minutes of CPU time on one core;
 every pair is printed as soon as it is done.
 """
 
