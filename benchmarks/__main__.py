@@ -1,6 +1,7 @@
 """`python -m benchmarks [topic ...] [--quick] [--json FILE]`: what siggen costs, beside named alternatives.
 
 `python -m benchmarks golden` says which numbers of records moved since they were kept, and by how much.
+`python -m benchmarks beside CHECKOUT` says what the loop costs here and in another checkout, in turn.
 """
 
 from __future__ import annotations
@@ -39,9 +40,9 @@ PARTS = tuple(f"faults.{part}" for part in faults.PARTS)
 
 def main() -> int:
     """Measure the topics of the command line (without one: all), print the table and return 1 if one failed."""
-    if sys.argv[1:2] == ["golden"]:
+    if sys.argv[1:2] in (["golden"], ["beside"]):
         os.environ.update(ONE_THREAD)
-        return int(importlib.import_module("benchmarks.golden").main(sys.argv[2:]))
+        return int(importlib.import_module(f"benchmarks.{sys.argv[1]}").main(sys.argv[2:]))
     arguments = _arguments()
     # before numpy is loaded by a topic; idle threads of its linear algebra spin, which would count as CPU time
     os.environ.update(ONE_THREAD)
