@@ -201,7 +201,7 @@ def sideband_figure(recording: MeasuredRecording, teeth: tuple[int, int], pulses
     axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
     axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
     axes[-1, 0].set_xlabel(f"Offset from the mesh line [pinion orders of {speed_hz:.4g} Hz]")
-    figure.supylabel("Amplitude [m/s²]", fontsize=10)
+    figure.supylabel(f"Amplitude [{recording.shown_unit(channel)}]", fontsize=10)
     _legend(figure)
     return figure
 
@@ -278,7 +278,7 @@ def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | No
         html.table(
             ("Indicator and channel", "Median"),
             values,
-            caption="Median of each indicator over the pieces of the recording. Levels in m/s², ratios without unit.",
+            caption=f"Median of each indicator over the pieces of the recording. {found.recording.levels_sentence}",
             sortable=True,
             tall=True,
         ),
