@@ -189,7 +189,7 @@ def _scores(training: Training | None) -> list[str]:
         tables.calibration_table(training),
         *detection_blocks(training),
         *score_blocks(training),
-        *nested_blocks(training.nested),
+        *nested_blocks(training.nested, training.split.kind),
     ]
 
 
