@@ -97,7 +97,7 @@ class Prediction:
     pulses : ShaftPulses
     teeth : (int, int)
     classes : tuple of str
-        In the order of the probabilities.
+        In the order of the probabilities; `class_kind` says what they are: `state` or `fault`.
     votes : tuple of Vote
         The first one is the answer.
     nearness : Nearness
@@ -112,8 +112,6 @@ class Prediction:
         Indicators.
     own_state : OwnState or None
         Whether the machine has changed against its own healthy recordings; None where none were given.
-    class_kind : str
-        What a class is: `state` or `fault`.
     """
 
     recording: MeasuredRecording

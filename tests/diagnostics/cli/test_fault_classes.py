@@ -85,7 +85,7 @@ def test_another_fault_of_another_set_is_refused_by_that_word(kinds: Any) -> Non
     place = kinds.table.schema.get_field_index("primary_fault")
     other = replace(kinds, table=kinds.table.set_column(place, "primary_fault", fault), manifest={"identity": "3" * 64})
     with pytest.raises(
-        UsageError, match=r"has the faults crack, .* allowed are healthy, pitting. Name its faults like"
+        UsageError, match=r"has the faults crack, .* allowed are healthy, pitting\. Name its faults like"
     ):
         check_other_set(kinds, other, FAULT)
 
