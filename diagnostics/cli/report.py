@@ -59,14 +59,16 @@ def report(
 
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
+    from diagnostics.records.record_classes import check_kind
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 
     if training.cnn and not missing_packages("torch"):
         check_device(training.device)
     own = load_indicators(indicator)
-    dataset, second = open_sets(directory, training.test, training.channel or ())
-    options = NetworkOptions(training.cnn, training.device, training.augment, training.studies)
+    classes = check_kind(training.classes, "--classes")
+    dataset, second = open_sets(directory, training.test, training.channel or (), classes)
+    options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
     if models_only:
         typer.echo(str(_models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)))
         return
@@ -121,6 +123,7 @@ def _models(
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.classifier_table import feature_matrix
     from diagnostics.prediction.saved_models import save_models
+    from diagnostics.records.record_classes import set_classes
     from diagnostics.training.studies import run_studies, studies_metrics
     from diagnostics.training.training import train_models, training_metrics
     from diagnostics.training.training_sets import other_table, set_table
@@ -137,7 +140,8 @@ def _models(
         notes = save_models(trained, table, dataset, folder)
     metrics = {**training_metrics(trained), "seed": seed, "file_notes": notes}
     if options.studies:
-        found = run_studies(dataset, feature_matrix(table), trained.split, seed, second, terminal_stage)
+        matrix = feature_matrix(table, set_classes(dataset, options.classes))
+        found = run_studies(dataset, matrix, trained.split, seed, second, terminal_stage)
         metrics["studies"] = studies_metrics(found)
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     for note in (*trained.notes, *notes):

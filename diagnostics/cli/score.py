@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.set_options import Seed
+from diagnostics.cli.set_options import Classes, Seed
 from siggen.cli.json_output import AsJson, echo_json
 
 
@@ -32,6 +32,7 @@ def score(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="TABLE", help="Write the rows too, .parquet or .csv.")
     ] = None,
+    classes: Classes = "state",
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
@@ -47,9 +48,9 @@ def score(
 
     if out:
         check_suffix(out)
-    found = scored(open_set(directory), predictions, baselines=baselines, split=split, seed=seed)
+    found = scored(open_set(directory), predictions, baselines=baselines, split=split, seed=seed, classes=classes)
     if as_json:
-        echo_json({"split": split, "scores": found.to_table().to_pylist()})
+        echo_json({"split": split, "classes": classes, "scores": found.to_table().to_pylist()})
     else:
         typer.echo(str(found))
     if out:

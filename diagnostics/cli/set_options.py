@@ -12,6 +12,14 @@ import typer
 EXPLORER = "explorer.html"
 Open = Annotated[bool, typer.Option("--open", help="Open the page in your browser.")]
 
+Classes = Annotated[
+    str,
+    typer.Option(
+        "--classes",
+        metavar="state|fault",
+        help="What a class is: the state of a record, or its primary fault. Healthy ones are one class.",
+    ),
+]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the bootstrap, the permutations and the networks.")]
 OwnIndicators = Annotated[
     list[str] | None,
@@ -52,7 +60,7 @@ class TrainingOptions:
         typer.Option(
             "--test",
             metavar="DIR3",
-            help="Judge the classifiers on this set too. It needs the same channels, sampling rate and states.",
+            help="Judge the classifiers on this set too. It needs the same channels, sampling rate and classes.",
             show_default=False,
         ),
     ] = None
@@ -74,3 +82,4 @@ class TrainingOptions:
     augment: Annotated[
         bool, typer.Option("--augment/--no-augment", help="Train the networks with random transfer paths and noise.")
     ] = True
+    classes: Classes = "state"

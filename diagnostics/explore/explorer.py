@@ -22,7 +22,8 @@ from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.page.security_policy import security_policy
 from diagnostics.page.wording import counted
 from diagnostics.prediction.released_model import load_model
-from diagnostics.records.state_classes import HEALTHY, class_names
+from diagnostics.records.record_classes import set_classes
+from diagnostics.records.state_classes import HEALTHY
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
@@ -62,7 +63,7 @@ IN_SCRIPT: dict[str, str | int | None] = {
 
 
 def predicted_labels(
-    table: RecordTable, identity: str, folder: Path, own: Sequence[OwnIndicator] = ()
+    table: RecordTable, dataset: Dataset, folder: Path, own: Sequence[OwnIndicator] = ()
 ) -> dict[str, np.ndarray]:
     """Return columns `class`, `predicted`, `named`, `seen`, (records,) each, by a model folder's logistic regression.
 
@@ -72,8 +73,8 @@ def predicted_labels(
     ----------
     table : RecordTable
         Indicators of the whole set.
-    identity : str
-        Of the set.
+    dataset : siggen Dataset
+        The set; what its classes are is for the model to say.
     folder : Path
         What `siggen-diagnostics report` wrote.
     own : sequence of OwnIndicator
@@ -96,8 +97,8 @@ def predicted_labels(
     predicted = np.array(model.classes)[probability.argmax(axis=1)]
     healthy = labels["fault"] == HEALTHY
     known = [name for name in np.unique(labels["state"][healthy]).tolist() if name in model.classes]
-    truth = class_names(labels, known[0] if known else None)
-    seen = (labels["split"] != TEST) & (released.facts.identity == identity)
+    truth = set_classes(dataset, released.facts.class_kind, known[0] if known else None).of(labels["state"])
+    seen = (labels["split"] != TEST) & (released.facts.identity == _identity(dataset))
     return {
         "class": truth,
         "predicted": predicted,
@@ -183,7 +184,7 @@ def explorer_of(dataset: Dataset, options: ExplorerOptions, stage: Stage) -> tup
     labels = dataset.labels(columns=["record_id", "specimen_id"])
     with stage("indicators", labels.num_rows) as advance:
         table = record_table(dataset, own=options.own, workers=options.workers, advance=advance)
-    said = predicted_labels(table, _identity(dataset), options.model, options.own) if options.model else {}
+    said = predicted_labels(table, dataset, options.model, options.own) if options.model else {}
     specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
     rows = chosen_records(specimens, options.limit, options.first)
     payload = page_payload(set_source(dataset, table, rows), stage, full=options.full)

@@ -19,9 +19,10 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import load_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.records.record_classes import STATE, RecordClasses, record_classes, set_classes
 from diagnostics.records.record_problems import problem_list
 from diagnostics.records.recording import LABEL_NAMES
-from diagnostics.records.state_classes import CLASS, class_names
+from diagnostics.records.state_classes import CLASS
 from diagnostics.records.usable_records import RecordCheck
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
@@ -32,7 +33,7 @@ NOTES_KEY = b"diagnostics.notes"
 WRITERS = (".parquet", ".csv")
 
 
-def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1) -> FeatureMatrix:
+def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1, classes: str = STATE) -> FeatureMatrix:
     """Return one row per record: indicators of every channel, labels with their roles, gearbox and split.
 
     The indicators are those that the classifiers of `siggen-diagnostics report` take. They are kept beside the set, so
@@ -46,6 +47,8 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1)
         Your own besides, as `MODULE:FUNCTION`.
     workers : int
         Processes for the first call.
+    classes : str
+        What the label `class` is: the `state` of a record, or its primary `fault`; healthy ones are one class.
 
     Returns
     -------
@@ -55,12 +58,15 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1)
     ------
     DatasetError
         If records cannot be used; the message names them.
+    UsageError
+        If the classes are of an unknown kind.
     """
+    told = set_classes(dataset, classes)
     found = record_table(dataset, own=load_indicators(list(indicators)), workers=workers)
     notes = check_table(found, dataset)
     for note in notes:
         warnings.warn(f"{dataset.path}: {note}", stacklevel=2)
-    return feature_matrix(classifier_table(found, notes))
+    return feature_matrix(classifier_table(found, notes), told)
 
 
 def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
@@ -137,20 +143,20 @@ def indicator_names(table: pa.Table) -> tuple[str, ...]:
     return tuple(name for name in table.column_names if name not in known)
 
 
-def feature_matrix(table: pa.Table, healthy: str | None = None) -> FeatureMatrix:
-    """Return a classifier table as arrays; healthy states are one class, see `diagnostics.records.state_classes`.
+def feature_matrix(table: pa.Table, classes: RecordClasses | None = None) -> FeatureMatrix:
+    """Return a classifier table as arrays, with the class of every record among its labels.
 
     Parameters
     ----------
     table : pyarrow.Table
         What `classifier_table` returned.
-    healthy : str, optional
-        Name of the healthy class; default the first healthy state of the table.
+    classes : RecordClasses, optional
+        Of the set; default its states, the healthy ones as one.
     """
     names = indicator_names(table)
     columns = [table.column(name).to_numpy(zero_copy_only=False).astype(np.float64) for name in names]
     labels = {name: np.asarray(table.column(name).to_pylist()) for name in LABEL_NAMES}
-    labels[CLASS] = class_names(labels, healthy)
+    labels[CLASS] = (classes or record_classes(labels)).of(labels["state"])
     return FeatureMatrix(np.stack(columns, axis=1), names, labels)
 
 

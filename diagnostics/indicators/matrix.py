@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.records.state_classes import CLASS, class_members
+from diagnostics.records.state_classes import CLASS
 
 KEY, CONDITION, MEASURED, CONSEQUENCE, TARGET = "key", "condition", "measured", "consequence", "target"
 LABEL_ROLES = {
@@ -52,7 +52,8 @@ class FeatureMatrix:
     @property
     def classes(self) -> tuple[str, ...]:
         """The classes in the order of the configuration; `class_id` of a loader is the place in it."""
-        return tuple(class_members(self.labels))
+        order = np.argsort(self.labels["state_id"], kind="stable")
+        return tuple(dict.fromkeys(self.labels[CLASS][order].tolist()))
 
     @property
     def roles(self) -> dict[str, str]:

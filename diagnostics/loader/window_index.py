@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.records.state_classes import class_ids
+from diagnostics.records.record_classes import STATE, check_kind, set_classes
 from siggen.dataset.reading import Dataset, RowGroup
 from siggen.errors import DatasetError, UsageError
 
@@ -131,19 +131,23 @@ class StreamSettings:
     quantity : str or None
         Channels that hold this, such as "acceleration"; None: all. Every channel comes in its own unit, so a network
         that takes several quantities has to standardise them.
+    classes : str
+        What `class_id` counts: `state`s, or primary `fault`s; healthy ones are one class.
 
     Raises
     ------
     UsageError
-        If a number is too small.
+        If a number is too small, or the classes are of an unknown kind.
     """
 
     revolutions: int = FEWEST_REVOLUTIONS
     hop_revolutions: int = 4
     samples_per_revolution: int | None = 288
     quantity: str | None = None
+    classes: str = STATE
 
     def __post_init__(self) -> None:
+        check_kind(self.classes)
         if self.revolutions < FEWEST_REVOLUTIONS:
             raise UsageError(f"revolutions: received {self.revolutions}; allowed are {FEWEST_REVOLUTIONS} or more")
         for name, number in (
@@ -222,7 +226,7 @@ def window_index(dataset: Dataset, split: str, settings: StreamSettings, further
     DatasetError
         If no record of the split holds a whole window.
     """
-    labels = {**_columns(dataset, split, LABELS), "class_id": _class_id(dataset, split)}
+    labels = {**_columns(dataset, split, LABELS), "class_id": _class_id(dataset, split, settings.classes)}
     labels |= record_labels(dataset, split, [name for name in further if name not in labels])
     pulses = [list(_pulses(dataset, group)) for group in dataset.row_groups(split)]
     samples = _window_samples(pulses, settings, dataset.fs_hz)
@@ -252,11 +256,10 @@ def _columns(dataset: Dataset, split: str | None, names: tuple[str, ...]) -> dic
     return {name: np.asarray(table.column(name).to_pylist()) for name in names}
 
 
-def _class_id(dataset: Dataset, split: str) -> np.ndarray:
-    """Return the class of every record of the split, (records,) int64: its state's, all healthy ones being one."""
-    ids = class_ids(_columns(dataset, None, ("state", "state_id", "fault")))
+def _class_id(dataset: Dataset, split: str, kind: str) -> np.ndarray:
+    """Return the class of every record of the split, (records,) int64: its place among those of the whole set."""
     states = dataset.labels(split, ["state"]).column("state").to_pylist()
-    return np.array([ids[state] for state in states], dtype=np.int64)
+    return set_classes(dataset, kind).places(np.asarray(states))
 
 
 def _pulses(dataset: Dataset, group: RowGroup) -> Iterator[np.ndarray]:

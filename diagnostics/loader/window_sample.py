@@ -24,6 +24,9 @@ from diagnostics.loader.window_index import StreamSettings, WindowIndex
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from siggen.dataset.reading import Dataset
 
+NOT_DECODED = ("quantity", "classes")
+"""Settings that decoded samples do not depend on: the channels say what the quantity says."""
+
 Sample = dict[str, torch.Tensor]
 Transform = Callable[[Sample, np.random.Generator], Any]
 
@@ -97,8 +100,7 @@ class RowGroupSignals:
             "identity": self.dataset.manifest["identity"],
             "channels": [channel.name for channel in self.dataset.channels],
             "windows": self.index.fingerprint(),
-            # the channels say what the quantity says
-            **{name: value for name, value in asdict(self.settings).items() if name != "quantity"},
+            **{name: value for name, value in asdict(self.settings).items() if name not in NOT_DECODED},
         }
         return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:16]
 

@@ -91,7 +91,7 @@ def _section(found: RecordingIndicators) -> list[str]:
         for name, of_channels in zip(names, values.tolist(), strict=True)
     ]
     head = ("Indicator", *found.recording.channels)
-    caption = "Indicators of the whole recording. Levels in m/s², ratios without unit."
+    caption = f"Indicators of the whole recording. {found.recording.levels_sentence}"
     return [
         html.heading(found.name),
         html.figure_grid(blocks),

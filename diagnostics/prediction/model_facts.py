@@ -18,8 +18,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from diagnostics.prediction.training_distance import TrainingDistance, distance_facts, distance_from_facts
+from diagnostics.records.record_classes import check_kind
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.training.splits import TEST
+from diagnostics.training.splits import TEST, SpecimenSplit
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
@@ -33,11 +34,8 @@ MODEL_FILES = (
 
 DIGEST = "digest"
 
-FORMAT = "siggen-diagnostics model 5"
-SINGLE_UNIT_FORMAT = "siggen-diagnostics model 4"
-"""Written when all channels had one unit; read."""
-UNHASHED_FORMAT = "siggen-diagnostics model 3"
-"""Written before files had hashes; read, and said to have none."""
+FORMAT = "siggen-diagnostics model 6"
+"""The only one that is read: earlier ones do not say what their classes are."""
 
 
 def sealed_text(content: Mapping[str, Any]) -> str:
@@ -102,8 +100,10 @@ class ModelFacts:
     set_name, identity, manifest_digest : str
         The set it was trained on: name, SHA-256 of its configuration, SHA-256 of its manifest (which holds the hash of
         every file).
+    class_kind : str
+        What a class is: `state` or `fault`.
     classes, channels : tuple of str
-        States and channel names, in the models' order.
+        Names of classes and channels, in the models' order.
     units : tuple of str
         Unit of each channel.
     fs_hz, duration_s : float
@@ -122,6 +122,7 @@ class ModelFacts:
     set_name: str
     identity: str
     manifest_digest: str
+    class_kind: str
     classes: tuple[str, ...]
     channels: tuple[str, ...]
     units: tuple[str, ...]
@@ -140,7 +141,7 @@ def manifest_digest(manifest: dict[str, Any]) -> str:
     return hashlib.sha256(content.encode()).hexdigest()
 
 
-def model_facts(dataset: Dataset, table: pa.Table, classes: tuple[str, ...]) -> ModelFacts:
+def model_facts(dataset: Dataset, table: pa.Table, split: SpecimenSplit) -> ModelFacts:
     """Return the facts of models trained on a set; ranges are those of its training and validation records.
 
     Parameters
@@ -149,8 +150,8 @@ def model_facts(dataset: Dataset, table: pa.Table, classes: tuple[str, ...]) -> 
         The set.
     table : pyarrow.Table
         Its feature table.
-    classes : tuple of str
-        States in the order of the models.
+    split : SpecimenSplit
+        What the models tell apart.
     """
     seen = table.filter(pc.not_equal(table.column("split"), TEST))
 
@@ -165,7 +166,8 @@ def model_facts(dataset: Dataset, table: pa.Table, classes: tuple[str, ...]) -> 
         set_name=str(dataset.manifest.get("name", dataset.path.name)),
         identity=str(dataset.manifest["identity"]),
         manifest_digest=manifest_digest(dataset.manifest),
-        classes=classes,
+        class_kind=split.kind,
+        classes=split.classes,
         channels=tuple(channel.name for channel in dataset.channels),
         units=tuple(channel.unit for channel in dataset.channels),
         fs_hz=float(dataset.fs_hz),
@@ -208,14 +210,15 @@ def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDist
     try:
         content = _content(path)
         facts = {name: _tuples(value) for name, value in content["facts"].items()}
-        if content["format"] != FORMAT:
-            facts["units"] = (facts.pop("unit"),) * len(facts["channels"])
+        check_kind(facts["class_kind"])
         referenced = content["referenced_distance"]
         return (
             ModelFacts(**facts),
             distance_from_facts(content["distance"]),
             distance_from_facts(referenced) if referenced else None,
         )
+    except UsageError:
+        raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise _unusable(path, error) from error
 
@@ -232,12 +235,14 @@ def read_accuracy(folder: Path) -> dict[str, Interval]:
     try:
         tested = _content(path)["scores"]["test"]
         return {name: _interval(score["accuracy"]) for name, score in tested.items()}
+    except UsageError:
+        raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise _unusable(path, error) from error
 
 
-def read_hashes(folder: Path) -> dict[str, str] | None:
-    """Read the SHA-256 of every file of a model from `model.json`; None for a model from before there were any.
+def read_hashes(folder: Path) -> dict[str, str]:
+    """Read the SHA-256 of every file of a model from `model.json`.
 
     Raises
     ------
@@ -246,8 +251,9 @@ def read_hashes(folder: Path) -> dict[str, str] | None:
     """
     path = folder / FACTS_FILE
     try:
-        content = _content(path)
-        return None if content["format"] == UNHASHED_FORMAT else dict(content["files"])
+        return dict(_content(path)["files"])
+    except UsageError:
+        raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise _unusable(path, error) from error
 
@@ -257,11 +263,11 @@ def _content(path: Path) -> dict[str, Any]:
     text = path.read_text(encoding="utf-8")
     content: dict[str, Any] = json.loads(text)
     found = content.get("format")
-    if found == UNHASHED_FORMAT:
-        return content
-    if found not in {FORMAT, SINGLE_UNIT_FORMAT}:
-        allowed = ", ".join(map(repr, (FORMAT, SINGLE_UNIT_FORMAT, UNHASHED_FORMAT)))
-        raise ValueError(f"received format {found!r}; allowed are {allowed}")
+    if found != FORMAT:
+        raise UsageError(
+            f"{path}: received format {found!r}; allowed is {FORMAT!r}, which says whether classes are states or "
+            f"faults. Train again: siggen-diagnostics report SET --models-only --out {path.parent}"
+        )
     return unsealed_text(text)
 
 

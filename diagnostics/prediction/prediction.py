@@ -20,6 +20,7 @@ from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.records.record_classes import STATE
 from diagnostics.statistics.calibration import tempered
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.referenced import log_mean, log_values
@@ -96,7 +97,7 @@ class Prediction:
     pulses : ShaftPulses
     teeth : (int, int)
     classes : tuple of str
-        States in the order of the probabilities.
+        In the order of the probabilities; `class_kind` says what they are: `state` or `fault`.
     votes : tuple of Vote
         The first one is the answer.
     nearness : Nearness
@@ -124,18 +125,19 @@ class Prediction:
     notes: tuple[str, ...]
     pieces: RecordPieces
     own_state: OwnState | None = None
+    class_kind: str = STATE
 
     @property
     def contradiction(self) -> str:
-        """How the classifiers contradict each other; empty where they name one state, or there is one only."""
+        """How the classifiers contradict each other; empty where they name one class, or there is one only."""
         if len({vote.named for vote in self.votes}) < 2:
             return ""
         said = (f"{vote.classifier} {self.classes[vote.named]} ({vote.probability.max():.2f})" for vote in self.votes)
-        return f"the classifiers name different states: {', '.join(said)}"
+        return f"the classifiers name different {self.class_kind}s: {', '.join(said)}"
 
     @property
     def state(self) -> str:
-        """The state of largest probability, or `abstains`."""
+        """The class of largest probability, or `abstains`."""
         return "abstains" if self.reasons else self.classes[self.votes[0].named]
 
 
@@ -209,6 +211,7 @@ def predict_recording(
         ),
         pieces=pieces,
         own_state=own,
+        class_kind=facts.class_kind,
     )
 
 

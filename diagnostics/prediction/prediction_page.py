@@ -26,6 +26,7 @@ from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
+from diagnostics.records.record_classes import STATE
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
     middle = np.array([_median(column) for column in found.pieces.values.T])
     return {
         "file": str(found.recording.path),
-        "state": found.state,
+        found.class_kind: found.state,
         "reasons_to_abstain": list(found.reasons),
         "contradiction": found.contradiction or None,
         "against_own_healthy_state": _own_state(found.own_state),
@@ -82,6 +83,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
         "meaning": MEANING,
         "model": {
             "set": facts.set_name,
+            "classes_are": facts.class_kind,
             "identity": facts.identity,
             "manifest_digest": facts.manifest_digest,
         },
@@ -117,7 +119,7 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
     own = found.own_state
     rows = [
         *([] if own is None else [("against its own healthy state", f"{own.verdict} ({own.reason})")]),
-        ("answer", found.state),
+        ("answer" if found.class_kind == STATE else f"answer ({found.class_kind})", found.state),
         ("pinion speed", f"{pulses.speed_hz:.4f} Hz ({pulses.origin}); mesh {pulses.speed_hz * found.teeth[0]:.2f} Hz"),
         ("averaged", f"{pieces} of {found.pieces.revolutions} or more pinion revolutions"),
     ]
@@ -153,16 +155,16 @@ def prediction_summary(found: Prediction) -> list[str]:
         reasons = [f"{capitalised(reason.rstrip('.'))}." for reason in found.reasons]
         answer = f"The models give no answer for this recording. {' '.join(reasons)}"
     else:
-        answer = f"The recording is most like the state {found.state}."
+        answer = f"The recording is most like the {found.class_kind} {found.state}."
         if found.contradiction:
             answer += f" This answer is weak: {found.contradiction}."
     if (own := found.own_state) is not None:
         told = "nothing can be said" if own.score is None else f"the machine is {own.verdict}"
         answer = f"Against its own healthy recordings {told} ({own.reason}). {answer}"
-    withheld = " Do not use these states." if found.reasons else ""
+    withheld = f" Do not use these {found.class_kind}s." if found.reasons else ""
     return [
         answer,
-        *([f"The most probable state is {joined(votes)}.{withheld}"] if votes else []),
+        *([f"The most probable {found.class_kind} is {joined(votes)}.{withheld}"] if votes else []),
         f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
         f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
         f"revolutions. The pinion speed is {speed}, from the {found.pulses.origin}.",
@@ -199,7 +201,7 @@ def sideband_figure(recording: MeasuredRecording, teeth: tuple[int, int], pulses
     axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
     axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
     axes[-1, 0].set_xlabel(f"Offset from the mesh line [pinion orders of {speed_hz:.4g} Hz]")
-    figure.supylabel("Amplitude [m/s²]", fontsize=10)
+    figure.supylabel(f"Amplitude [{recording.shown_unit(channel)}]", fontsize=10)
     _legend(figure)
     return figure
 
@@ -276,7 +278,7 @@ def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | No
         html.table(
             ("Indicator and channel", "Median"),
             values,
-            caption="Median of each indicator over the pieces of the recording. Levels in m/s², ratios without unit.",
+            caption=f"Median of each indicator over the pieces of the recording. {found.recording.levels_sentence}",
             sortable=True,
             tall=True,
         ),

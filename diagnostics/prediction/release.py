@@ -14,6 +14,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
+from diagnostics.records.record_classes import set_classes
 from diagnostics.records.recording import recordings
 from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
 from diagnostics.statistics.scores import Scores
@@ -76,14 +77,15 @@ def release(training: Training, table: pa.Table, dataset: Dataset) -> Release:
     dataset : siggen Dataset
         The set.
     """
-    matrix, split = feature_matrix(table), training.split
+    split = training.split
+    matrix = feature_matrix(table, set_classes(dataset, split.kind))
     whole = with_floor_features(matrix, dataset)
     distance, distances = _distance(log_values(whole.values), whole, split)
     referenced, note = _referenced(training, whole)
     seen = {name: column[~split.test] for name, column in matrix.labels.items()}
     ratio = reference_speed_ratio(seen) if referenced else None
     return Release(
-        facts=replace(model_facts(dataset, table, split.classes), reference_speed_ratio=ratio),
+        facts=replace(model_facts(dataset, table, split), reference_speed_ratio=ratio),
         distance=distance,
         test_outside=_share_outside(distances[split.test], distance),
         referenced=referenced,

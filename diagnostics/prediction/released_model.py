@@ -45,12 +45,11 @@ if TYPE_CHECKING:
     from diagnostics.training.cnn_files import NetworkFile
 
 NETWORK_FILE, CIRCULAR_FILE = "cnn.safetensors", "circular.safetensors"
-UNHASHED = "this model has no hashes of its files, so a changed bit in one is not seen; train again to have them"
 
 
 @dataclass(frozen=True, slots=True)
 class ModelPart:
-    """A file of a model folder: its name, the identity of the set it was trained on, its states and channels."""
+    """A file of a model folder: its name, the identity of the set it was trained on, its classes and channels."""
 
     file: str
     identity: str
@@ -77,7 +76,7 @@ def check_parts(folder: Path, facts: ModelFacts, parts: list[ModelPart]) -> None
             f"{name} {_listed(own)} instead of {_listed(expected)}"
             for name, own, expected in (
                 ("identity of the set", (part.identity,), (facts.identity,)),
-                ("states", part.classes, facts.classes),
+                ("classes", part.classes, facts.classes),
                 ("channels", tuple(sorted(part.channels)), tuple(sorted(facts.channels))),
             )
             if own != expected
@@ -87,7 +86,7 @@ def check_parts(folder: Path, facts: ModelFacts, parts: list[ModelPart]) -> None
 
 
 def check_size(folder: Path, file: str, classifier: FeatureClassifier) -> None:
-    """Check that a pipeline takes as many features as the names beside it, and knows no further states.
+    """Check that a pipeline takes as many features as the names beside it, and knows no further classes.
 
     Raises
     ------
@@ -98,7 +97,7 @@ def check_size(folder: Path, file: str, classifier: FeatureClassifier) -> None:
     highest, states = int(max(classifier.pipeline.classes_)), len(classifier.classes)
     differences = [f"takes {takes} features instead of {named}"] if takes != named else []
     if highest >= states:
-        differences.append(f"knows state {highest + 1} of {states}")
+        differences.append(f"knows class {highest + 1} of {states}")
     if differences:
         raise _foreign(folder, file, "does not belong to the names beside it", differences)
 
@@ -182,9 +181,7 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     folder = folder / MODELS_FOLDER if (folder / MODELS_FOLDER).is_dir() else folder
     if not (folder / FACTS_FILE).is_file():
         raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics report` wrote")
-    hashes = read_hashes(folder)
-    if hashes is not None:
-        check_files(folder, hashes)
+    check_files(folder, read_hashes(folder))
     facts, distance, referenced = read_facts(folder)
     accuracy = read_accuracy(folder)
     loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in accuracy, CIRCULAR_FILE: CIRCULAR in accuracy})
@@ -203,7 +200,7 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         referenced_distance=referenced,
         network=network,
         accuracy=accuracy,
-        note="; ".join(text for text in (note, "" if hashes else UNHASHED) if text),
+        note=note,
         own=_own_of(folder, classifiers, own),
         circular=circular,
     )

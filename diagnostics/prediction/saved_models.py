@@ -18,6 +18,7 @@ from diagnostics.indicators.classifier_table import table_settings
 from diagnostics.indicators.indicator import base_name
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
 from diagnostics.prediction.release import Release, release, save_release
+from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import Judged
@@ -74,9 +75,10 @@ def class_text(split: SpecimenSplit) -> str:
     """Return the classes, and which states they hold where that is not one each."""
     merged = {name: states for name, states in split.members.items() if len(states) > 1}
     if not merged:
-        return f"states: {', '.join(split.classes)}"
+        return f"{split.kind}s: {', '.join(split.classes)}"
     held = "; ".join(f"{name}: records of {', '.join(states)}" for name, states in merged.items())
-    return f"classes: {', '.join(split.classes)} ({held})"
+    told = "classes" if split.kind == STATE else "classes (primary faults)"
+    return f"{told}: {', '.join(split.classes)} ({held})"
 
 
 def _files(training: Training, dataset: Dataset) -> str:
@@ -236,7 +238,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
             export_circular_onnx(training.circular, folder / "circular.onnx")
         except (RuntimeError, ImportError) as error:
             notes.append(f"ONNX export of the circular network failed: {error}")
-    write_predictions(_predicted(training, table), identity, folder)
+    write_predictions(_predicted(training, table), identity, folder, training.split.kind)
     released = release(training, table, dataset)
     notes += [released.note] if released.note else []
     card = f"{model_card(training, dataset)}\n{release_card(released)}"

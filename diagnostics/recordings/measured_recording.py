@@ -102,6 +102,20 @@ class MeasuredRecording:
         """Length of the recording."""
         return next(iter(self.channels.values())).size / self.fs_hz
 
+    def shown_unit(self, channel: str) -> str:
+        """Return the unit of a channel as pages and pictures show it."""
+        unit = self.units.get(channel, ACCELERATION_UNIT)
+        return unit.replace("^2", "²").replace("^3", "³").replace("um", "µm")
+
+    @property
+    def levels_sentence(self) -> str:
+        """What unit the levels of each channel have, for captions."""
+        shown = {channel: self.shown_unit(channel) for channel in self.channels}
+        if len(set(shown.values())) == 1:
+            return f"Levels in {next(iter(shown.values()))}, ratios without unit."
+        each = ", ".join(f"of {channel} in {unit}" for channel, unit in shown.items())
+        return f"Levels {each}; ratios without unit."
+
 
 def read_recording(
     path: Path, names: tuple[str, ...], facts: RecordingFacts, units: tuple[str, ...] = ()

@@ -7,10 +7,13 @@ import numpy as np
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import explorer_link
 from diagnostics.page.wording import capitalised
+from diagnostics.records.record_classes import STATE
 from diagnostics.statistics.scores import Scores
 
 
-def confusion_table(scores: Scores, title: str, records: str = "test records", explorer: str = "") -> str:
+def confusion_table(
+    scores: Scores, title: str, records: str = "test records", explorer: str = "", kind: str = STATE
+) -> str:
     """Return the confusion matrix of one classifier.
 
     Parameters
@@ -22,6 +25,8 @@ def confusion_table(scores: Scores, title: str, records: str = "test records", e
         Which records are counted.
     explorer : str
         Page to explore with the predictions of this classifier; its records are behind every count.
+    kind : str
+        What a class is: `state` or `fault`.
     """
     classes, counts = scores.classes, scores.confusion
     share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
@@ -33,10 +38,10 @@ def confusion_table(scores: Scores, title: str, records: str = "test records", e
         for row, true in enumerate(classes)
     ]
     caption = (
-        f"{capitalised(title)}: true state in rows, named state in columns; {records}, and their "
-        f"share of the true state.{' A count leads to its records.' if explorer else ''}"
+        f"{capitalised(title)}: true {kind} in rows, named {kind} in columns; {records}, and their "
+        f"share of the true {kind}.{' A count leads to its records.' if explorer else ''}"
     )
-    return table(["True state", *classes], rows, caption=caption)
+    return table([f"True {kind}", *classes], rows, caption=caption)
 
 
 def _count(explorer: str, true: str, named: str, count: int, share: float) -> Cell:

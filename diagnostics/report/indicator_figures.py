@@ -9,7 +9,6 @@ import math
 import textwrap
 from collections.abc import Mapping, Sequence
 from functools import cache
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from diagnostics.indicators.registry import BY_NAME, indicator_titles, mesh_word
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.html import Cell
 from diagnostics.page.style import fault_colours, new_figure, state_ticks
-from diagnostics.records.channel_quantities import RECORDED, ShownQuantity
+from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.assessment import SIZES
 from diagnostics.statistics.detectable_size import NoiseCurve, detection_curve
@@ -112,11 +111,11 @@ def severity_figure(
     shown: Sequence[IndicatorResult],
     states: tuple[str, ...],
     healthy: tuple[str, ...],
-    held: Mapping[str, ShownQuantity] = MappingProxyType({}),
+    channels: Mapping[str, ShownQuantity],
 ) -> Figure:
     """Return each indicator over the states: median and 5 to 95 % of the records, and every specimen as a thin line.
 
-    `held` says what channels hold; levels of anything but accelerations have their unit at the axis.
+    `channels` says what channels hold; the unit of each indicator stands at its axis.
     """
     rows = (len(shown) + 1) // 2
     figure, axes = new_figure(rows, 2, height_in=0.8 + 1.6 * rows, sharex=True)
@@ -132,18 +131,19 @@ def severity_figure(
         if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
             axis.set_yscale("log")
         axis.set_title(panel_title(result.column), loc="left", fontsize=7)
-        if unit := other_unit(result.column, held):
-            axis.set_ylabel(f"[{unit}]", fontsize=7)
+        axis.set_ylabel(f"[{unit_of(result.column, channels)}]", fontsize=7)
         state_ticks(axis, ladder, fontsize=8 if len(ladder) <= CROWDED else 7)
     for axis in axes.ravel()[len(shown) :]:
         axis.set_visible(False)
     return figure
 
 
-def other_unit(column: str, held: Mapping[str, ShownQuantity]) -> str:
-    """Return the unit of a level of a channel that holds no acceleration; empty for ratios and accelerations."""
-    known, quantity = BY_NAME.get(base_name(column)), held.get(column.partition("__")[2], RECORDED)
-    return quantity.unit if known and known.unit == OF_CHANNEL and quantity != RECORDED else ""
+def unit_of(feature: str, channels: Mapping[str, ShownQuantity]) -> str:
+    """Return the unit of a feature by its name: that of its channel for levels and amplitudes, - for ratios."""
+    known = BY_NAME.get(base_name(feature))
+    if known is None or not known.unit:
+        return "-"
+    return channels[feature.partition("__")[2]].unit if known.unit == OF_CHANNEL else known.unit
 
 
 def _draw_ladders(axis: Any, labels: dict[str, np.ndarray], values: np.ndarray, ladder: tuple[str, ...]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from diagnostics.page.html import Cell, paragraph, table
 from diagnostics.page.wording import counted, decimal, joined
+from diagnostics.records.record_classes import STATE
 from diagnostics.report.confusion import confusion_table
 from diagnostics.training.nested_folds import KNOWN_ACCEPTED, Nested, Stranger
 
@@ -11,7 +12,7 @@ MOST_NAMES = 3
 """Names shown of what a class that training lacked is called."""
 
 
-def nested_blocks(found: Nested | None) -> list[str]:
+def nested_blocks(found: Nested | None, kind: str = STATE) -> list[str]:
     """Return the blocks; nothing where the set has too few gearboxes for folds."""
     if found is None:
         return []
@@ -21,7 +22,7 @@ def nested_blocks(found: Nested | None) -> list[str]:
         f"regression on indicators reaches a macro-AUROC of {decimal(area.value)} ({decimal(area.low)} to "
         f"{decimal(area.high)})."
     )
-    matrix = confusion_table(scores, "Nested folds over all gearboxes", "records of all gearboxes")
+    matrix = confusion_table(scores, "Nested folds over all gearboxes", "records of all gearboxes", kind=kind)
     return [paragraph(sentence), matrix, *([_strangers(found.strangers)] if found.strangers else [])]
 
 

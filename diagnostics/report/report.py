@@ -26,6 +26,7 @@ from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted, decimal, joined
 from diagnostics.prediction.saved_models import save_models
+from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import SHAM, ordered_states
 from diagnostics.report.answer import answer_figure, answer_sentences
 from diagnostics.report.drawing import draw
@@ -102,8 +103,8 @@ def write_report(
     seed : int
         Seeds bootstrap, permutations and network.
     network : NetworkOptions, optional
-        Whether and how to train the network, and whether to run the studies; without torch it is left out with a
-        note.
+        What a class is, whether and how to train the network, and whether to run the studies; without torch the
+        network is left out with a note.
     other : siggen Dataset, optional
         Another set to judge on.
     own : sequence of OwnIndicator
@@ -122,11 +123,11 @@ def write_report(
     table = set_table(dataset, stage, own=own)
     second = other_table(other, stage, own) if other is not None else None
     folder.mkdir(parents=True, exist_ok=True)
-    matrix = feature_matrix(table)
+    network = network or NetworkOptions()
+    matrix = feature_matrix(table, set_classes(dataset, network.classes))
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)
         advance()
-    network = network or NetworkOptions()
     training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
     wanted = network.studies
     studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if wanted else (None, [])

@@ -64,7 +64,8 @@ def wrong_records_table(training: Training, matrix: FeatureMatrix, explorer: str
     if not rows.size:
         return ""
     order = rows[np.argsort(-wrong[:, rows].sum(axis=0), kind="stable")][:MOST_RECORDS]
-    head = ["Record", "Gearbox", "Area [mm²]", "True state", *(capitalised(TITLES[name]) for name in said)]
+    true = f"True {training.split.kind}"
+    head = ["Record", "Gearbox", "Area [mm²]", true, *(capitalised(TITLES[name]) for name in said)]
     left = f" The first {MOST_RECORDS} are shown." if rows.size > MOST_RECORDS else ""
     caption = (
         f"{counted(int(rows.size), 'test record')} of {labels[CLASS].size} that some classifier names wrongly "
@@ -188,7 +189,7 @@ def _scores(training: Training | None) -> list[str]:
         tables.calibration_table(training),
         *detection_blocks(training),
         *score_blocks(training),
-        *nested_blocks(training.nested),
+        *nested_blocks(training.nested, training.split.kind),
     ]
 
 
@@ -198,7 +199,7 @@ def _named(reported: Reported) -> list[str]:
     if training is None:
         return []
     matrices = [
-        confusion_table(found.scores, TITLES[found.name], explorer="" if place else explorer)
+        confusion_table(found.scores, TITLES[found.name], explorer="" if place else explorer, kind=training.split.kind)
         for place, found in enumerate(training.judged)
     ]
     wrong = wrong_records_table(training, reported.matrix, explorer)

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.indicators.indicator import OF_CHANNEL, base_name
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.registry import BY_NAME
 from diagnostics.page.style import new_figure, state_ticks
 from diagnostics.records.channel_quantities import ShownQuantity
-from diagnostics.report.indicator_figures import panel_title
+from diagnostics.report.indicator_figures import panel_title, unit_of
 from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.studies import CurvePoint
@@ -122,11 +120,3 @@ def _draw_indicator(
     if (values > 0).all() and values.max() > 30.0 * values.min():
         axis.set_yscale("log")
     axis.set_title(panel_title(feature, 50), loc="left", fontsize=9, fontweight="bold")
-
-
-def unit_of(feature: str, channels: Mapping[str, ShownQuantity]) -> str:
-    """Return the unit of a feature by its name: that of its channel for levels and amplitudes, - for ratios."""
-    known = BY_NAME.get(base_name(feature))
-    if known is None or not known.unit:
-        return "-"
-    return channels[feature.partition("__")[2]].unit if known.unit == OF_CHANNEL else known.unit

@@ -18,6 +18,7 @@ from diagnostics.page.wording import (
     signed,
     signed_limits,
 )
+from diagnostics.records.record_classes import FAULT, STATE
 from diagnostics.report.indicator_figures import in_a_sentence
 from diagnostics.statistics.comparison import SATURATED, Comparison
 from diagnostics.statistics.evaluation import Interval
@@ -73,7 +74,9 @@ def scores_sentence(training: Training) -> str:
 
 
 def _noun(training: Training) -> str:
-    return "state" if all(len(states) == 1 for states in training.split.members.values()) else "class"
+    if training.split.kind == FAULT:
+        return FAULT
+    return STATE if all(len(states) == 1 for states in training.split.members.values()) else "class"
 
 
 def comparison_sentence(training: Training) -> str:

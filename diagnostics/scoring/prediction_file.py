@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.records.record_classes import STATE
 from diagnostics.records.state_classes import CLASS
 from diagnostics.scoring.tasks import DAMAGE, PROBABILITY, TASKS, Truth, probabilities
 from diagnostics.statistics.evaluation import Predictions
@@ -28,7 +29,7 @@ SHOWN = 5
 
 PREDICTIONS_FILE, MODELS_FOLDER = "predictions.parquet", "models"
 RECORD, CLASSIFIER, SPLIT = "record_id", "classifier", "split"
-IDENTITY_KEY = b"diagnostics.identity"
+IDENTITY_KEY, KIND_KEY = b"diagnostics.identity", b"diagnostics.classes"
 
 
 def matched_columns(table: pa.Table, truth: Truth, where: Any) -> dict[str, np.ndarray]:
@@ -122,8 +123,9 @@ def _numbers(column: pa.ChunkedArray, name: str, record_id: np.ndarray, problems
 
 
 def _classes(names: list[Any], truth: Truth, record_id: np.ndarray, problems: list[str]) -> np.ndarray:
-    """Return the positions of named classes; a state stands for its class."""
-    place = {state: truth.classes.index(name) for state, name in truth.class_of.items()}
+    """Return the positions of named classes; a state stands for its class, unless a class has that name."""
+    place = {name: truth.classes.index(own) for name, own in truth.told.class_of.items()}
+    place |= {name: number for number, name in enumerate(truth.classes)}
     found = np.array([place.get(name, -1) for name in names], dtype=np.int64)
     if (found < 0).any():
         first = next(name for name, number in zip(names, found.tolist(), strict=True) if number < 0)
@@ -167,12 +169,15 @@ class PredictedRecords:
     predictions: Predictions
 
 
-def write_predictions(entries: Sequence[PredictedRecords], identity: str, folder: Path) -> Path:
-    """Write the probabilities of all classifiers into the folder of their models; return the file's path."""
+def write_predictions(entries: Sequence[PredictedRecords], identity: str, folder: Path, kind: str = STATE) -> Path:
+    """Write the probabilities of all classifiers into the folder of their models; return the file's path.
+
+    `identity` is that of the set, `kind` what the classes are.
+    """
     from pyarrow import parquet
 
     table = pa.concat_tables([_rows(entry) for entry in entries]).replace_schema_metadata(
-        {IDENTITY_KEY: identity.encode()}
+        {IDENTITY_KEY: identity.encode(), KIND_KEY: kind.encode()}
     )
     path = folder / PREDICTIONS_FILE
     parquet.write_table(table, path, compression="zstd")
@@ -250,3 +255,16 @@ def check_identity(table: pa.Table, identity: str, where: Any) -> None:
             f"{where}: holds predictions of the set {named[:12]}; this one is {identity[:12]}. Train on this set: "
             "siggen-diagnostics report"
         )
+
+
+def check_classes(table: pa.Table, kind: str, where: Any) -> None:
+    """Check that predictions which say what their classes are mean the same by a class.
+
+    Raises
+    ------
+    UsageError
+        If they do not.
+    """
+    named = (table.schema.metadata or {}).get(KIND_KEY, kind.encode()).decode()
+    if named != kind:
+        raise UsageError(f"{where}: its classes are {named}s; asked for were {kind}s. Give --classes {named}")

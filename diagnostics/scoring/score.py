@@ -15,9 +15,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.prediction_file import (
     CLASSIFIER,
     baselines_file,
+    check_classes,
     check_identity,
     matched_columns,
     prediction_table,
@@ -72,6 +74,8 @@ class Scored:
         Which records; scores of sets with different identities are not comparable.
     records, gearboxes : int
     rows : tuple of ScoreRow
+    classes : str
+        What a class is: `state` or `fault`.
     """
 
     set_name: str
@@ -80,6 +84,7 @@ class Scored:
     records: int
     gearboxes: int
     rows: tuple[ScoreRow, ...]
+    classes: str = STATE
 
     def to_table(self) -> pa.Table:
         """Return one row per score: task, measure, records, name, score, low, high, chance, difference with limits."""
@@ -88,7 +93,7 @@ class Scored:
     def _entry(self, row: ScoreRow) -> dict[str, object]:
         apart = row.difference or Interval(math.nan, math.nan, math.nan)
         return {
-            "set": self.set_name, "identity": self.identity, "split": self.split,
+            "set": self.set_name, "identity": self.identity, "split": self.split, "classes": self.classes,
             "task": row.task, "measure": row.measure, "records": row.records, "name": row.name,
             "score": row.score.value, "low": row.score.low, "high": row.score.high, "chance": row.chance,
             "difference": apart.value, "difference_low": apart.low, "difference_high": apart.high,
@@ -98,7 +103,8 @@ class Scored:
         """Return the table as text, a block for every task, measure and part of the records."""
         head = (
             f"{self.set_name} ({self.identity[:12]}), {self.split}: {counted(self.records, 'record')} of "
-            f"{counted(self.gearboxes, 'gearbox', 'gearboxes')}; limits of 95 % over gearboxes"
+            f"{counted(self.gearboxes, 'gearbox', 'gearboxes')}; "
+            f"classes are {self.classes}s; limits of 95 % over gearboxes"
         )
         lines, block, first = [head], "", self.rows[0].name
         width = max(len(TITLES.get(row.name, row.name)) for row in self.rows)
@@ -122,7 +128,13 @@ def _shown(found: Interval, form: str) -> str:
 
 
 def score(
-    dataset: Dataset, predictions: Any, *, baselines: str | Path | None = None, split: str = TEST, seed: int = 0
+    dataset: Dataset,
+    predictions: Any,
+    *,
+    baselines: str | Path | None = None,
+    split: str = TEST,
+    seed: int = 0,
+    classes: str = STATE,
 ) -> Scored:
     """Judge predictions for the records of a split by every task that their columns answer.
 
@@ -141,6 +153,8 @@ def score(
         `test`, or `validation` to choose by.
     seed : int
         Of the resampled gearboxes; 0 gives the numbers of the report.
+    classes : str
+        What a class is: `state`, or primary `fault`; healthy ones are one class.
 
     Returns
     -------
@@ -152,7 +166,7 @@ def score(
     UsageError
         If records are missing, come twice or are unknown, or values cannot be; all of it in one message.
     """
-    truth, identity = truth_of(dataset, split), str(dataset.manifest["identity"])
+    truth, identity = truth_of(dataset, split, classes), str(dataset.manifest["identity"])
     where = predictions if isinstance(predictions, str | Path) else "predictions"
     columns = _by_classifier(prediction_table(predictions), truth, identity, where, YOURS)
     first = next(iter(columns))
@@ -165,12 +179,13 @@ def score(
     rows = [row for task in TASKS for row in _task_rows(task, columns, first, truth, weights)]
     if not rows:
         raise UsageError(f"{dataset.path}: the split {split} has a single class, so there is nothing to tell apart")
-    return Scored(dataset.path.name, identity, split, truth.record_id.size, truth.gearboxes, tuple(rows))
+    return Scored(dataset.path.name, identity, split, truth.record_id.size, truth.gearboxes, tuple(rows), classes)
 
 
 def _by_classifier(table: pa.Table, truth: Truth, identity: str, where: Any, name: str) -> dict[str, Answers]:
     """Return the checked columns of every classifier of a table; of the only one under the given name."""
     check_identity(table, identity, where)
+    check_classes(table, truth.told.kind, where)
     if CLASSIFIER not in table.column_names:
         return {name: matched_columns(table, truth, where)}
     names = [str(found) for found in pc.unique(table.column(CLASSIFIER)).to_pylist()]

@@ -12,13 +12,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnostics.records.state_classes import CLASS, class_members, class_names, healthy_states
+from diagnostics.records.record_classes import STATE, RecordClasses, set_classes
+from diagnostics.records.state_classes import CLASS
 from diagnostics.statistics.detection import fewest_gearboxes
 from diagnostics.statistics.evaluation import Predictions, balanced_accuracy, macro_auroc, weighted_auc
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
 
-LABELS = ("record_id", "specimen_id", "split", "state", "state_id", "fault")
+LABELS = ("record_id", "specimen_id", "split", "state")
 
 DAMAGE, PROBABILITY = "damage", "p_"
 """Columns of predictions beside the class: a number that rises with damage, and what stands before a probability."""
@@ -37,12 +38,8 @@ class Truth:
         In the order of the set.
     label : (n,) int
         Position of each record's class in `classes`.
-    classes : tuple of str
-        Of the whole set; all healthy states are one, under the name of the first.
-    healthy : str or None
-        That class; None where no state is healthy throughout.
-    class_of : dict of str to str
-        The class of every state.
+    told : RecordClasses
+        The classes of the whole set.
     elsewhere : (m,) int
         `record_id` of the records of the other splits.
     """
@@ -51,10 +48,18 @@ class Truth:
     record_id: np.ndarray
     specimen: np.ndarray
     label: np.ndarray
-    classes: tuple[str, ...]
-    healthy: str | None
-    class_of: dict[str, str]
+    told: RecordClasses
     elsewhere: np.ndarray
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """The classes of the whole set."""
+        return self.told.names
+
+    @property
+    def healthy(self) -> str | None:
+        """The healthy class; None where no state is healthy throughout."""
+        return self.told.healthy
 
     @property
     def damaged(self) -> np.ndarray:
@@ -72,31 +77,27 @@ class Truth:
         return replace(self, record_id=self.record_id[chosen], specimen=self.specimen[chosen], label=self.label[chosen])
 
 
-def truth_of(dataset: Dataset, split: str) -> Truth:
-    """Return what is true of the records of a split.
+def truth_of(dataset: Dataset, split: str, kind: str = STATE) -> Truth:
+    """Return what is true of the records of a split; `kind` says what a class is, `state` or `fault`.
 
     Raises
     ------
     UsageError
-        If the split has no records.
+        If the split has no records, or the kind is unknown.
     """
     table = dataset.labels(columns=list(LABELS))
     labels = {name: np.asarray(table.column(name).to_pylist()) for name in LABELS}
-    labels[CLASS] = class_names(labels)
-    classes = tuple(class_members(labels))
+    told = set_classes(dataset, kind)
     chosen = labels["split"] == split
     if not chosen.any():
         present = [f"{name} ({counted(int((labels['split'] == name).sum()), 'record')})" for name in dataset.splits]
         raise UsageError(f"{dataset.path}: received the split {split!r}; those with records are {', '.join(present)}")
-    place = {name: number for number, name in enumerate(classes)}
     return Truth(
         split=split,
         record_id=labels["record_id"][chosen],
         specimen=labels["specimen_id"][chosen],
-        label=np.array([place[name] for name in labels[CLASS][chosen].tolist()], dtype=np.int64),
-        classes=classes,
-        healthy=next(iter(healthy_states(labels)), None),
-        class_of=dict(zip(labels["state"].tolist(), labels[CLASS].tolist(), strict=True)),
+        label=told.places(labels["state"][chosen]),
+        told=told,
         elsewhere=labels["record_id"][~chosen],
     )
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnostics.base.progress import Stage
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.records.record_classes import STATE, check_kind
 from diagnostics.statistics.calibration import calibrated, fitted_temperature
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, Judged, judged, validation_score
@@ -36,7 +37,7 @@ class TrainedNetworkFile:
 
 @dataclass(frozen=True, slots=True)
 class NetworkOptions:
-    """Whether to train the network, where, and with changed paths and noise or not.
+    """How to train: what a class is, whether to train the network, where, and with changed paths and noise or not.
 
     Attributes
     ----------
@@ -49,12 +50,23 @@ class NetworkOptions:
     studies : bool
         Whether to do what takes minutes: train a second network without random paths, compare ways to split, and draw a
         learning curve.
+    classes : str
+        What every classifier tells apart: `state`, or primary `fault`; healthy ones are one class.
+
+    Raises
+    ------
+    UsageError
+        If the classes are of an unknown kind.
     """
 
     cnn: bool = True
     device: str = "cpu"
     augment: bool = True
     studies: bool = False
+    classes: str = STATE
+
+    def __post_init__(self) -> None:
+        check_kind(self.classes)
 
 
 def check_device(device: str) -> None:

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.records.record_classes import STATE, set_classes
 from diagnostics.records.recording import meshes_behind
-from diagnostics.records.state_classes import HEALTHY, class_names
+from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.training.baselines import FeatureClassifier, state_index
 from diagnostics.training.network_training import TrainedNetworkFile
@@ -19,13 +20,13 @@ OTHER_SPECIMENS = 1 << 40
 """Added to specimen numbers of the other set where both sets are in one table: they share numbers, not gearboxes."""
 
 
-def check_other_set(dataset: Dataset, other: Dataset) -> None:
-    """Check that classifiers of a set can be judged on another one.
+def check_other_set(dataset: Dataset, other: Dataset, kind: str = STATE) -> None:
+    """Check that classifiers of a set can be judged on another one; `kind` says what their classes are.
 
     Raises
     ------
     UsageError
-        If channels, sampling rate or states differ, or both are the same set.
+        If channels, sampling rate or classes differ, or both are the same set.
     """
     if dataset.manifest["identity"] == other.manifest["identity"]:
         raise UsageError(f"--test {other.path}: is the set that is trained on; leave --test out, or give another set")
@@ -47,19 +48,12 @@ def check_other_set(dataset: Dataset, other: Dataset) -> None:
             f"--test {other.path}: received the further meshes {meshes[1]}; the classifiers take indicators of "
             f"{meshes[0]}. Generate it with the same names in `stages`."
         )
-    known, found = (_states(each) for each in (dataset, other))
+    known, found = (set(set_classes(each, kind, HEALTHY).names) for each in (dataset, other))
     if not found <= known:  # any healthy state belongs to the healthy class, whatever its name
         raise UsageError(
-            f"--test {other.path}: has the states {', '.join(sorted(found - known))}, which training does not know; "
-            f"allowed are {', '.join(sorted(known))}. Name its states like those, or train on a set that has them."
+            f"--test {other.path}: has the {kind}s {', '.join(sorted(found - known))}, which training does not know; "
+            f"allowed are {', '.join(sorted(known))}. Name its {kind}s like those, or train on a set that has them."
         )
-
-
-def _states(dataset: Dataset) -> set[str]:
-    """Return the states of a set, all healthy ones under one name."""
-    table = dataset.labels(columns=["state", "state_id", "fault"])
-    labels = {name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}
-    return set(class_names(labels, HEALTHY).tolist())
 
 
 def classifier_predictions(model: FeatureClassifier, matrix: FeatureMatrix) -> Predictions:

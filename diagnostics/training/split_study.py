@@ -19,8 +19,9 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.record import record_values
 from diagnostics.records.gear_train import gear_train
+from diagnostics.records.record_classes import RecordClasses
 from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
-from diagnostics.records.state_classes import CLASS, class_names
+from diagnostics.records.state_classes import CLASS
 from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
 from diagnostics.statistics.scores import Scores, area_interval, scores
 from diagnostics.training.baselines import fitted_classifier, rms_features, state_index
@@ -41,12 +42,10 @@ STRENGTH = 0.3
 """C of all splits: weak enough that a classifier can remember gearboxes, which is what leaky splits reward."""
 
 
-def window_matrix(
-    dataset: Dataset, advance: Callable[[], None] | None = None, healthy: str | None = None
-) -> FeatureMatrix:
+def window_matrix(dataset: Dataset, classes: RecordClasses, advance: Callable[[], None] | None = None) -> FeatureMatrix:
     """Return the indicators of windows that follow each other without overlap, with the labels of their records.
 
-    `healthy` names the healthy class where it is not the first healthy state of the set.
+    `classes` are those of the set.
 
     Raises
     ------
@@ -74,7 +73,7 @@ def window_matrix(
     names = tuple(rows[0])
     values = np.array([[row[name] for name in names] for row in rows])
     columns = {name: np.array([label[name] for label in labels]) for name in LABEL_NAMES}
-    return FeatureMatrix(values, names, {**columns, CLASS: class_names(columns, healthy)})
+    return FeatureMatrix(values, names, {**columns, CLASS: classes.of(columns["state"])})
 
 
 def windows_of(record: Recording) -> Iterator[Recording]:

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnostics.records.state_classes import CLASS, class_members, class_names, healthy_states
+from diagnostics.records.record_classes import FAULT, STATE, RecordClasses, record_classes
 from siggen.errors import DatasetError
 
 TRAIN, VALIDATION, TEST = "train", "validation", "test"
 FEWEST_SPECIMENS = 2
+DIFFERENT = {STATE: "states that differ by damage", FAULT: "faults, of which healthy counts as one"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,11 +23,13 @@ class SpecimenSplit:
     train, validation, test : (n,) bool
         Whose records are whose.
     classes : tuple of str
-        States in the order of the configuration, all healthy ones as one class under the name of the first.
+        In the order of the configuration.
     healthy : str or None
         Name of that class; None where no state is healthy throughout.
     members : dict of str to tuple of str
         States of every class.
+    kind : str
+        What a class is: `state` or `fault`.
     """
 
     train: np.ndarray
@@ -35,6 +38,7 @@ class SpecimenSplit:
     classes: tuple[str, ...]
     healthy: str | None = None
     members: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    kind: str = STATE
 
 
 def check_specimens(specimen: np.ndarray, split: np.ndarray) -> None:
@@ -57,19 +61,21 @@ def check_specimens(specimen: np.ndarray, split: np.ndarray) -> None:
         )
 
 
-def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
+def specimen_split(labels: dict[str, np.ndarray], classes: RecordClasses | None = None) -> SpecimenSplit:
     """Return the split of labelled records.
 
     Parameters
     ----------
     labels : dict of str to (n,)
         Columns `specimen_id`, `split`, `state`, `state_id`, `fault`.
+    classes : RecordClasses, optional
+        Of the set; default its states, the healthy ones as one.
 
     Raises
     ------
     DatasetError
         If a specimen is in two splits, training or test has no specimen, training has a single
-        state, or a single specimen of a state.
+        class, or a single specimen of a class.
     """
     check_specimens(labels["specimen_id"], labels["split"])
     masks = {name: labels["split"] == name for name in (TRAIN, VALIDATION, TEST)}
@@ -80,30 +86,34 @@ def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
                 f"split {name!r} has no specimens: received {_listed(counts)}; training and judging need at least one "
                 "specimen each. Generate more specimens (`--set specimens=N`, new folder) or change `splits`."
             )
-    own = class_names(labels)
-    members = class_members({**labels, CLASS: own})
-    _check_classes(labels, own, masks[TRAIN])
-    healthy = next(iter(healthy_states(labels)), None)
-    return SpecimenSplit(masks[TRAIN], masks[VALIDATION], masks[TEST], tuple(members), healthy, members)
+    classes = classes or record_classes(labels)
+    _check_classes(labels, classes, masks[TRAIN])
+    told = (classes.names, classes.healthy, classes.members, classes.kind)
+    return SpecimenSplit(masks[TRAIN], masks[VALIDATION], masks[TEST], *told)
 
 
-def _check_classes(labels: dict[str, np.ndarray], own: np.ndarray, train: np.ndarray) -> None:
+def _check_classes(labels: dict[str, np.ndarray], classes: RecordClasses, train: np.ndarray) -> None:
     """Check that training has two classes, and of each more than one specimen."""
+    own = classes.of(labels["state"])
     specimens = {
         name: int(np.unique(labels["specimen_id"][train & (own == name)]).size)
         for name in dict.fromkeys(own[train].tolist())
     }
     if len(specimens) < 2:
         states = sorted(set(labels["state"][train].tolist()))
-        found = f"the single state {states}" if len(states) == 1 else f"healthy states only ({', '.join(states)})"
+        found = f"the single {classes.kind} {sorted(specimens)}"
+        if len(states) > 1:
+            found = "healthy states only" if classes.healthy in specimens else found
+            found += f" ({', '.join(states)})"
         raise DatasetError(
-            f"training has {found}; a classifier needs at least two states that differ by damage. Add damaged "
+            f"training has {found}; a classifier needs at least two {DIFFERENT[classes.kind]}. Add damaged "
             "and healthy states under `states` in the configuration, and generate the set into a new folder."
         )
-    if single := [state for state, count in specimens.items() if count < FEWEST_SPECIMENS]:
+    if single := [name for name, count in specimens.items() if count < FEWEST_SPECIMENS]:
         raise DatasetError(
             f"training has one specimen of {', '.join(single)}; a classifier would learn that gearbox instead of its "
-            "state. Generate more specimens (`--set specimens=N`, new folder) or give `splits` a larger share of train."
+            f"{classes.kind}. Generate more specimens (`--set specimens=N`, new folder) or give `splits` a larger "
+            "share of train."
         )
 
 

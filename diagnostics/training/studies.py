@@ -17,6 +17,7 @@ from diagnostics.base.progress import Stage
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.records.record_classes import set_classes
 from diagnostics.statistics.evaluation import macro_auroc
 from diagnostics.training.baselines import rms_features, state_index, train_classifier
 from diagnostics.training.split_study import SplitScore, rows_of_study, split_study, window_matrix
@@ -108,11 +109,11 @@ def run_studies(
         Told of every step.
     """
     with stage("indicators of windows", int(matrix.values.shape[0])) as advance:
-        windows = window_matrix(dataset, advance)
+        windows = window_matrix(dataset, set_classes(dataset, split.kind, split.healthy), advance)
     second = None
     if other is not None:
         with stage("windows of the other set", int(other.labels(columns=["record_id"]).num_rows)) as advance:
-            second = window_matrix(other, advance, split.healthy)
+            second = window_matrix(other, set_classes(other, split.kind, split.healthy), advance)
     with stage("splits", rows_of_study(second is not None)) as advance:
         splits = split_study(windows, split.classes, seed, second, advance)
     with stage("learning curve", len(curve_sizes(matrix, split))) as advance:

@@ -14,6 +14,7 @@ from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.classifier_table import feature_matrix, table_notes, table_settings
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import record_table
+from diagnostics.records.record_classes import set_classes
 from diagnostics.statistics.comparison import Comparison, comparison, state_auc
 from diagnostics.statistics.evaluation import Interval, Predictions
 from diagnostics.statistics.judgement import (
@@ -123,7 +124,7 @@ def train_models(
     seed : int
         Seeds bootstrap, permutations and network.
     network : NetworkOptions, optional
-        Whether and how to train the network.
+        What a class is; whether and how to train the network.
     other : OtherSet, optional
         A set to judge all classifiers on as well.
     stage : Stage
@@ -135,8 +136,9 @@ def train_models(
         If the split cannot be used (see `specimen_split`) or records are too short for a window.
     """
     options = network or NetworkOptions()
-    matrix = feature_matrix(table)
-    split = specimen_split(matrix.labels)
+    classes = set_classes(dataset, options.classes)
+    matrix = feature_matrix(table, classes)
+    split = specimen_split(matrix.labels, classes)
     models = _feature_models(matrix, split, seed, stage)
     with stage("permuted labels", PERMUTATIONS) as advance:
         control = permutation_control(matrix, split, seed, strength=models[INDICATORS].strength, advance=advance)
@@ -158,7 +160,7 @@ def train_models(
         split=split,
         specimens=specimens,
         notes=tuple(notes),
-        other=_judge_other(models, trained, circular, results, other, split.healthy, seed, stage) if other else (),
+        other=_judge_other(models, trained, circular, results, other, split, seed, stage) if other else (),
         other_name=other.dataset.path.name if other else "",
         comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
@@ -231,12 +233,12 @@ def _judge_other(
     circular: TrainedCircularFile | None,
     results: list[Judged],
     other: OtherSet,
-    healthy: str | None,
+    split: SpecimenSplit,
     seed: int,
     stage: Stage,
 ) -> tuple[Judged, ...]:
     """Judge every classifier on all records of the other set, none of whose gearboxes was trained on."""
-    matrix = feature_matrix(other.table, healthy)
+    matrix = feature_matrix(other.table, set_classes(other.dataset, split.kind, split.healthy))
     found: dict[str, tuple[Predictions, float]] = {
         name: (classifier_predictions(model, matrix), model.temperature) for name, model in models.items()
     }
@@ -249,7 +251,7 @@ def _judge_other(
         votes = circular_predictions_of(circular, _averages(other.dataset, other.table), matrix)
         found[CIRCULAR] = (votes, circular.trained.temperature)
     details = {result.name: result.details for result in results}
-    return tuple(judged(name, *votes, np.empty(0), details[name], seed, healthy) for name, votes in found.items())
+    return tuple(judged(name, *votes, np.empty(0), details[name], seed, split.healthy) for name, votes in found.items())
 
 
 def _comparisons(results: list[Judged], healthy: str | None, seed: int) -> tuple[Comparison, ...]:
@@ -279,12 +281,15 @@ def _rms_severe(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSpl
 def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[AreaScores, ...]:
     """Judge the damaged area as a number, beside the median of the training records."""
     test, alone = matrix.rows(split.test), matrix.columns(rms_features(matrix.names))
-    by_state = mean_areas(matrix, split)
+    by_class = mean_areas(matrix, split)
     predicted = {
         "ridge regression on indicators": area_predictions(matrix, split),
         "gradient boosting on indicators": boosted_areas(matrix, split, seed),
         "ridge regression on RMS": area_predictions(alone, split),
-        **{f"{TITLES[found.name]}, by its states": expected_area(found.predictions, by_state) for found in results},
+        **{
+            f"{TITLES[found.name]}, by its {split.kind}s": expected_area(found.predictions, by_class)
+            for found in results
+        },
         "median of training": np.full(
             test.values.shape[0], float(np.median(matrix.labels["damaged_area_mm2"][split.train]))
         ),
@@ -296,6 +301,7 @@ def training_metrics(training: Training) -> dict[str, Any]:
     """Return what `metrics.json` says about the classifiers."""
     return {
         "states": [state for states in training.split.members.values() for state in states],
+        "classes_are": training.split.kind,
         "classes": {name: list(states) for name, states in training.split.members.items()},
         "specimens": training.specimens,
         "notes": list(training.notes),

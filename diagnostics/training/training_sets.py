@@ -12,6 +12,7 @@ from diagnostics.base.progress import Stage
 from diagnostics.indicators.classifier_table import check_table, classifier_table
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import record_table
+from diagnostics.records.record_classes import STATE
 from diagnostics.records.usable_records import with_channels
 from diagnostics.training.other_set import check_other_set
 from diagnostics.training.training import OtherSet
@@ -19,8 +20,10 @@ from siggen.dataset import reading
 from siggen.dataset.reading import Dataset
 
 
-def open_sets(directory: Path, test: Path | None, channels: Sequence[str]) -> tuple[Any, Any | None]:
-    """Open both sets with the named channels, all where none is named.
+def open_sets(
+    directory: Path, test: Path | None, channels: Sequence[str], classes: str = STATE
+) -> tuple[Any, Any | None]:
+    """Open both sets with the named channels, all where none is named; `classes` are states or faults.
 
     Raises
     ------
@@ -33,7 +36,7 @@ def open_sets(directory: Path, test: Path | None, channels: Sequence[str]) -> tu
     if test is None:
         return dataset, None
     other = with_channels(reading.open(test), channels)
-    check_other_set(dataset, other)
+    check_other_set(dataset, other, classes)
     return dataset, other
 
 

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
@@ -134,11 +135,11 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     assert all((record["seen"] == "seen in training") == (record["split"] != "test") for record in records)
     seen = sum(record["split"] != "test" for record in records)
     assert f"{seen} of {len(records)}\N{NO-BREAK SPACE}records are of the gearboxes that the model was trained" in text
-    table = record_table(dataset)
-    assert set(predicted_labels(table, "another set", tmp_path / "report")["seen"]) == {"no"}
+    table, another = record_table(dataset), replace(dataset, manifest={"identity": "another set"})
+    assert set(predicted_labels(table, another, tmp_path / "report")["seen"]) == {"no"}
     other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))
     with pytest.raises(UsageError, match="columns that the set does not have"):
-        predicted_labels(other, "", tmp_path / "report")  # type: ignore[arg-type]
+        predicted_labels(other, dataset, tmp_path / "report")  # type: ignore[arg-type]
 
 
 @pytest.mark.skipif(not BROWSER, reason="needs a browser")

@@ -33,7 +33,7 @@ def test_test_records_widen_no_range_and_validation_records_do(
 ) -> None:
     split = np.asarray(features.column("split").to_pylist())
     values = np.select([split == "train", split == "validation"], ends[:2], ends[2])
-    facts = model_facts(dataset, with_column(features, name, values), ("healthy", "slight", "severe"))
+    facts = model_facts(dataset, with_column(features, name, values), specimen_split(feature_matrix(features).labels))
     assert covered(facts) == ends[:2]
 
 
@@ -41,7 +41,7 @@ def test_test_records_bring_no_teeth_and_no_shorter_averages(dataset: Any, featu
     judged = np.asarray(features.column("split").to_pylist()) == "test"
     table = with_column(features, "teeth_gear", np.where(judged, 50, 47))
     table = with_column(table, "revolutions_pinion", np.where(judged, 5, 28))
-    facts = model_facts(dataset, table, ("healthy", "slight", "severe"))
+    facts = model_facts(dataset, table, specimen_split(feature_matrix(features).labels))
     assert facts.teeth == ((18, 47),)
     assert facts.fewest_revolutions == 28
 

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from diagnostics.cli.app import main
+from diagnostics.prediction.model_facts import sealed_text, unsealed_text
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.training.baselines import logistic_pipeline
@@ -43,7 +44,7 @@ def change(path: Path, **entries: Any) -> None:
     ("entry", "message"),
     [
         ({"identity": "f" * 64}, f"identity of the set {'f' * 12} instead of {'0' * 12}"),
-        ({"classes": ["healthy", "severe", "slight"]}, "states healthy, severe, slight instead of healthy, slight"),
+        ({"classes": ["healthy", "severe", "slight"]}, "classes healthy, severe, slight instead of healthy, slight"),
     ],
 )
 def test_names_of_another_model_are_refused(entry: dict[str, Any], message: str, folder: Path) -> None:
@@ -73,7 +74,7 @@ def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
     pipeline = logistic_pipeline().fit([[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [3.0, 1.0]], [0, 1, 2, 3])
     skops.io.dump(pipeline, folder / "classifier.skops")
     reseal(folder)
-    with pytest.raises(UsageError, match=r"classifier\.skops: does not belong .*takes 2 features .* state 4 of 3"):
+    with pytest.raises(UsageError, match=r"classifier\.skops: does not belong .*takes 2 features .* class 4 of 3"):
         load_model(folder)
 
 
@@ -145,11 +146,17 @@ def test_features_in_another_order_are_refused_by_the_hash(folder: Path) -> None
         load_model(folder)
 
 
-def test_a_model_from_before_the_hashes_is_read_and_said_to_have_none(folder: Path) -> None:
-    content = json.loads((folder / "model.json").read_text())
-    old = {name: value for name, value in content.items() if name not in ("files", "digest")}
-    facts = {name: value for name, value in old["facts"].items() if name != "units"} | {"unit": "m/s^2"}
-    (folder / "model.json").write_text(json.dumps(old | {"format": "siggen-diagnostics model 3", "facts": facts}))
-    model = load_model(folder)
-    assert "no hashes of its files" in model.note
-    assert model.facts.units == ("m/s^2",) * len(model.facts.channels)
+def test_a_model_that_does_not_say_what_its_classes_are_is_refused_with_the_way_out(folder: Path) -> None:
+    content = unsealed_text((folder / "model.json").read_text(encoding="utf-8"))
+    assert content["facts"].pop("class_kind") == "state"
+    (folder / "model.json").write_text(sealed_text(content | {"format": "siggen-diagnostics model 5"}))
+    with pytest.raises(UsageError, match=r"received format '.* 5'.*Train again: .* --models-only"):
+        load_model(folder)
+
+
+def test_an_unknown_kind_of_class_in_a_model_is_refused(folder: Path) -> None:
+    content = unsealed_text((folder / "model.json").read_text(encoding="utf-8"))
+    content["facts"]["class_kind"] = "colour"
+    (folder / "model.json").write_text(sealed_text(content))
+    with pytest.raises(UsageError, match="received 'colour'; allowed are state, fault"):
+        load_model(folder)

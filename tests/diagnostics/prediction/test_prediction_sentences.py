@@ -23,6 +23,7 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
         contradiction="",
         own_state=None,
         classes=("healthy", "severe"),
+        class_kind="state",
         votes=votes,
         nearness=Nearness(distance, 2.0, ()),
         reasons=reasons,

@@ -104,7 +104,7 @@ def training(
     areas = {"boosting": validated[0], "network": validated[1], "rms": 0.5}
     control = {"boosting": [0.49, 0.52]}
     judged = [classifier(name, limits, 0.8, specimens, control.get(name, []), areas[name]) for name in names]
-    split = SimpleNamespace(members={"h": ("h",), "s": ("s",)})
+    split = SimpleNamespace(members={"h": ("h",), "s": ("s",)}, kind="state")
     return SimpleNamespace(comparisons=pairs, rms_severe=Interval(severe, severe, severe), judged=judged, split=split)
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.records.record_classes import set_classes
 from diagnostics.records.recording import recordings
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.scores import scores
@@ -119,7 +120,8 @@ def test_windows_are_eight_revolutions_with_pulses_of_their_own(dataset: Any) ->
 
 
 def test_rows_by_channel_keep_values_and_labels(make_dataset: Any) -> None:
-    matrix = window_matrix(make_dataset(("train",)))
+    few = make_dataset(("train",))
+    matrix = window_matrix(few, set_classes(few))
     single = by_channel(matrix)
     assert single.values.shape == (2 * matrix.values.shape[0], len(matrix.names) // 2)
     second = single.rows(single.labels["channel"] == "bearing_horizontal")
