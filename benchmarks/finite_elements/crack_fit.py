@@ -1,7 +1,7 @@
 """Fit of the compliance that a crack adds (`siggen.gears.damage.crack_law`) to finite elements.
 
-About five minutes. Least squares of errors over what the crack adds and 0.4 % of the sound tooth, so that neither cracks
-that add next to nothing nor deep ones decide; then once more with weights that grow with the errors left.
+About five minutes. Least squares of errors over what the crack adds and 0.4 % of the sound tooth, so that neither
+cracks that add next to nothing nor deep ones decide; then twice more with weights that grow with the errors left.
 """
 
 from __future__ import annotations
@@ -132,8 +132,9 @@ def fit_crack() -> dict[str, np.ndarray]:
     def errors(coefficients: np.ndarray) -> np.ndarray:
         return np.asarray((law(coefficients, case) - case.added) * scale)
 
-    first = least_squares(errors, present()).x
-    weight = 1.0 + np.abs(errors(first)) / TYPICAL_ERROR
-    best = least_squares(lambda p: errors(p) * weight, first).x
+    best = least_squares(errors, present()).x
+    for _ in range(2):
+        weight = 1.0 + np.abs(errors(best)) / TYPICAL_ERROR
+        best = least_squares(lambda p, w=weight: errors(p) * w, best).x
     parts = np.split(best.round(3), np.cumsum(list(SIZES.values()))[:-1])
     return dict(zip(SIZES, parts, strict=True))
