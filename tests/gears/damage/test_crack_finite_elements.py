@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, pi, radians, sqrt
+from math import pi, radians, sqrt
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
 from benchmarks.finite_elements.calibration import ToothShape  # noqa: E402
-from benchmarks.finite_elements.crack_fit import Case, law, present  # noqa: E402
+from benchmarks.finite_elements.crack_fit import Case, coordinates, law, present  # noqa: E402
 from benchmarks.finite_elements.cracked_tooth import crack_compliance, crack_line, split  # noqa: E402
 from benchmarks.finite_elements.tooth_compliance_fem import (  # noqa: E402
     PlaneElasticity,
@@ -22,7 +22,6 @@ from benchmarks.finite_elements.tooth_compliance_fem import (  # noqa: E402
 )
 from benchmarks.finite_elements.tooth_mesh import ToothMesh, meshed  # noqa: E402
 from siggen.gears.damage.crack_law import unit_compliance  # noqa: E402
-from siggen.gears.geometry.root_chord import root_chord  # noqa: E402
 
 SIZE, LENGTH = 0.1, 2.0
 
@@ -95,7 +94,5 @@ def test_plane_strain_is_plane_stress_less_the_square_of_poisson_s_ratio():
 def test_the_fit_writes_the_same_law():
     gear = ToothShape(35, 2.5).gear()
     roll = np.linspace(gear.involute_start_roll_rad, gear.tip_roll_rad, 5)
-    chord, slant, one = root_chord(gear), roll - gear.base_half_angle_rad, np.ones(5)
-    lever = (gear.base_radius_m - chord.height_m * np.cos(slant)) / chord.length_m
-    case = Case(cos(0.8) * one, 0.3 * one, lever, slant, chord.length_m / (2.0 * chord.height_m) * one, one, one)
+    case = Case(*coordinates(gear, roll, 0.3, 0.8), np.ones(5), np.ones(5))
     assert law(present(), case) == pytest.approx(unit_compliance(gear, roll, 0.3, 0.8), rel=1e-12)
