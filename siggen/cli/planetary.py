@@ -31,7 +31,7 @@ def planetary(
     Example: siggen inspect planetary 24 27 78 --planets 3 --carrier-hz 2.5
     """
     teeth = _checked(sun, planet, ring, at or planets)
-    found = _content(teeth, carrier_hz)
+    found = {**_content(teeth, carrier_hz), "meshes": _meshes(teeth)}
     if as_json:
         echo_json(found)
     else:
@@ -77,6 +77,17 @@ def _content(teeth: PlanetarySet, carrier_hz: float) -> dict[str, Any]:
     }
 
 
+def _meshes(teeth: PlanetarySet) -> dict[str, float]:
+    """Return what does not depend on the size: unshifted teeth of 20 deg, bores of half the root, steel."""
+    from siggen.errors import UsageError
+    from siggen.views.planetary_meshes import planetary_meshes
+
+    try:
+        return planetary_meshes(teeth.sun, teeth.planet, teeth.ring)
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+
+
 def _print(found: dict[str, Any], teeth: PlanetarySet) -> None:
     from rich.console import Console
     from rich.table import Table
@@ -93,7 +104,13 @@ def _print(found: dict[str, Any], teeth: PlanetarySet) -> None:
     for number, one in enumerate(found["planets"], start=1):
         values = (f"{one['position_deg']:.4f}", f"{one['sun_phase']:.4f}", f"{one['ring_phase']:.4f}")
         phases.add_row(str(number), *values)
+    meshes = Table(title="meshes of unshifted teeth of 20 deg (the ring is shifted to fit; bores of half the root)")
+    for name in ("", "value"):
+        meshes.add_column(name)
+    for name, value in found["meshes"].items():
+        meshes.add_row(name.replace("_", " "), f"{value:.4g}")
     console = Console()
+    console.print(meshes)
     console.print(orders)
     console.print(phases)
     for harmonic, moved in found["excited"].items():
