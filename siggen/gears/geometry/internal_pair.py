@@ -215,3 +215,13 @@ def ring_ahead_pitches(sun_pair: GearPair, ring_pair: InternalPair) -> float:
     )
     past = 0.5 * planet.teeth * (half_teeth_rad / pi - 1.0) % 1.0
     return 0.0 if 1.0 - past < 1e-12 or past < 1e-12 else past
+
+
+def ring_begins_pitches(sun_pair: GearPair, ring_pair: InternalPair) -> float:
+    """Return the base pitches that a planet's mesh with the ring has turned where its mesh with the sun has none.
+
+    Both count from the moment when a pair enters contact.
+    """
+    paths = sun_pair, ring_pair
+    to_sun, to_ring = ((path.pitch_point_m - path.contact_start_m) / path.base_pitch_m for path in paths)
+    return to_ring + ring_ahead_pitches(sun_pair, ring_pair) - to_sun

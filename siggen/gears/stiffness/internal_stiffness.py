@@ -20,6 +20,7 @@ from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.geometry.quadrature import NODES_48, WEIGHTS_48
 from siggen.gears.stiffness.compliance import ROLL_TOLERANCE, SHEAR_FACTOR, ToothCompliance, tooth_compliance
 from siggen.gears.stiffness.hertz import linear_compliance
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, MeshTables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 ROTATION, SHIFT = 16.67 / pi, 1.534
@@ -114,6 +115,21 @@ def internal_mesh_stiffness(
         inside = (position >= pair.contact_start_m) & (position <= pair.contact_end_m)
         total[inside] += internal_pair_stiffness(sun_pair, pair, position[inside], options)
     return total
+
+
+def internal_tables(
+    sun_pair: GearPair, pair: InternalPair, options: StiffnessOptions, points: int = TABLE_POINTS
+) -> MeshTables:
+    """Return the tables of a healthy planet in its ring; arguments as `internal_pair_stiffness`."""
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    return MeshTables(
+        start_m=pair.contact_start_m,
+        end_m=pair.contact_end_m,
+        step_m=(pair.contact_end_m - pair.contact_start_m) / (points - 1),
+        base_pitch_m=pair.base_pitch_m,
+        pair_stiffness_n_per_m=internal_pair_stiffness(sun_pair, pair, position, options)[np.newaxis],
+        table_of_pair=np.zeros((pair.planet.teeth, pair.ring.teeth), dtype=np.int32),
+    )
 
 
 def _contact(sun_pair: GearPair, pair: InternalPair, position_m: FloatArray, options: StiffnessOptions) -> FloatArray:
