@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -53,9 +54,12 @@ def _degrees(text: str) -> list[float]:
     from siggen.errors import UsageError
 
     try:
-        return [float(part) for part in text.split(",")]
+        found = [float(part) for part in text.split(",")]
     except ValueError:
-        raise UsageError(f"--at {text}: allowed: numbers [deg] between commas, such as 0,120,240") from None
+        found = []
+    if not found or not all(map(isfinite, found)):
+        raise UsageError(f"--at {text}: allowed: numbers [deg] between commas, such as 0,120,240")
+    return found
 
 
 def _content(teeth: PlanetarySet, carrier_hz: float) -> dict[str, Any]:
@@ -70,22 +74,21 @@ def _content(teeth: PlanetarySet, carrier_hz: float) -> dict[str, Any]:
         "passing": both(passing_orders(teeth)),
         "sideband_steps": {name: list(map(float, steps)) for name, steps in sideband_steps(teeth).items()},
         "planets": [
-            {"position_deg": 360.0 * float(place), "sun_phase": float(of_sun), "ring_phase": float(of_ring)}
-            for place, of_sun, of_ring in zip(teeth.places, teeth.sun_phases, teeth.ring_phases, strict=True)
+            {"position_deg": 360.0 * float(place), "phase": float(phase)}
+            for place, phase in zip(teeth.places, teeth.phases, strict=True)
         ],
         "excited": {str(i): teeth.excited(i) for i in (1, 2, 3)} if teeth.evenly_spaced else {},
     }
 
 
-def _meshes(teeth: PlanetarySet) -> dict[str, float]:
-    """Return what does not depend on the size: unshifted teeth of 20 deg, bores of half the root, steel."""
-    from siggen.errors import UsageError
+def _meshes(teeth: PlanetarySet) -> dict[str, float | str]:
+    """Return what does not depend on the size, or why unshifted teeth do not mesh; shifted ones may."""
     from siggen.views.planetary_meshes import planetary_meshes
 
     try:
-        return planetary_meshes(teeth.sun, teeth.planet, teeth.ring)
+        return {**planetary_meshes(teeth.sun, teeth.planet, teeth.ring)}
     except ValueError as error:
-        raise UsageError(str(error)) from None
+        return {"do not mesh": str(error)}
 
 
 def _print(found: dict[str, Any], teeth: PlanetarySet) -> None:
@@ -99,16 +102,15 @@ def _print(found: dict[str, Any], teeth: PlanetarySet) -> None:
     for name, one in (*found["shafts"].items(), *found["passing"].items()):
         orders.add_row(name, f"{one['order']:.6g}", f"{one['hz']:.6g}")
     phases = Table(title="phases against the first planet, in pitches")
-    for name in ("planet", "position [deg]", "sun mesh", "ring mesh"):
+    for name in ("planet", "position [deg]", "both meshes"):
         phases.add_column(name, justify="right")
     for number, one in enumerate(found["planets"], start=1):
-        values = (f"{one['position_deg']:.4f}", f"{one['sun_phase']:.4f}", f"{one['ring_phase']:.4f}")
-        phases.add_row(str(number), *values)
+        phases.add_row(str(number), f"{one['position_deg']:.4f}", f"{one['phase']:.4f}")
     meshes = Table(title="meshes of unshifted teeth of 20 deg (the ring is shifted to fit; bores of half the root)")
     for name in ("", "value"):
         meshes.add_column(name)
     for name, value in found["meshes"].items():
-        meshes.add_row(name.replace("_", " "), f"{value:.4g}")
+        meshes.add_row(name.replace("_", " "), value if isinstance(value, str) else f"{value:.4g}")
     console = Console()
     console.print(meshes)
     console.print(orders)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from math import radians
 
@@ -55,21 +56,37 @@ def exact(tables: MeshTables, teeth: tuple[int, int], offsets_m: tuple[float, fl
     return MissingMaterial(tables.start_m, tables.end_m, *gears)
 
 
-def meshes(structure: Structure, teeth: PlanetarySet, late_m: float = 0.0) -> list[PairMesh]:
-    """Return the laws of all meshes; the first planet's flanks stand back by `late_m`, as a pin out of place has it."""
+def softer(tables: MeshTables, tooth: tuple[int, ...] | None, gear: int) -> MeshTables:
+    """Return the tables with all pairs of some teeth of one gear at 0.7 of their stiffness."""
+    if tooth is None:
+        return tables
+    rows = tables.table_of_pair.copy()
+    rows[(list(tooth), slice(None)) if gear == 0 else (slice(None), list(tooth))] = 1
+    healthy = tables.pair_stiffness_n_per_m
+    return replace(tables, pair_stiffness_n_per_m=np.concatenate([healthy, 0.7 * healthy]), table_of_pair=rows)
+
+
+def meshes(structure: Structure, teeth: PlanetarySet, late_m: float = 0.0, faulty: str = "") -> list[PairMesh]:
+    """Return the laws of all meshes.
+
+    The first planet's flanks stand back by `late_m`, as a pin out of place has it; tooth 3 of a `faulty` sun or ring is
+    softer.
+    """
     pair, inner = pairs(teeth.sun, teeth.planet, teeth.ring)
     options, lag = StiffnessOptions(), ring_begins_pitches(pair, inner)
-    rows = [(mesh_tables(pair, (), options), (teeth.sun, teeth.planet), 0.0)]
-    rows += [(internal_tables(pair, inner, options), (teeth.planet, teeth.ring), lag)]
+    tooth, count = (3,), len(teeth.places)
+    of_sun = softer(mesh_tables(pair, (), options), tooth if faulty == "sun" else None, 0)
+    of_ring = softer(internal_tables(pair, inner, options), tooth if faulty == "ring" else None, 1)
+    kinds = [
+        (of_sun, (teeth.sun, teeth.planet), teeth.sun_begins, 0.0, pair.line_of_action_m),
+        (of_ring, (teeth.planet, teeth.ring), teeth.ring_begins, lag, inner.line_of_action_m),
+    ]
     found = []
-    for kind, (tables, counts, begins) in enumerate(rows):
-        for number, place in enumerate(teeth.places):
-            vectors = structure.meshes[kind * len(teeth.places) + number]
-            offsets = (0.0, late_m if number == 0 and kind == 0 else 0.0)
-            line = (pair, inner)[kind].line_of_action_m
-            law = pair_law(
-                tables, exact(tables, counts, offsets), MeshConstants(line, vectors.mass_kg, 100e-6), damping_ratio=0.07
-            )
-            phase = float(begins) - float(teeth.sun * place)
-            found.append(PairMesh(law, mean_mesh_stiffness(tables), 20.0, begins_pitches=phase))
+    for number, vectors in enumerate(structure.meshes):
+        tables, counts, begins, later, line = kinds[number // count]
+        offsets = (0.0, late_m if number == 0 else 0.0)
+        constants = MeshConstants(line, vectors.mass_kg, 100e-6)
+        law = pair_law(tables, exact(tables, counts, offsets), constants, damping_ratio=0.07)
+        phase = later + float(begins[number % count])
+        found.append(PairMesh(law, mean_mesh_stiffness(tables), 20.0, begins_pitches=phase))
     return found

@@ -48,21 +48,29 @@ class PlanetarySet:
         return tuple(after - before for before, after in zip(self.places, ahead, strict=True))
 
     @property
-    def sun_phases(self) -> tuple[Fraction, ...]:
-        """Base pitches that the sun's mesh with each planet is ahead of that with the first one, 0 to below 1.
+    def sun_begins(self) -> tuple[Fraction, ...]:
+        """Base pitches that the sun's mesh with each planet has turned where that with the first has turned none.
 
-        A tooth of the sun runs ahead of the carrier, so it comes to a planet at ψ by z_s ψ/2π pitches later.
+        A tooth of the sun runs ahead of the carrier, so it comes to a planet at ψ by z_s ψ/2π pitches later. Whole
+        pitches count: pair n of every mesh has the sun's tooth n.
         """
-        return tuple(-self.sun * place % 1 for place in self.places)
+        return tuple(-self.sun * place for place in self.places)
 
     @property
-    def ring_phases(self) -> tuple[Fraction, ...]:
-        """The same of each planet's mesh with the ring, against the first planet's.
+    def ring_begins(self) -> tuple[Fraction, ...]:
+        """The same of each planet's mesh with the ring, against the first planet's; pair n has the ring's tooth n.
 
-        Seen from the carrier the ring runs back, so a tooth comes to a planet at ψ earlier. Planets that fit
-        have the same phases in both meshes: (z_s + z_r) ψ/2π is whole.
+        Seen from the carrier the ring runs back, so a tooth comes to a planet at ψ earlier.
         """
-        return tuple(self.ring * place % 1 for place in self.places)
+        return tuple(self.ring * place for place in self.places)
+
+    @property
+    def phases(self) -> tuple[Fraction, ...]:
+        """Base pitches that both meshes of each planet are ahead of the first planet's, 0 to below 1.
+
+        The same in both, since a planet fits where (z_s + z_r) ψ/2π is whole.
+        """
+        return tuple(begins % 1 for begins in self.sun_begins)
 
     @property
     def common_turns(self) -> int:

@@ -25,13 +25,13 @@ def test_pitch_circles_roll_on_each_other_without_slip(teeth: PlanetarySet) -> N
 def test_phases_are_those_of_teeth_that_are_watched_as_they_pass(teeth: PlanetarySet) -> None:
     """Teeth seen from the carrier: when do some stand right before each planet, in pitches after the first one's?"""
     assert planetary_problems(teeth) == ()
-    for count, sense, phases in ((teeth.sun, 1.0, teeth.sun_phases), (teeth.ring, -1.0, teeth.ring_phases)):
+    for count, sense, phases in ((teeth.sun, 1.0, teeth.sun_begins), (teeth.ring, -1.0, teeth.ring_begins)):
         for place, phase in zip(teeth.places, phases, strict=True):
             turned = sense * (np.arange(20_000) + 0.5) / 20_000 / count  # of the gear against the carrier, one pitch
             standing = (turned[:, None] + np.arange(count) / count - float(place) + 0.5) % 1.0 - 0.5
             passed = np.abs(standing).min(axis=1).argmin() / 20_000
             assert (passed + float(phase) + 0.5) % 1.0 == pytest.approx(0.5, abs=2e-4)  # two steps of the watching
-    assert teeth.sun_phases == teeth.ring_phases
+    assert teeth.phases == tuple(begins % 1 for begins in teeth.ring_begins)
 
 
 def test_a_fixed_sensor_sees_lines_at_the_permitted_orders_alone() -> None:
@@ -46,7 +46,7 @@ def test_a_fixed_sensor_sees_lines_at_the_permitted_orders_alone() -> None:
 
     def seen(faulty: str) -> np.ndarray:
         total = np.zeros(angle.size)
-        for i, (place, phase) in enumerate(zip(teeth.places, teeth.sun_phases, strict=True)):
+        for i, (place, phase) in enumerate(zip(teeth.places, teeth.phases, strict=True)):
             turned = {
                 "healthy": np.zeros_like(angle),
                 "sun": angle * teeth.ring / teeth.sun - float(place),
