@@ -19,6 +19,7 @@ from siggen.cli.merge import merge
 from siggen.cli.modes import modes
 from siggen.cli.path import path
 from siggen.cli.plan import plan
+from siggen.cli.planetary import planetary
 from siggen.cli.pressure import pressure
 from siggen.cli.publish import publish
 from siggen.cli.run_report import run_report
@@ -40,9 +41,10 @@ INSPECTED: dict[str, Callable[..., None]] = {
     "errors": errors,
     "modes": modes,
     "path": path,
+    "planetary": planetary,
     "run": run_report,
 }
-"""What `siggen inspect` shows of one gearbox, or of a run."""
+"""What `siggen inspect` shows of one gearbox, of a planetary set, or of a run."""
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",
@@ -56,7 +58,7 @@ for command in COMMANDS:
     app.command()(command)
 
 inspect = typer.Typer(
-    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path; or at a run.",
+    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path; at a planetary set; or at a run.",
     no_args_is_help=True,
     rich_markup_mode="rich",
     epilog="Begin with: siggen inspect tvms quickstart --open",

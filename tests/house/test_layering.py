@@ -27,7 +27,7 @@ DIAGNOSTICS_ROOMS = (
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")
 PHYSICS_MAY_IMPORT = {"numpy", "scipy", "numba", "siggen", "__future__", "collections", "dataclasses", "enum"} | {
-    "functools", "itertools", "math", "typing",
+    "fractions", "functools", "itertools", "math", "typing",
 }  # fmt: skip
 DOOR = {"siggen", "siggen.errors", "siggen.columns.record", "siggen.dataset.reading"}
 SHARED = {"siggen.cli.option_groups", "siggen.cli.json_output"}

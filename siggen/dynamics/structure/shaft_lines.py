@@ -6,6 +6,8 @@ p_a θ_a + p_b θ_b = 0. Rotations count in the running sense of their shaft.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from siggen.arrays import FloatArray
@@ -14,6 +16,8 @@ from siggen.dynamics.structure.structure import Structure
 
 def turning_lines(structure: Structure) -> FloatArray:
     """Return (lines, n): each shaft line by itself, as far as it turns per turn of the first one."""
+    if structure.line_speeds is not None:
+        return _lines(structure, structure.line_speeds)
     turned, speeds = 1.0, [1.0]
     for mesh in structure.meshes:
         driving, driven = mesh.of_turning(structure.coordinates)
@@ -24,6 +28,8 @@ def turning_lines(structure: Structure) -> FloatArray:
 
 def turning_per_load(structure: Structure) -> FloatArray:
     """Return (n,): how far each rotation turns per turn of the load's line."""
+    if structure.line_speeds is not None:
+        return rigid_rotation(structure) / structure.line_speeds[-1]
     turned, speeds = 1.0, [1.0]
     for mesh in reversed(structure.meshes):
         driving, driven = mesh.of_turning(structure.coordinates)
@@ -37,6 +43,17 @@ def rigid_rotation(structure: Structure) -> FloatArray:
     return np.asarray(turning_lines(structure).sum(axis=0))
 
 
-def _lines(structure: Structure, speeds: list[float]) -> FloatArray:
+def rolling(structure: Structure) -> FloatArray:
+    """Return (n,): how far each coordinate turns per turn of the first shaft line, both against the frame."""
+    turning = rigid_rotation(structure)
+    if not structure.frame:
+        return turning
+    # what does not turn in space, such as a ring, turns back against the frame
+    against = np.array([name.startswith("theta") for name in structure.coordinates])
+    frame = turning[structure.coordinates.index(structure.frame)]
+    return np.asarray((turning - frame * against) / (1.0 - frame))
+
+
+def _lines(structure: Structure, speeds: Sequence[float]) -> FloatArray:
     of_line = zip(structure.shaft_lines, speeds, strict=True)
     return np.array([[speed * (name in line) for name in structure.coordinates] for line, speed in of_line])

@@ -48,6 +48,8 @@ class Structure:
     motions : place/axis -> (n,), displacement at that place = vector · q
     bearing_forces : place/axis -> two (n,), force on the housing = first · q + second · q̇
     bearing_directions : place/axis -> (n,), 1 N between a shaft and its seat: on the shaft along the axis, and back
+    line_speeds : turns of each shaft line per turn of the first; None: meshes follow one another, and tell them
+    frame : rotation with which lines of action and coordinates turn; empty where those stand still
     """
 
     coordinates: tuple[str, ...]
@@ -60,6 +62,8 @@ class Structure:
     motions: Mapping[str, FloatArray]
     bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
     bearing_directions: Mapping[str, FloatArray]
+    line_speeds: tuple[float, ...] | None = None
+    frame: str = ""
 
     @property
     def mesh(self) -> MeshVectors:

@@ -8,7 +8,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
+from siggen.dynamics.structure.shaft_lines import rolling
 from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.equations import Equations, inverse_times
 
@@ -63,5 +63,5 @@ def _mesh_rows(structure: Structure, equations: Equations, number: int) -> list[
 
 def _rolling(structure: Structure, mesh: MeshVectors) -> FloatArray:
     """Return how fast the gears of a mesh turn (n,) per speed of the first shaft when nothing deforms."""
-    turning = rigid_rotation(structure)
+    turning = rolling(structure)
     return vector(structure.coordinates, {name: turning[structure.coordinates.index(name)] for name in mesh.turning})

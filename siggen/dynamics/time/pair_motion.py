@@ -31,7 +31,7 @@ from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
 from siggen.dynamics.structure.load_lock import LOCK_HZ
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
+from siggen.dynamics.structure.shaft_lines import rolling
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import equations_about, external_push, mesh_springs
 from siggen.dynamics.time.motion import APPROACH_LIMIT_PITCHES
@@ -50,7 +50,7 @@ GOLDEN = 0.6180339887498949
 
 
 class MeanState(NamedTuple):
-    """Motor torque and speed of the first shaft of a mean."""
+    """Motor torque and speed of the first shaft of a mean; the speed against the structure's frame."""
 
     torque_nm: float
     speed_hz: float
@@ -124,8 +124,8 @@ class PairMotion:
 
     def _places(self) -> FloatArray:
         """Return how base pitches of every mesh follow from those of the first, see `PairEquations`."""
-        turning, names = rigid_rotation(self.structure), self.structure.coordinates
-        speeds = [turning[names.index(mesh.turning[0])] for mesh in self.structure.meshes]
+        turning, names = rolling(self.structure), self.structure.coordinates
+        speeds = [abs(turning[names.index(mesh.turning[0])]) for mesh in self.structure.meshes]
         rates = [law.teeth * speed / (self.teeth * speeds[0]) for law, speed in zip(self.laws, speeds, strict=True)]
         return np.array([[rate, mesh.begins_pitches] for rate, mesh in zip(rates, self.meshes, strict=True)])
 

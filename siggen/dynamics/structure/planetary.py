@@ -1,0 +1,178 @@
+"""Structure of a planetary set in its carrier's frame: 2N meshes on motor, sun, planets, ring, carrier and load.
+
+Equations: standard literature (Lin & Parker 1999, three coordinates per body), directions derived again. All rotations
+count counter-clockwise, as the sun drives; x and y turn with the carrier, in which lines of action stand still. So do
+supports that are alike in all directions. Planets move along the radius (x) and along the tangent (y) against their
+pins, so that free rotation moves no translation. What turning adds to the inertia, 2 Ω_c m in the speeds and Ω_c² m
+in the places, is left out: beside a spring k at a frequency ω it counts as 2 Ω_c/ω, below 1 % above 200 Ω_c.
+Flanks slide without friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.structure.mesh_vectors import MeshVectors
+from siggen.dynamics.structure.structure import Coupling, Element, Structure, assemble, vector
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetaryBody:
+    """A member with its support, alike in all directions; `turning_stiffness_nm_per_rad` holds the ring."""
+
+    base_radius_m: float
+    mass_kg: float
+    inertia_kg_m2: float
+    stiffness_n_per_m: float
+    damping_n_s_per_m: float
+    turning_stiffness_nm_per_rad: float = 0.0
+    turning_damping_nm_s_per_rad: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetaryStage:
+    """Numbers of a set whose ring is held; the carrier's base radius is not read.
+
+    Working pressure angles of the meshes with the sun and with the ring [rad]; places of the planets [turns]; the
+    support of a planet is its pin's.
+    """
+
+    sun_angle_rad: float
+    ring_angle_rad: float
+    centre_distance_m: float
+    sun: PlanetaryBody
+    planet: PlanetaryBody
+    ring: PlanetaryBody
+    carrier: PlanetaryBody
+    places_turns: tuple[float, ...]
+    motor_inertia_kg_m2: float
+    load_inertia_kg_m2: float
+    input_coupling: Coupling
+    output_coupling: Coupling
+
+    @property
+    def ratio(self) -> float:
+        """Turns of the sun per turn of the carrier, 1 + R_br/R_bs."""
+        return 1.0 + self.ring.base_radius_m / self.sun.base_radius_m
+
+
+def planetary_structure(stage: PlanetaryStage) -> Structure:
+    """Return the structure of a planetary set; its meshes: sun with each planet, then each planet with the ring.
+
+    q = [θ_m, x_s, y_s, θ_s, x_c, y_c, θ_c, then x, y and θ of every planet, x_r, y_r, θ_r, θ_l].
+    """
+    numbers = range(1, len(stage.places_turns) + 1)
+    names = ["s", "c", *(f"p{i}" for i in numbers), "r"]
+    coordinates = ("theta_m", *(f"{axis}_{name}" for name in names for axis in ("x", "y", "theta")), "theta_l")
+    stiffness, damping = assemble(coordinates, _springs(stage))
+    mass, _ = assemble(coordinates, _masses(stage))
+    for matrix in (mass, damping, stiffness):
+        matrix.setflags(write=False)
+    return Structure(
+        coordinates=coordinates,
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
+        meshes=(*_sun_meshes(coordinates, stage), *_ring_meshes(coordinates, stage)),
+        shaft_lines=(("theta_m", "theta_s"), *((f"theta_p{i}",) for i in numbers), ("theta_c", "theta_l")),
+        torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -stage.ratio}),
+        motions={f"{place}/{axis}": vector(coordinates, {f"{axis}_{name}": 1.0}) for place, name, axis in _SEEN},
+        bearing_forces={},
+        bearing_directions={},
+        line_speeds=_line_speeds(stage),
+        frame="theta_c",
+    )
+
+
+_SEEN = [(place, place[0], axis) for place in ("sun", "carrier", "ring") for axis in ("x", "y")]
+
+
+def _line_speeds(stage: PlanetaryStage) -> tuple[float, ...]:
+    """Return the turns of sun, planets and carrier per turn of the sun (Willis, in base radii)."""
+    carrier = 1.0 / stage.ratio
+    planet = carrier * (1.0 - stage.ring.base_radius_m / stage.planet.base_radius_m)
+    return (1.0, *(planet for _ in stage.places_turns), carrier)
+
+
+def _moved(stage: PlanetaryStage, number: int) -> tuple[dict[str, float], dict[str, float]]:
+    """Return how far a planet moves in all, along the radius and along the tangent: with the carrier, and beyond."""
+    angle = 2.0 * pi * stage.places_turns[number - 1]
+    radial = {f"x_p{number}": 1.0, "x_c": cos(angle), "y_c": sin(angle)}
+    along = {f"y_p{number}": 1.0, "x_c": -sin(angle), "y_c": cos(angle), "theta_c": stage.centre_distance_m}
+    return radial, along
+
+
+def _masses(stage: PlanetaryStage) -> list[Element]:
+    """Return masses as elements: what moves along a direction, and how heavy it is."""
+    found = [Element({"theta_m": 1.0}, stage.motor_inertia_kg_m2, 0.0)]
+    found += [Element({"theta_l": 1.0}, stage.load_inertia_kg_m2, 0.0)]
+    for name, body in (("s", stage.sun), ("c", stage.carrier), ("r", stage.ring)):
+        found += [Element({f"{axis}_{name}": 1.0}, body.mass_kg, 0.0) for axis in "xy"]
+        found += [Element({f"theta_{name}": 1.0}, body.inertia_kg_m2, 0.0)]
+    for number in range(1, len(stage.places_turns) + 1):
+        found += [Element(direction, stage.planet.mass_kg, 0.0) for direction in _moved(stage, number)]
+        found += [Element({f"theta_p{number}": 1.0}, stage.planet.inertia_kg_m2, 0.0)]
+    return found
+
+
+def _springs(stage: PlanetaryStage) -> list[Element]:
+    found = [
+        Element({first: 1.0, second: -1.0}, coupling.stiffness_nm_per_rad, coupling.damping_nm_s_per_rad)
+        for first, second, coupling in (
+            ("theta_m", "theta_s", stage.input_coupling),
+            ("theta_c", "theta_l", stage.output_coupling),
+        )
+    ]
+    planets = [(f"p{i}", stage.planet) for i in range(1, len(stage.places_turns) + 1)]
+    for name, body in (("s", stage.sun), ("c", stage.carrier), *planets, ("r", stage.ring)):
+        found += [Element({f"{axis}_{name}": 1.0}, body.stiffness_n_per_m, body.damping_n_s_per_m) for axis in "xy"]
+    held = stage.ring.turning_stiffness_nm_per_rad, stage.ring.turning_damping_nm_s_per_rad
+    return [*found, Element({"theta_r": 1.0}, *held)]
+
+
+def _sun_meshes(coordinates: Sequence[str], stage: PlanetaryStage) -> list[MeshVectors]:
+    """Return the meshes of the sun, which pushes a planet at ψ along (-sin(ψ - α), cos(ψ - α))."""
+    radii, found, slant = (stage.sun.base_radius_m, stage.planet.base_radius_m), [], stage.sun_angle_rad
+    for number, place in enumerate(stage.places_turns, start=1):
+        angle = 2.0 * pi * place - slant
+        push = {"x_s": -sin(angle), "y_s": cos(angle), "theta_s": radii[0], f"theta_p{number}": radii[1]}
+        carried = _planet(stage, number, -sin(slant), -cos(slant))
+        mass = radii[0] ** 2 / stage.sun.inertia_kg_m2 + radii[1] ** 2 / stage.planet.inertia_kg_m2
+        turning = ("theta_s", f"theta_p{number}")
+        found.append(_mesh(coordinates, {**push, **carried}, 1.0 / mass, turning, f"sun_{number}"))
+    return found
+
+
+def _ring_meshes(coordinates: Sequence[str], stage: PlanetaryStage) -> list[MeshVectors]:
+    """Return the meshes of the planets, each of which pushes the ring along (sin(ψ + α), -cos(ψ + α))."""
+    radii, found, slant = (stage.planet.base_radius_m, stage.ring.base_radius_m), [], stage.ring_angle_rad
+    for number, place in enumerate(stage.places_turns, start=1):
+        angle = 2.0 * pi * place + slant
+        push = {"x_r": -sin(angle), "y_r": cos(angle), "theta_r": radii[1], f"theta_p{number}": -radii[0]}
+        carried = _planet(stage, number, sin(slant), -cos(slant))
+        mass = radii[0] ** 2 / stage.planet.inertia_kg_m2 + radii[1] ** 2 / stage.ring.inertia_kg_m2
+        turning = (f"theta_p{number}", "theta_r")
+        found.append(_mesh(coordinates, {**push, **carried}, 1.0 / mass, turning, f"ring_{number}"))
+    return found
+
+
+def _planet(stage: PlanetaryStage, number: int, radial: float, along: float) -> dict[str, float]:
+    """Return the entries of a planet's whole motion with factors along the radius and along the tangent."""
+    found: dict[str, float] = {}
+    for factor, direction in zip((radial, along), _moved(stage, number), strict=True):
+        for name, value in direction.items():
+            found[name] = found.get(name, 0.0) + factor * value
+    return found
+
+
+def _mesh(
+    coordinates: Sequence[str], along: dict[str, float], mass_kg: float, turning: tuple[str, str], name: str
+) -> MeshVectors:
+    still: FloatArray = np.zeros((2, len(coordinates)))
+    still.setflags(write=False)
+    return MeshVectors(vector(coordinates, along), still, mass_kg, turning, name=name)

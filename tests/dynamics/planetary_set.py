@@ -1,0 +1,92 @@
+"""A planetary set of 2 mm module that the tests of its dynamics share."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from math import radians
+
+import numpy as np
+
+from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
+from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
+from siggen.dynamics.structure.planetary import PlanetaryBody, PlanetaryStage
+from siggen.dynamics.structure.structure import Coupling, Structure
+from siggen.dynamics.time.pair_motion import PairMesh
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.geometry.internal_pair import InternalPair, ring_begins_pitches, ring_round
+from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.planetary import PlanetarySet
+from siggen.gears.stiffness.internal_stiffness import internal_tables
+from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
+from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
+
+
+@cache
+def pairs(sun: int = 24, planet: int = 27, ring: int = 78) -> tuple[GearPair, InternalPair]:
+    gears = [SpurGear(z, 2e-3, radians(20.0), 0.0, 1.0, 0.25, 8e-3) for z in (sun, planet)]
+    pair = GearPair(*gears, 20e-3, 206e9, 0.3)
+    return pair, ring_round(pair, ring)
+
+
+def planetary_stage(planets: int = 3, sun: int = 24, planet: int = 27, ring: int = 78) -> PlanetaryStage:
+    pair, inner = pairs(sun, planet, ring)
+    slots = sun + ring
+    return PlanetaryStage(
+        sun_angle_rad=pair.working_pressure_angle_rad,
+        ring_angle_rad=inner.working_pressure_angle_rad,
+        centre_distance_m=pair.working_centre_distance_m,
+        sun=PlanetaryBody(pair.pinion.base_radius_m, 0.3, 9e-5, 2e7, 400.0),
+        planet=PlanetaryBody(pair.gear.base_radius_m, 0.36, 1.3e-4, 2e8, 300.0),
+        ring=PlanetaryBody(inner.ring.base_radius_m, 3.0, 2e-2, 5e8, 4000.0, 5e6, 30.0),
+        carrier=PlanetaryBody(pair.working_centre_distance_m, 2.0, 5e-3, 2e8, 1000.0),
+        places_turns=tuple(round(i * slots / planets) / slots for i in range(planets)),
+        motor_inertia_kg_m2=1e-2,
+        load_inertia_kg_m2=0.2,
+        input_coupling=Coupling(5e3, 2.0),
+        output_coupling=Coupling(5e4, 20.0),
+    )
+
+
+def exact(tables: MeshTables, teeth: tuple[int, int], offsets_m: tuple[float, float] = (0.0, 0.0)) -> MissingMaterial:
+    gears = [
+        ToothTables(np.zeros((1, 2)), np.zeros(z, dtype=np.int32), np.full(z, o))
+        for z, o in zip(teeth, offsets_m, strict=True)
+    ]
+    return MissingMaterial(tables.start_m, tables.end_m, *gears)
+
+
+def softer(tables: MeshTables, tooth: tuple[int, ...] | None, gear: int) -> MeshTables:
+    """Return the tables with all pairs of some teeth of one gear at 0.7 of their stiffness."""
+    if tooth is None:
+        return tables
+    rows = tables.table_of_pair.copy()
+    rows[(list(tooth), slice(None)) if gear == 0 else (slice(None), list(tooth))] = 1
+    healthy = tables.pair_stiffness_n_per_m
+    return replace(tables, pair_stiffness_n_per_m=np.concatenate([healthy, 0.7 * healthy]), table_of_pair=rows)
+
+
+def meshes(structure: Structure, teeth: PlanetarySet, late_m: float = 0.0, faulty: str = "") -> list[PairMesh]:
+    """Return the laws of all meshes.
+
+    The first planet's flanks stand back by `late_m`, as a pin out of place has it; tooth 3 of a `faulty` sun or ring is
+    softer.
+    """
+    pair, inner = pairs(teeth.sun, teeth.planet, teeth.ring)
+    options, lag = StiffnessOptions(), ring_begins_pitches(pair, inner)
+    tooth, count = (3,), len(teeth.places)
+    of_sun = softer(mesh_tables(pair, (), options), tooth if faulty == "sun" else None, 0)
+    of_ring = softer(internal_tables(pair, inner, options), tooth if faulty == "ring" else None, 1)
+    kinds = [
+        (of_sun, (teeth.sun, teeth.planet), teeth.sun_begins, 0.0, pair.line_of_action_m),
+        (of_ring, (teeth.planet, teeth.ring), teeth.ring_begins, lag, inner.line_of_action_m),
+    ]
+    found = []
+    for number, vectors in enumerate(structure.meshes):
+        tables, counts, begins, later, line = kinds[number // count]
+        offsets = (0.0, late_m if number == 0 else 0.0)
+        constants = MeshConstants(line, vectors.mass_kg, 100e-6)
+        law = pair_law(tables, exact(tables, counts, offsets), constants, damping_ratio=0.07)
+        phase = later + float(begins[number % count])
+        found.append(PairMesh(law, mean_mesh_stiffness(tables), 20.0, begins_pitches=phase))
+    return found
