@@ -124,7 +124,7 @@ def one_line(flank: FlankChords, number: int) -> FlankChords:
     """Return the chords of one slice alone."""
     own = slice(number, number + 1)
     shared = {"pits", "lines", "base_radius_m", "half_angle_rad"}
-    lines = LineRows(*(array[own] for array in flank.lines))
+    lines = LineRows(flank.lines.crossing[own], flank.lines.row[own], flank.lines.low_m[own], flank.lines.high_m[own])
     return flank._replace(lines=lines, **{k: v[own] for k, v in flank._asdict().items() if k not in shared})
 
 
