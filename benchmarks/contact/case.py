@@ -61,7 +61,7 @@ def face_of(
     covered = np.where(left_m > -NO_EDGE, 1.0, 0.0) if covered is None else covered
     cell = FACE_M / count
     none = np.zeros(count)
-    gaps = FaceGaps(left_m, right_m, depth_m, depth_m, none, covered, np.full(2, -NO_EDGE))
+    gaps = FaceGaps(left_m, right_m, depth_m, depth_m, none, covered, np.full((count, 2), -NO_EDGE))
     return FaceSlices(
         left_m=left_m,
         right_m=right_m,
@@ -71,7 +71,7 @@ def face_of(
         covered=covered,
         lead_m=none,
         face_m=cell * (np.arange(count) + 0.5) - 0.5 * FACE_M,
-        tips_m=(-NO_EDGE, -NO_EDGE),
+        tips_m=gaps.tips_m,
         spread=spread_of_cells(CELL_WIDTHS),
         kernel=line_kernel(kernel_family(count, cell, DEPTH_M), DEPTH_M, POISSON),
         teeth=tooth_kernel(unit_tooth(count, FACE_M, teeth.length_m), teeth.compliance_m_per_n, FACE_M, KAPPA),

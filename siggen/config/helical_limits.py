@@ -19,10 +19,23 @@ def helical_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> It
         yield from _of_dynamics(sections["dynamics"])
     if sections.get("manufacture") is not None:
         yield Problem("manufacture", "errors of single teeth", f"allowed: null with helical teeth; {SPUR}")
+    yield from _of_states(sections)
+
+
+def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield what slices, which find damage of flanks each at its own place, do not do."""
+    mesh = sections["dynamics"].mesh if "dynamics" in sections else None
+    sliced = mesh is None or (mesh.law == "pairs" and mesh.damage == "geometry")
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
-            allowed = f"allowed: healthy with helical teeth, whose contact lines cross damage aslant; {SPUR}"
-            yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
+            if not one.nouns:
+                allowed = (
+                    f"allowed: pits and spalls with helical teeth, which slices cross at places of their own; {SPUR}"
+                )
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
+            elif not sliced:
+                allowed = f"allowed: with helical teeth, dynamics.mesh.law: pairs and damage: geometry; {SPUR}"
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
 
 
 def _of_dynamics(dynamics: Any) -> Iterator[Problem]:

@@ -45,7 +45,7 @@ def test_a_vanishing_helix_is_the_spur_pair_and_a_real_one_is_more_even(tmp_path
 
 
 def test_what_helical_teeth_cannot_do_yet_is_refused_by_its_path() -> None:
-    result = runner.invoke(app, ["inspect", "tvms", "quickstart", "--set", "gears.helix_deg=15", "--out", "never.csv"])
+    result = runner.invoke(app, ["inspect", "tvms", "confusers", "--set", "gears.helix_deg=15", "--out", "never.csv"])
     assert result.exit_code != 0
     told = " ".join(f"{result.output} {result.exception}".split())
     for path in ("dynamics.friction.model", "dynamics.shafts", "manufacture", "states."):

@@ -168,7 +168,7 @@ def _assemble(
     radii = slices.radius_m, slices.rounding_m
     for i in range(loads.size):
         own = room.diagonal[i]
-        one = CoveredSlice((left[i], right[i], notch[i], floor[i]), tips, covered[i], spread, radii)
+        one = CoveredSlice((left[i], right[i], notch[i], floor[i]), (tips[i, 0], tips[i, 1]), covered[i], spread, radii)
         gap = slice_sink(one, loads[i])
         wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
         if loads[i] == 0.0:

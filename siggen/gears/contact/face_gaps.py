@@ -27,7 +27,8 @@ class FaceGaps(NamedTuple):
 
     `notch_m` is the depth in the middle of the gap, 0 at a tip; `floor_m` that below the normal, 0 on land; `covered`:
     the part of a slice that has the gap, 0 where there is none but those of the tips; `on_damage`: that part where the
-    normal lies in damage, else 0; `tips_m` (positions, 2): left and right of a slice without damage.
+    normal lies in damage, else 0; `tips_m` (positions, slices, 2): left and right
+    of a slice without damage.
     """
 
     left_m: FloatArray
@@ -59,7 +60,7 @@ def face_gaps(pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m
             f"flanks of {pinion.intervals.size} and {gear.intervals.size} slices; allowed: as many on both"
         )
     shape = (position_m.size, pinion.intervals.size)
-    gaps = FaceGaps(*(np.zeros(shape) for shape in (*(6 * [shape]), (position_m.size, 2))))
+    gaps = FaceGaps(*(np.zeros(shape) for shape in (*(6 * [shape]), (*shape, 2))))
     tips = tuple(0.5 * g.base_radius_m * g.tip_roll_rad**2 for g in (pair.pinion, pair.gear))
     room = np.empty((2, pinion.low.shape[1] + gear.low.shape[1] + 2))
     _fill(pair.line_of_action_m, pinion, gear, tips[0], tips[1], np.ascontiguousarray(position_m), room, gaps)
@@ -94,8 +95,8 @@ def _fill(
         room[0, 0], room[1, 0] = tip_1 - arc_1, NO_EDGE
         room[0, 1], room[1, 1] = -NO_EDGE, arc_2 - tip_2
         behind, ahead = _nearest(room, 2)
-        tips_m[i, 0], tips_m[i, 1] = -behind, ahead
         for j in range(count_1.size):
+            tips_m[i, j, 0], tips_m[i, j, 1] = -behind, ahead
             if count_1[j] == 0 and count_2[j] == 0:
                 left_m[i, j], right_m[i, j] = -behind, ahead
                 continue

@@ -1,6 +1,7 @@
-"""Slices of healthy helical teeth: what each meets and how its teeth give way, at its own place on the path.
+"""Slices of helical teeth: what each meets and how its teeth give way, at its own place on the path.
 
 A slice beside the path of contact is that at the end of the path, and misses what the corner of the tip leaves there.
+Damage is found by each slice on its own line across the face, at the slice's own place: contact lines cross it aslant.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
 from siggen.gears.contact.pair_rest import PairRest, bending_length_m
 from siggen.gears.contact.uneven_teeth import UnevenTeeth
-from siggen.gears.damage.flank_chords import flank_chords
+from siggen.gears.damage.flank_chords import FlankChords, one_line
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import TipRelief, missing_material
 from siggen.gears.stiffness.body_coupling import ring_torsion
@@ -27,13 +28,11 @@ CORNERS = 0.3
 """How far beside the path corners are followed, in base pitches; farther slices miss more by as much as they go on."""
 
 
-def helical_gaps(pair: GearPair, place_m: FloatArray) -> FaceGaps:
-    """Return the gaps of the tips at places of slices (k, n) [m]."""
-    ends = [flank_chords(pair.member(which), (), pair.face_width_m, 1) for which in ("pinion", "gear")]
-    found = face_gaps(pair, ends[0], ends[1], _on_path(pair, place_m).ravel())
-    left, right = found.left_m.reshape(place_m.shape), found.right_m.reshape(place_m.shape)
-    none, whole = np.zeros(place_m.shape), np.ones(place_m.shape)
-    return FaceGaps(left, right, none, none, none, whole, np.zeros((len(place_m), 2)))
+def helical_gaps(pair: GearPair, place_m: FloatArray, pinion: FlankChords, gear: FlankChords) -> FaceGaps:
+    """Return the gaps of damage and tips at places of slices (k, n) [m]; both flanks have n slices."""
+    places = np.ascontiguousarray(_on_path(pair, place_m).T)
+    alone = [face_gaps(pair, one_line(pinion, j), one_line(gear, j), own) for j, own in enumerate(places)]
+    return FaceGaps(*(np.concatenate(of_slices, axis=1) for of_slices in zip(*alone, strict=True)))
 
 
 def helical_missing_m(pair: GearPair, place_m: FloatArray, relief: TipRelief | None) -> FloatArray:

@@ -74,7 +74,7 @@ def kind_row(
 ) -> KindRow:
     """Return one kind of pair on a grid of points from s_A to s_E; without `healthy` its gaps are found everywhere."""
     if pair.helix_rad != 0.0:
-        return _helical_row(pair, stiffness, options, points)
+        return _helical_row(pair, stiffness, options, points, pits, healthy)
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     rolls, flanks = rolls_at(pair, position), ("pinion", "gear")
     slices = face_slices(pair, options)
@@ -90,20 +90,39 @@ def kind_row(
         rest = healthy.rest
     else:
         rest = _rest(pair, stiffness, rolls, (acting[0], acting[1]), (standing[0], standing[1]), slices)
-    stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
-    stated = stated[stated > 0.0]
-    edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m
+    edge_radius = _edge_radius(chords, options)
     window = slice(0, points) if healthy is None else _window(pair, chords, position)
     gaps = face_gaps(pair, chords[0], chords[1], position[window])
     return KindRow(position, gaps, window.start, gaps if healthy is None else healthy.elsewhere, rest, edge_radius)
 
 
-def _helical_row(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, points: int) -> KindRow:
-    """Return the row of healthy helical teeth."""
-    position = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
-    place = position[:, np.newaxis] + slice_shifts_m(pair, face_slices(pair, options))
-    gaps, missing = helical_gaps(pair, place), helical_missing_m(pair, place, options.relief)
-    return KindRow(position, gaps, 0, gaps, helical_rest(pair, place, stiffness), options.edge_radius_m, missing)
+def _edge_radius(chords: list[FlankChords], options: TableOptions) -> float:
+    """Return the mean of the radii that the damage of both teeth states, or else that of the options [m]."""
+    stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
+    stated = stated[stated > 0.0]
+    return float(stated.mean()) if stated.size else options.edge_radius_m
+
+
+def _helical_row(
+    pair: GearPair,
+    stiffness: StiffnessOptions,
+    options: TableOptions,
+    points: int,
+    pits: tuple[Damage, Damage],
+    healthy: KindRow | None,
+) -> KindRow:
+    """Return the row of helical teeth with damage on their flanks."""
+    position, slices = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points), face_slices(pair, options)
+    place = position[:, np.newaxis] + slice_shifts_m(pair, slices)
+    chords = [
+        flank_chords(pair.member(which), of_tooth, pair.face_width_m, slices)
+        for which, of_tooth in zip(("pinion", "gear"), pits, strict=True)
+    ]
+    gaps, edge_radius = helical_gaps(pair, place, chords[0], chords[1]), _edge_radius(chords, options)
+    if healthy is not None and healthy.slice_missing_m is not None:
+        return healthy._replace(gaps=gaps, edge_radius_m=edge_radius)
+    missing = helical_missing_m(pair, place, options.relief)
+    return KindRow(position, gaps, 0, gaps, helical_rest(pair, place, stiffness), edge_radius, missing)
 
 
 def _rest(
@@ -147,7 +166,8 @@ def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
     window = slice(row.first, row.first + len(row.gaps.left_m))
     left, right = row.gaps.left_m, row.gaps.right_m
     other = (left != row.elsewhere.left_m[window]) | (right != row.elsewhere.right_m[window])
-    reach = FELT_HALF_WIDTHS * half_width(pair, row.position_m[window], reference_force_n(pair))
+    middle = carrying_middle_m(pair, row.position_m[window])
+    reach = FELT_HALF_WIDTHS * half_width(pair, middle, reference_force_n(pair))
     found[window] |= np.any(other & (-np.minimum(left, right) < reach[:, None]), axis=1)
     return found
 
@@ -164,7 +184,8 @@ def touch_along(pair: GearPair, row: KindRow, healthy_m: FloatArray, lead_m: Flo
     """Return `first_touch` at all fine points, from that of the healthy pair (points,) [m]."""
     touch = healthy_m.copy()
     window = slice(row.first, row.first + len(row.gaps.left_m))
-    touch[window] = _least_sink(pair, row.position_m[window], row.gaps, row.edge_radius_m, lead_m)
+    inside = np.arange(window.start, window.stop)
+    touch[window] = first_touch(pair, row, inside, lead_m)
     return touch
 
 
@@ -176,6 +197,6 @@ def _least_sink(
     near = np.maximum(np.minimum(gaps.left_m, gaps.right_m), 0.0)
     floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
     sunk = np.minimum(near**2 / (2.0 * radius[:, None]), floor)
-    tip = np.maximum(gaps.tips_m.min(axis=1), 0.0) ** 2 / (2.0 * radius)
-    sunk = np.where(gaps.covered < 1.0, np.minimum(sunk, tip[:, None]), sunk)
+    tip = np.maximum(gaps.tips_m.min(axis=2), 0.0) ** 2 / (2.0 * radius[:, None])
+    sunk = np.where(gaps.covered < 1.0, np.minimum(sunk, tip), sunk)
     return np.asarray((sunk + lead_m).min(axis=1))

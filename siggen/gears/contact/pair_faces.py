@@ -98,7 +98,7 @@ def pair_faces(
             covered=here.covered,
             lead_m=lead,
             face_m=face,
-            tips_m=(float(here.tips_m[0]), float(here.tips_m[1])),
+            tips_m=here.tips_m,
             spread=spread,
             kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
             teeth=_teeth(unit, rest, i, pair.face_width_m, kappa),
@@ -151,7 +151,7 @@ def carrying_length(gaps: FaceGaps, lead_m: FloatArray, cell_m: float, radius_m:
     if not partly.any():
         over = (sunk - sunk.min()) / (4.0 * load_m)
         return float(cell_m * np.sum(1.0 / (1.0 + over**2)))
-    land = lead_m + max(float(gaps.tips_m.min()), 0.0) ** 2 / (2.0 * radius_m)
+    land = lead_m + np.maximum(gaps.tips_m.min(axis=1), 0.0) ** 2 / (2.0 * radius_m)
     least = min(sunk.min(), land[partly].min())
     weight, beside = (1.0 / (1.0 + ((depth - least) / (4.0 * load_m)) ** 2) for depth in (sunk, land))
     return float(cell_m * np.sum(np.where(partly, gaps.covered * weight + (1.0 - gaps.covered) * beside, weight)))

@@ -76,7 +76,7 @@ def _sink_energy(slices: FaceSlices, i: int, load: float, nodes: FloatArray) -> 
     if not 0.0 < covered < 1.0:
         return _gap_energy(gap, radii, load, nodes)
     apart = load_apart(one, load)
-    land = slices.tips_m[0], slices.tips_m[1], 0.0, 0.0
+    land = slices.tips_m[i, 0], slices.tips_m[i, 1], 0.0, 0.0
     on_land = _gap_energy(land, radii, load + covered * apart, nodes)
     on_gap = _gap_energy(gap, radii, max(load - (1.0 - covered) * apart, 0.0), nodes)
     passing: float = 0.5 * slices.spread * covered * (1.0 - covered) * apart * apart

@@ -120,6 +120,14 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
     )
 
 
+def one_line(flank: FlankChords, number: int) -> FlankChords:
+    """Return the chords of one slice alone."""
+    own = slice(number, number + 1)
+    shared = {"pits", "lines", "base_radius_m", "half_angle_rad"}
+    lines = LineRows(flank.lines.crossing[own], flank.lines.row[own], flank.lines.low_m[own], flank.lines.high_m[own])
+    return flank._replace(lines=lines, **{k: v[own] for k, v in flank._asdict().items() if k not in shared})
+
+
 @njit(cache=True)
 def _covered(width: float, slices: int, pits: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the lines of the slices, and the parts of their widths over which damage extends at any height."""

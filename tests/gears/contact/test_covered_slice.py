@@ -105,5 +105,5 @@ def test_slices_know_which_part_of_them_damage_covers() -> None:
     gaps = face_gaps(pair, chords, plain, np.array([pair.pitch_point_m, pair.contact_end_m]))
     np.testing.assert_allclose(gaps.covered[0], expected, atol=1e-9)
     assert gaps.on_damage.max() <= 1.0
-    np.testing.assert_allclose(gaps.tips_m[1, 0], 0.0, atol=1e-9)
+    np.testing.assert_allclose(gaps.tips_m[1, :, 0], 0.0, atol=1e-9)
     assert chords.covered.sum() * width == pytest.approx(ends[1] - ends[0])

@@ -25,7 +25,7 @@ from tests.gears.contact.faces import BENDING, REST, WIDTH, approach_under, face
 def land(pair, slices=50) -> FaceGaps:
     """No gap anywhere, at five positions."""
     edge, nothing = np.full((5, slices), -NO_EDGE), np.zeros((5, slices))
-    return FaceGaps(edge, edge, nothing, nothing, nothing, nothing, np.full((5, 2), -NO_EDGE))
+    return FaceGaps(edge, edge, nothing, nothing, nothing, nothing, np.full((5, slices, 2), -NO_EDGE))
 
 
 @pytest.mark.parametrize("force", [50.0, 1200.0, 4000.0])

@@ -66,7 +66,7 @@ def test_the_carrying_length_is_the_land_or_the_whole_face():
     gap = np.where(np.arange(100) < 40, 0.6e-3, -NO_EDGE)
     none = np.zeros(100)
     sizes = 0.2e-3, 6.7e-3, 0.34e-6
-    tips, whole = np.full(2, -NO_EDGE), np.ones(100)
+    tips, whole = np.full((100, 2), -NO_EDGE), np.ones(100)
 
     def length(edge_m, covered) -> float:
         return carrying_length(FaceGaps(edge_m, edge_m, none, none, none, covered, tips), none, *sizes)
