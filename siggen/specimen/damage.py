@@ -2,7 +2,7 @@
 
 A state holds the damage of the milder state that it grew from and adds its own up to the count that it names. A spall
 that grows from a spall has the draws of the first one: its centre stays and its sizes keep their rank. What a grown
-spall hides is no damage of its own any more.
+spall hides is no damage of its own any more. Nor is what lies wholly on metal that a chip took, before it or after it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from functools import partial
 from siggen.config import Config
 from siggen.faults.fault import Fault
 from siggen.faults.growth import Growth
-from siggen.gears.damage.part import Parts
+from siggen.gears.damage.flank_loss import takes_from_flanks, with_outlines
+from siggen.gears.damage.part import Part, Parts
+from siggen.gears.damage.tooth_damage import goes_through
 from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import gearbox_config
@@ -52,7 +54,7 @@ def grown_damage(
     growth = Growth(config.seed, specimen_id, state_id, pair, milder, before, loads)
     parts = before
     for section in sorted(state.damages, key=_rank):  # whatever order they were written in
-        parts = _united(parts, section.drawn(growth))
+        parts = _united(parts, section.drawn(growth), pair)
     return tuple(one.sham() for one in parts) if state.sham else parts
 
 
@@ -74,6 +76,21 @@ def _milder(config: Config, state_id: int) -> Iterator[tuple[int, object]]:
         older = config.grown_from(older)
 
 
-def _united(before: Parts, new: Parts) -> Parts:
-    left = (old for old in before if old in new or not any(one.hides(old) for one in new))
-    return (*left, *(one for one in new if one not in before))
+def _united(before: Parts, new: Parts, pair: GearPair) -> Parts:
+    """Return old parts that nothing hides, and new ones on metal that is there still; orders of sections agree."""
+    left = tuple(old for old in before if old in new or not any(_hides(one, old, pair) for one in new))
+    gone = [old for old in left if any(goes_through(shown) for shown in with_outlines((old,), pair))]
+    return (
+        *left,
+        *(one for one in new if one not in before and not any(_hides(lost, one, pair) for lost in gone)),
+    )
+
+
+def _hides(one: Part, other: Part, pair: GearPair) -> bool:
+    """Return whether a part hides another one, by itself or by what shows of both on the flanks of a pair."""
+    if one.hides(other):
+        return True
+    if not (takes_from_flanks(one) or takes_from_flanks(other)):
+        return False
+    below = with_outlines((other,), pair)
+    return bool(below) and all(any(shown.hides(it) for shown in with_outlines((one,), pair)) for it in below)

@@ -79,7 +79,7 @@ class Chip:
             return ()
         height_m = min(self.height_m, tooth_height_m(gear))
         outline = lost_outline(gear, height_m, width_m, corner=False)
-        return (PartChip(self.gear, self.tooth, height_m, width_m, outline, self.whole_tooth),)
+        return (PartChip(self.gear, self.tooth, height_m, width_m, outline, self.whole_tooth, whole_face=True),)
 
     def lost_from_m(self, gear: SpurGear) -> float:
         """Return the radius above which it is gone [m]."""
@@ -90,10 +90,13 @@ class Chip:
         return np.full(radius_m.shape, face_width_m)
 
     def hides(self, other: Part) -> bool:
-        """Return whether less is left than of the same tooth before; where nothing is, nothing else is to be seen."""
+        """Return whether less is left than of the same tooth before; where nothing is, nothing else is to be seen.
+
+        What lies on lost metal needs a pair to be told: `outlined` hides it.
+        """
         if (other.gear, other.tooth) != (self.gear, self.tooth):
             return False
-        return self.whole_tooth or (isinstance(other, (Chip, PartChip)) and other.height_m <= self.height_m)
+        return self.whole_tooth or (isinstance(other, Chip) and other.height_m <= self.height_m)
 
     def sham(self) -> Chip:
         """Return a tooth that has lost no height."""

@@ -6,8 +6,10 @@ Derived. Sufficient conditions: a hidden row that is not recognised costs time o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from math import sqrt
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +31,8 @@ from siggen.gears.damage.row_columns import (
     SEMI_HEIGHT,
     TRAPEZOID,
 )
+
+Row: TypeAlias = tuple[float, ...]
 
 
 @njit(cache=True)
@@ -130,6 +134,14 @@ def cut_row(row: FloatArray, heights_m: FloatArray) -> list[FloatArray]:
         piece[LEFT_HIGH], piece[RIGHT_HIGH] = _sides_at(row, high)
         pieces.append(piece)
     return pieces
+
+
+def holds(own: Sequence[Row], other: Sequence[Row]) -> bool:
+    """Return whether all of `other` lies inside rows of `own` that are nowhere less deep; False where it is unsure."""
+    rows = np.array(own)
+    ends = rows[:, (LOWEST, HIGHEST)].ravel()
+    pieces = (piece for row in np.array(other) for piece in cut_row(row, ends))
+    return all(any(hides(larger, piece) for larger in rows) for piece in pieces)
 
 
 @njit(cache=True)

@@ -12,11 +12,10 @@ from typing import Protocol
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.covering import cut_row, hides
+from siggen.gears.damage.covering import holds
 from siggen.gears.damage.heights import flank_heights, profile_arc_m
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.part import Part, Refusal
-from siggen.gears.damage.row_columns import HIGHEST, LOWEST
 from siggen.gears.damage.sham import Sham
 from siggen.gears.damage.tooth_damage import ToothDamage, acts_on_tooth
 from siggen.gears.geometry.gear_pair import GearPair
@@ -78,10 +77,7 @@ class OnFlank:
         """Return whether `other` lies wholly inside on the same flank and nowhere deeper; False where it is unsure."""
         if (self.gear, self.tooth) != (other.gear, other.tooth) or not acts_on_tooth(other) or other.outline is None:
             return False
-        own = np.array(self.rows())
-        ends = own[:, (LOWEST, HIGHEST)].ravel()
-        pieces = (piece for row in np.array(other.rows()) for piece in cut_row(row, ends))
-        return all(any(hides(larger, piece) for larger in own) for piece in pieces)
+        return holds(self.rows(), other.rows())
 
     def sham(self: ToothDamage) -> Sham:
         """Return a sham in its place."""

@@ -19,12 +19,12 @@ from math import isfinite
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.covering import cut_row, hides
+from siggen.gears.damage.covering import holds
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.heights import flank_heights
-from siggen.gears.damage.outlines import Polygon
+from siggen.gears.damage.outlines import Outline, Polygon
 from siggen.gears.damage.part import Part, Refusal
-from siggen.gears.damage.row_columns import COLUMNS, HIGHEST, LOWEST, THROUGH_M
+from siggen.gears.damage.row_columns import COLUMNS, THROUGH_M
 from siggen.gears.damage.sham import Sham
 from siggen.gears.damage.tooth_damage import ToothDamage, acts_on_tooth, goes_through
 from siggen.gears.damage.union import lengths_covered
@@ -51,8 +51,8 @@ class PartChip:
         Over which width of the face from that end, face coordinate 0 [m].
     outline : Polygon
         What is gone, in the plane of height and face (`lost_outline`).
-    whole_height : bool
-        Whether the tooth is gone down to its root there.
+    whole_height, whole_face : bool
+        Whether the tooth is gone down to its root there, and whether that is all of the face.
     """
 
     gear: str
@@ -61,6 +61,7 @@ class PartChip:
     width_m: float
     outline: Polygon
     whole_height: bool = False
+    whole_face: bool = False
 
     @property
     def kind(self) -> str:
@@ -101,10 +102,19 @@ class PartChip:
         """Return whether `other` lies wholly on what is gone of the same tooth; False where it is unsure."""
         if (other.gear, other.tooth) != (self.gear, self.tooth) or not acts_on_tooth(other) or other.outline is None:
             return False
-        own = np.array(self.rows())
-        ends = own[:, (LOWEST, HIGHEST)].ravel()
-        pieces = (piece for row in np.array(other.rows()) for piece in cut_row(row, ends))
-        return all(any(hides(larger, piece) for larger in own) for piece in pieces)
+        return holds([*self.rows(), *self._gone_around(other.outline).rows(THROUGH_M, dish=False)], other.rows())
+
+    def _gone_around(self, outline: Outline) -> Polygon:
+        """Return what is gone, with all beyond the tip and the ends of the face that an outline reaches: no metal."""
+        (line, _), (far, _) = self.outline.corners_m[:2]
+        (_, high), (left, right) = outline.height_range_m, outline.face_range_m
+        top, first = max(high, self.outline.height_range_m[1]), min(left, 0.0) - self.width_m
+        if far > line:  # a corner: its trace goes on
+            return Polygon(
+                ((line, first), (line, 0.0), (top, self.width_m * (top - line) / (far - line)), (top, first))
+            )
+        last = max(right, 0.0) + self.width_m if self.whole_face else self.width_m
+        return Polygon(((line, first), (line, last), (top, last), (top, first)), "rectangle")
 
     def sham(self) -> Sham:
         """Return a sham in its place."""
