@@ -50,3 +50,11 @@ def test_what_helical_teeth_cannot_do_yet_is_refused_by_its_path() -> None:
     told = " ".join(f"{result.output} {result.exception}".split())
     for path in ("dynamics.friction.model", "dynamics.shafts", "manufacture", "states."):
         assert path in told
+
+
+def test_only_spur_teeth_enter_a_spall_along_a_whole_line() -> None:
+    options = ["--trial", "0", "--set", "dynamics.friction.model=off", "--set", "gears.helix_deg="]
+    spur, helical = (runner.invoke(app, ["plan", "ideal", *options[:-1], options[-1] + helix]) for helix in ("0", "15"))
+    assert spur.exit_code == helical.exit_code == 0, helical.output
+    assert "whole contact line" in " ".join(spur.output.split())
+    assert "whole contact line" not in " ".join(helical.output.split())
