@@ -26,6 +26,8 @@ WORN: dict[str, Any] = {
 CHIPPED: dict[str, Any] = {
     "chip 1.5 mm": {"kind": "chip", "height_mm": 1.5},
     "chip 3 mm": {"kind": "chip", "height_mm": 3.0},
+    "chip 3 mm over half the face": {"kind": "chip", "height_mm": 3.0, "face_share": 0.5},
+    "corner 3 mm over half the face": {"kind": "chip", "height_mm": 3.0, "face_share": 0.5, "corner": True},
     "broken tooth": {"kind": "chip", "height_mm": "whole"},
 }
 VALUES = ("rms", "fm0_pinion_h5", "difference_rms_pinion", "fm4_pinion")

@@ -20,7 +20,7 @@ from siggen.record.labels import damage_labels
 from siggen.record.stage_labels import stage_labels
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_uniforms
-from siggen.specimen.back_flanks import with_back_flanks
+from siggen.specimen.back_flanks import with_back_flanks, with_static_back
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
@@ -131,12 +131,13 @@ def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> Specime
     with refused_as("outside_model"):
         missing = made.missing(state_id)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
+        loads = largest_force_n(config.operating_points, pair), lead_of(teeth.errors)
         static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, teeth.parts)
+        static = with_static_back(static, specimen.dynamics, teeth.options, *loads, teeth.parts)
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
             sham=config.states[state_id].sham,
         )  # fmt: skip
-        loads = largest_force_n(config.operating_points, pair), lead_of(teeth.errors)
         before = made.missing_before_chips(state_id)
         mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
     return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)

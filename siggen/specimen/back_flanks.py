@@ -10,15 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from typing import TypeAlias
 
 import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics
 from siggen.dynamics.structure.back_flanks import on_back_flanks as seen_from_behind
-from siggen.gears.damage.flank_loss import Losses, from_flanks, on_back_flanks, turned
-from siggen.gears.damage.part import Parts
-from siggen.gears.damage.tooth_damage import goes_through, on_teeth
+from siggen.gears.damage.flank_loss import Losses, from_flanks, on_back_flanks, takes_from_flanks, turned
+from siggen.gears.damage.part import NO_TOOTH, Parts
+from siggen.gears.damage.tooth_damage import acts_on_tooth, goes_through, on_teeth
 from siggen.gears.geometry.back_flanks import back_flanks, driven_pair, pitches_ahead
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
@@ -27,6 +28,51 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.contact import tooth_tables
 from siggen.specimen.flank_waves import WavyTeeth
 from siggen.specimen.motion import SpecimenMesh
+from siggen.specimen.static_mesh import StaticMesh, static_mesh
+
+Lead: TypeAlias = Callable[[int], FloatArray] | None
+
+
+def on_both_flanks(parts: Parts) -> Parts:
+    """Return the parts that have taken the back flank with the drive flank."""
+    return tuple(
+        one
+        for one in parts
+        if (acts_on_tooth(one) and goes_through(one)) or (takes_from_flanks(one) and one.tooth != NO_TOOTH)
+    )
+
+
+def with_static_back(
+    mesh: StaticMesh,
+    dynamics: Dynamics,
+    options: StiffnessOptions,
+    largest_force_n: float,
+    lead_m: Lead,
+    parts: Parts,
+) -> StaticMesh:
+    """Return a mesh at rest with that of its back flanks, if `parts` have taken any; arguments of `tooth_tables`.
+
+    Seen in a mirror back flanks are drive flanks, whose teeth count the other way round.
+    """
+    pair = mesh.pair
+    mirrored = tuple(
+        replace(one, tooth=-one.tooth % pair.member(one.gear).teeth)  # type: ignore[type-var]
+        for one in on_both_flanks(parts)
+    )
+    if not mirrored:
+        return mesh
+
+    @cache
+    def behind() -> StaticMesh:
+        lead = _seen_from_behind(lead_m)
+        teeth = tooth_tables(dynamics, pair, on_teeth(mirrored), options, TABLE_POINTS, largest_force_n, lead)
+        return static_mesh(dynamics, pair, teeth, TABLE_POINTS, mirrored)
+
+    return replace(mesh, behind=behind)
+
+
+def _seen_from_behind(lead_m: Lead) -> Lead:
+    return None if lead_m is None else lambda slices: np.ascontiguousarray(lead_m(slices)[::-1])
 
 
 class BackTeeth:
@@ -47,7 +93,7 @@ def with_back_flanks(
     dynamics: Dynamics,
     options: StiffnessOptions,
     largest_force_n: float,
-    lead_m: Callable[[int], FloatArray] | None,
+    lead_m: Lead,
     teeth: WavyTeeth,
     parts: Parts = (),
 ) -> SpecimenMesh:
@@ -59,10 +105,9 @@ def with_back_flanks(
 
     @cache
     def back() -> SpecimenMesh:
-        lead = None if lead_m is None else lambda slices: np.ascontiguousarray(lead_m(slices)[::-1])
         driven = driven_pair(pair)
-        gone = tuple(turned(one, driven) for one in on_teeth(parts) if goes_through(one))
-        found = tooth_tables(dynamics, driven, gone, options, TABLE_POINTS, largest_force_n, lead)
+        gone = tuple(turned(one, driven) for one in on_teeth(on_both_flanks(parts)))
+        found = tooth_tables(dynamics, driven, gone, options, TABLE_POINTS, largest_force_n, _seen_from_behind(lead_m))
         return SpecimenMesh(
             driven,
             seen_from_behind(mesh.structure, pair.line_of_action_m, pitches_ahead(pair)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,6 +38,8 @@ class StaticMesh:
         Where it is solved across the face.
     worn : bool
         Whether flanks of all teeth alike miss material by the state's damage.
+    behind : callable or None
+        Gives the same of the back flanks, mirrored onto drive flanks; None where damage has taken nothing of them.
     """
 
     pair: GearPair
@@ -44,6 +47,7 @@ class StaticMesh:
     healthy: PairLaw
     contact: ContactTable | None = None
     worn: bool = False
+    behind: Callable[[], StaticMesh] | None = None
 
     def force_n(self, torque_nm: float) -> float:
         """Return the normal force of a torque on the pinion [N]."""
@@ -56,10 +60,10 @@ class StaticMesh:
     def largest_loss(self, torque_nm: float) -> float:
         """Return the largest relative loss of the stiffness at a torque on the pinion, against healthy.
 
-        Below 0 N m back flanks carry, which have no damage. At 0 N m it is the loss under a light contact.
+        Below 0 N m back flanks carry. At 0 N m it is the loss under a light contact.
         """
         if torque_nm < 0.0:
-            return 0.0
+            return 0.0 if self.behind is None else self.behind().largest_loss(-torque_nm)
         force_n = self.force_n(torque_nm) if torque_nm > 0.0 else light_force_n(self.pair)
         return largest_secant_loss(self.law, self.healthy, force_n, worn=self.worn)
 

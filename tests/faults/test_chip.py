@@ -173,6 +173,30 @@ def test_labels_of_a_chip_over_the_face_are_its_area_and_its_stiffness() -> None
     assert lost == pytest.approx(nearly, rel=0.05)
 
 
+@pytest.mark.parametrize(
+    "damages", [({**BROKEN, "teeth": [4]},), ({"kind": "chip", "height_mm": 3.0, "face_share": 0.6, "teeth": [4, 7]},)]
+)
+def test_what_is_gone_on_both_flanks_is_lost_under_either_torque(damages: tuple[dict[str, Any], ...]) -> None:
+    """Perfect gears are their own mirror image, in which the teeth count the other way round."""
+    config = quick(*damages)
+    static = specimen_state(config, draw_specimen(config, 0), 1).static
+    assert static.largest_loss(-60.0) == pytest.approx(static.largest_loss(60.0), rel=1e-9)
+    assert static.largest_loss(60.0) > 0.1
+
+
+def test_a_chip_beside_pits_has_lost_its_tip_alone_under_a_torque_below_0() -> None:
+    chip = {"kind": "chip", "height_mm": 0.3, "teeth": [4]}
+    wide = {"gear": "pinion", "tooth": 9, "height_mm": 3.0, "face_mm": 10.0, "semi_axis_face_mm": 8.0}
+    pits = {"kind": "list", "pits": [{**wide, "semi_axis_profile_mm": 0.5, "depth_mm": 0.2}]}
+    alone, (_, state) = quick(chip), quick(pits).states
+    both = alone.states[1].model_copy(update={"damage": (*alone.states[1].damages, *state.damages)})
+    grown = alone.model_copy(update={"states": (alone.states[0], both)})
+    tip, more = (specimen_state(one, draw_specimen(one, 0), 1).static for one in (alone, grown))
+    assert more.largest_loss(-60.0) == pytest.approx(tip.largest_loss(-60.0), rel=1e-12)
+    assert tip.largest_loss(-60.0) == pytest.approx(tip.largest_loss(60.0), rel=1e-9)
+    assert more.largest_loss(60.0) > tip.largest_loss(60.0)
+
+
 def test_a_missing_tooth_has_lost_all_of_its_flank() -> None:
     gone, lost = measured(BROKEN)
     assert gone["damaged_area_share"] == pytest.approx(1.0)
