@@ -17,6 +17,7 @@ from siggen.checks.bearing_problems import bearing_problems
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.pair_problems import pair_problems
+from siggen.checks.ring_problems import ring_problems
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
@@ -93,6 +94,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     problems += housing_problems(sections, sound)
     problems += edge_problems(sections, sound)
     problems += tilt_problems(sections, flanks)
+    problems += ring_problems(sections.get("planetary"), flanks)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 

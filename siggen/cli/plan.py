@@ -195,10 +195,14 @@ def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> 
 
 
 def _mesh_range_hz(config: Config) -> tuple[float, float]:
+    from siggen.config.planetary import pitches_per_turn
     from siggen.keys.number import bounds
 
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
-    teeth, (slowest, fastest) = config.gears.teeth_of("pinion"), config.variation.speed_ratios
+    teeth: tuple[float, ...] = config.gears.teeth_of("pinion")
+    if config.planetary is not None:
+        teeth = (pitches_per_turn(config.gears.pinion.teeth, config.planetary.ring_teeth),)
+    slowest, fastest = config.variation.speed_ratios
     return min(teeth) * min(low for low, _ in speeds) * slowest, max(teeth) * max(high for _, high in speeds) * fastest
 
 

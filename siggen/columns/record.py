@@ -14,6 +14,7 @@ from siggen.columns.damage_columns import damage_columns
 from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
+from siggen.columns.planetary_columns import of_planets
 from siggen.columns.stage_columns import stage_columns
 from siggen.columns.state_columns import state_columns
 from siggen.columns.versions import SCHEMA_VERSION
@@ -188,7 +189,7 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     varying = VARIATION_COLUMNS if config.variation.active else ()
     stepped = INTEGRATION_COLUMNS if config.dynamics.method == "exponential" else ()
     operating = (*OPERATING_COLUMNS, *stepped)
-    common = (
+    common = of_planets(config, (
         *LABEL_COLUMNS,
         *state_columns(config),
         *operating,
@@ -196,7 +197,7 @@ def label_columns(config: Config) -> tuple[Column, ...]:
         *stage_columns(config),
         *varying,
         *manufacture_columns(config),
-    )
+    ))  # fmt: skip
     return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
 
 

@@ -23,6 +23,7 @@ from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
+from siggen.config.planetary import Planetary
 from siggen.config.presets import config_file
 from siggen.config.shafts import Shaft, Shafts
 from siggen.config.stages import Stage
@@ -57,6 +58,7 @@ __all__ = [
     "Pair",
     "ParsedConfig",
     "PlainRotor",
+    "Planetary",
     "PlateHousing",
     "RigidHousing",
     "Rotor",

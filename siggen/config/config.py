@@ -16,6 +16,7 @@ from siggen.config.gears import Gears
 from siggen.config.housing import Housing, PlateHousing, RigidHousing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
+from siggen.config.planetary import Planetary
 from siggen.config.stages import Stage
 from siggen.config.states import State, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
@@ -91,6 +92,9 @@ class Config(Section):
     gears: Gears = Field(description="the gear pair")
     stages: tuple[Stage, ...] = Field(
         default=(), description="further meshes behind `gears`, in the order of power; the last gear drives the load"
+    )
+    planetary: Planetary | None = Field(
+        default=None, description="null: a pair on two shafts; given: `gears` are sun and planets in a ring"
     )
     stiffness: Stiffness = Field(default=Stiffness(), description="model of the mesh stiffness")
     dynamics: Dynamics = Field(default=Dynamics(), description="model of the gearbox")

@@ -9,6 +9,8 @@ from typing import Any
 
 from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
+from siggen.config.planetary import in_pair
+from siggen.config.planetary_problems import sets_problems
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
@@ -16,7 +18,7 @@ from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
-from siggen.sensors.sensor import MODAL, PLATES, STAGED_CASING, STAGES
+from siggen.sensors.sensor import MODAL, PLANETARY, PLATES, STAGED_CASING, STAGES
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -46,6 +48,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _background,
         _splits,
         stage_problems,
+        sets_problems,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -87,6 +90,8 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     model = sections["dynamics"].model
     if sections.get("stages"):
         model = STAGED_CASING if model == "casing" else STAGES
+    if sections.get("planetary") is not None:
+        model = PLANETARY
     if model == "casing" and "housing" not in sections:  # wrong itself: which places there are is not known
         return
     if model == "casing" and isinstance(sections["housing"], PlateHousing):
@@ -299,7 +304,7 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             if (pair := pair_of(sections, gear)) is None:  # told by `_stages_named`
                 continue
             selected = most_teeth(teeth)
-            count = min(pair.teeth_of(gear.rpartition(".")[2]))
+            count = min(pair.teeth_of(in_pair(gear.rpartition(".")[2])))
             if isinstance(selected, int):
                 if selected > count:
                     yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")

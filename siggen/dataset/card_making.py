@@ -74,6 +74,8 @@ def _gears_text(config: Config) -> str:
 
 def _teeth_text(config: Config) -> str:
     gears = config.gears
+    if config.planetary is not None:
+        return _planetary_text(config)
     if not gears.pairs:
         first = f"A spur pair with {gears.pinion.teeth} and {gears.gear.teeth} teeth"
         return f"{first}.{_stages_text(config)}"
@@ -92,6 +94,17 @@ def _stages_text(config: Config) -> str:
         return ""
     pairs = [f"`{one.name}` with {one.gears.pinion.teeth} and {one.gears.gear.teeth}" for one in config.stages]
     return f" Behind it, in the order of power: {', '.join(pairs)}; all meshes are simulated together."
+
+
+def _planetary_text(config: Config) -> str:
+    """Say which teeth a planetary set has, and where its planets stand."""
+    assert config.planetary is not None
+    sun, planet, places = config.gears.pinion.teeth, config.gears.gear.teeth, config.planetary.positions_deg
+    return (
+        f"A planetary set: a sun with {sun} teeth drives {len(places)} planets with {planet} in a ring with "
+        f"{config.planetary.ring_teeth} that is held; the planets stand at {', '.join(f'{p:g}' for p in places)} "
+        "degrees on the carrier, which drives the load."
+    )
 
 
 def _ends(values: Sequence[float]) -> tuple[float, float]:

@@ -23,13 +23,17 @@ from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
 GearName: TypeAlias = Literal["pinion", "gear"]
-GEAR_TEXT = AllowedText("one of pinion, gear, either; of a further stage NAME.pinion, NAME.gear, NAME.either")
-AnyGear: TypeAlias = Annotated[str, Field(pattern=r"^([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)$"), GEAR_TEXT]
+GEAR_TEXT = AllowedText(
+    "one of pinion, gear, either; of a further stage NAME.pinion, NAME.gear, NAME.either; of planetary sets sun, planet"
+)
+AnyGear: TypeAlias = Annotated[
+    str, Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)|sun|planet)$"), GEAR_TEXT
+]
 """`either`: drawn per gearbox, the same for all of its states; before a dot the name of a further stage."""
 
 DAMAGED_GEAR = (
     "damaged gear: pinion, gear, or either, drawn per gearbox, one gear in all states; of a further stage with its "
-    "name, such as slow.pinion"
+    "name, such as slow.pinion; of a planetary set sun or planet, which is the first one"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from siggen.config import Config, Dynamics, Gears, ModalHousing, RigidHousing, Stage, Stiffness
+from siggen.config import Config, Dynamics, Gears, ModalHousing, Planetary, RigidHousing, Stage, Stiffness
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.planning.gearbox import gearbox_config
@@ -19,7 +19,7 @@ class Specimen:
     """A gearbox: sections of the configuration with every distribution replaced by a value.
 
     `bearing_point` is the operating point under whose mean load its bearings stand; None where they have one stiffness.
-    `stages` are the meshes behind that of `gears`.
+    `stages` are the meshes behind that of `gears`; with `planetary` those are sun and planets.
     """
 
     specimen_id: int
@@ -30,6 +30,7 @@ class Specimen:
     sensors: tuple[Sensor, ...]
     bearing_point: OperatingPoint | None = None
     stages: tuple[Stage, ...] = ()
+    planetary: Planetary | None = None
 
     def under(self, point: OperatingPoint) -> Specimen:
         """Return the gearbox at an operating point; itself where its bearings have one stiffness."""
@@ -63,6 +64,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         sensors=tuple(one.drawn(sensor) for one in own.sensors),
         bearing_point=draw_operating_point(own, specimen_id, 0) if follows_load(own.dynamics) else None,
         stages=tuple(draw(one, supports, f"stages.{one.name}") for one in own.stages),
+        planetary=None if own.planetary is None else draw(own.planetary, supports, "planetary"),
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from siggen.config import Config, Gears, OperatingRange, Pair, PlainRotor, Rotor, Stage, State
+from siggen.config.planetary import in_pair
 from siggen.config.stages import turned
 from siggen.faults.fault import Fault
 from siggen.keys.distributions import Uniform
@@ -24,7 +25,9 @@ DOT = "."
 
 def first_mesh(config: Config) -> Config:
     """Return the configuration of the pair of `gears` alone; itself where there is no other mesh."""
-    return config if not config.stages else config.model_copy(update={"stages": (), "states": _states_on(config, "")})
+    if not config.stages and config.planetary is None:
+        return config
+    return config.model_copy(update={"stages": (), "planetary": None, "states": _states_on(config, "")})
 
 
 def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
@@ -121,7 +124,8 @@ def _own(state: State, name: str) -> tuple[Fault, ...] | Fault | None:
 
 def _alone(damage: Fault) -> Fault:
     gear = getattr(damage, "gear", None)
-    return damage if gear is None or DOT not in gear else damage.model_copy(update={"gear": gear.rpartition(DOT)[2]})
+    own = None if gear is None else in_pair(gear.rpartition(DOT)[2])
+    return damage if own == gear else damage.model_copy(update={"gear": own})
 
 
 def _seed(seed: int, name: str) -> int:

@@ -6,6 +6,7 @@ from functools import lru_cache
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
 from siggen.config import Config
+from siggen.config.planetary import NAMES
 from siggen.gears.damage.part import Part, Parts
 from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
@@ -23,15 +24,17 @@ def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
     placed, shared = _damage(config, record.specimen_id, record.state_id)
     empty = {column.name: nothing_of(column) for column in (*DAMAGE_COLUMNS, *kind_columns(config))}
     return [
-        {**empty, "record_id": record_id, **shared, **_row(one, name), **drawn_labels(config, record, one)}
+        {**empty, "record_id": record_id, **shared, **_row(config, one, name), **drawn_labels(config, record, one)}
         for name, parts in placed.items()
         for one in parts
     ]
 
 
-def _row(part: Part, stage: str) -> dict[str, object]:
-    """Return the row of a part, whose gear has the name of its stage before it."""
+def _row(config: Config, part: Part, stage: str) -> dict[str, object]:
+    """Return the row of a part, whose gear has the name of its stage before it, or that in a planetary set."""
     row = part.table_row()
+    if config.planetary is not None:
+        return {**row, "gear": NAMES.get(str(row["gear"]), row["gear"])}
     return {**row, "gear": f"{stage}{DOT}{row['gear']}"} if stage else row
 
 

@@ -21,6 +21,7 @@ from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import operating_labels, state_labels
 from siggen.record.machine import Machine, machines
+from siggen.record.planetary_state import planetary_labels
 from siggen.record.quantities import is_asked_for
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
 from siggen.record.stage_labels import stage_operating_labels
@@ -151,7 +152,7 @@ def simulated(
     ends_rad = driven.rotation.angle_rad(np.array([0, config.samples - 1]) / config.fs_hz)
     with refused_as("outside_model"):
         operating = operating_labels(state.pair, point, ends_rad, config, state.static)
-    labels = {
+    labels = planetary_labels(config, specimen, {
         **state.labels,
         **operating,
         **stage_operating_labels(specimen, operating, [one.static for one in state.behind]),
@@ -161,7 +162,7 @@ def simulated(
         "contact_loss_share": response.contact_loss_share,
         "status": "ok",
         **channel_labels,
-    }
+    }, state.static)  # fmt: skip
     internals = response.quantities() if isinstance(response, StreamedInternals) else None
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
     return Record(planned, labels, channels, tacho_s, internals)

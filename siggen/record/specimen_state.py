@@ -17,6 +17,7 @@ from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
 from siggen.planning.stages import turns
 from siggen.record.labels import damage_labels
+from siggen.record.planetary_state import planetary_mesh
 from siggen.record.stage_labels import stage_labels
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_uniforms
@@ -51,6 +52,8 @@ class SpecimenState:
     @property
     def parts_behind(self) -> list[tuple[GearPair, Parts, MeshPlace]]:
         """Pair and parts of the further meshes, and where those are."""
+        if not self.behind:  # other planets have no damage of their own
+            return []
         both = zip(self.behind, self.mesh.behind, strict=True)
         return [
             (own.pair, own.parts, MeshPlace(number, mesh.turning, mesh.turned_pitches))
@@ -104,6 +107,9 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     with refused_as("outside_model"):
         assembled = structure(config, specimen)
     first = _mesh_state(made, state_id, assembled)
+    if specimen.planetary is not None:
+        mesh = planetary_mesh(config, specimen, made, state_id, first.mesh, first.options)
+        return replace(first, mesh=mesh)
     if not specimen.stages:
         return first
     return _with_stages(config, specimen, first, tuple(_mesh_state(one, state_id, assembled) for one in made.stages))

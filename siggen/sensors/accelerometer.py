@@ -51,11 +51,11 @@ class Accelerometer(SourceKeys, Sensor):
     kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
     place: Literal[
         "pinion_bearing", "gear_bearing", "lid", "wall", "pinion_end", "gear_end", "foot", "casing", "pinion_rim",
-        "gear_rim",
+        "gear_rim", "ring", "sun_bearing", "carrier_bearing",
     ] = Field(
         default="pinion_bearing",
         description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
-        "modal or a path, rims with the model torsional",
+        "modal or a path, rims with the model torsional; ring, sun_bearing and carrier_bearing of a planetary set",
     )  # fmt: skip
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,

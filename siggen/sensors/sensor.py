@@ -36,6 +36,8 @@ MODAL = "casing, housing.kind: modal"
 STAGES = "8dof, stages"
 """The model of gearboxes with further meshes behind the first one."""
 STAGED_CASING = "casing, stages"
+PLANETARY = "8dof, planetary"
+"""The model of a planetary set."""
 PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
 """Place -> plate of the housing."""
 PLACES = {
@@ -44,6 +46,7 @@ PLACES = {
     "8dof": ("pinion_bearing", "gear_bearing"),
     STAGES: ("pinion_bearing", "gear_bearing"),
     STAGED_CASING: ("casing", "pinion_bearing", "gear_bearing"),
+    PLANETARY: ("ring", "sun_bearing", "carrier_bearing"),
     "casing": ("casing", "pinion_bearing", "gear_bearing"),
     PLATES: (*PLATE_OF, "pinion_bearing", "gear_bearing"),
     MODAL: ("casing", *PLATE_OF, "pinion_bearing", "gear_bearing"),
@@ -52,12 +55,14 @@ PLACES = {
 SHAFTS_OF = {model: tuple(SHAFTS) for model in PLACES} | {
     "6dof": ("pinion", "gear"),
     **dict.fromkeys((STAGES, STAGED_CASING), ("motor", "pinion", "gear")),
+    PLANETARY: (),
 }
 """What turns in a model."""
 COUPLINGS_OF = {model: tuple(COUPLINGS) for model in PLACES} | {
     "6dof": (),
     STAGES: ("input_coupling",),
     STAGED_CASING: ("input_coupling",),
+    PLANETARY: (),
 }
 """Couplings that a model has."""
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")

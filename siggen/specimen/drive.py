@@ -31,6 +31,7 @@ from siggen.sensing.spread import Spread
 from siggen.specimen.bearing_spalls import spall_sources
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.lost_mass import MeshPlace, lost_mass_sources
+from siggen.specimen.planetary_numbers import hunting_turns_of_sun
 from siggen.specimen.shaft_forces import force_sources
 
 MARGIN_S = 1.0
@@ -86,7 +87,8 @@ def record_drive(
 
 def start_angle_rad(config: Config, specimen: Specimen, record: PlannedRecord) -> float:
     """Return the pinion angle at the first sample [rad], uniform over the hunting period of all gears."""
-    revolutions = hunting_turns(specimen.gears, specimen.stages)
+    planetary = specimen.planetary is not None
+    revolutions = hunting_turns_of_sun(specimen) if planetary else hunting_turns(specimen.gears, specimen.stages)
     return float(generator(config.seed, Stage.START, *record_owner(record)).random() * 2 * pi * revolutions)
 
 

@@ -17,6 +17,7 @@ from siggen.dynamics.mesh.pair_internals import PairContact
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.structure.back_flanks import on_back_flanks
 from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.shaft_lines import frame_turns
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.linear_motion import LinearMotion
@@ -71,7 +72,8 @@ class SpecimenMesh:
     """What all records of one specimen and state share: structure and tables of its teeth.
 
     `sham`: in what has kinds of pairs of its own nothing is removed, so that no pair is a damaged one.
-    `behind` are the further meshes, which carry no torque below 0.
+    `behind` are the further meshes, which carry no torque below 0. `turning`: turns of its first gear against the frame
+    of its structure per turn of the first shaft; `line_of_action_m`: of planets in their ring, else that of `pair`.
     `back` makes the same of the back flanks, which carry torques below 0: `pair` has the gear in front there.
     """
 
@@ -84,11 +86,18 @@ class SpecimenMesh:
     sham: bool = False
     back: Callable[[], SpecimenMesh] | None = None
     behind: tuple[MeshBehind, ...] = ()
+    turning: float = 1.0
+    line_of_action_m: float | None = None
 
     @property
     def every(self) -> tuple[MeshBehind, ...]:
         """All meshes in the order of power, itself first."""
-        return (MeshBehind(self), *self.behind)
+        return (MeshBehind(self, self.turning), *self.behind)
+
+    @property
+    def action_m(self) -> float:
+        """Length of the line of action between the base tangent points [m]."""
+        return self.pair.line_of_action_m if self.line_of_action_m is None else self.line_of_action_m
 
     def on(self, structure: Structure) -> SpecimenMesh:
         """Return the same teeth on another structure."""
@@ -152,7 +161,7 @@ def specimen_motion(
     return kind(
         locked_load(mesh.structure) if rubbing else mesh.structure,
         [_pair_mesh(dynamics, one, number, front) for number, one in enumerate(mesh.every)],
-        mean=MeanState(point.torque_nm, point.speed_hz),
+        mean=MeanState(point.torque_nm, point.speed_hz * (1.0 - frame_turns(mesh.structure))),
         step_s=step_s,
         input_vectors=vectors,
         speed_input=-1 if driven is None else driven.speed_input,
@@ -186,7 +195,7 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, mass_kg:
     return pair_law(
         mesh.tables,
         mesh.missing.under(point.torque_nm),
-        MeshConstants(mesh.pair.line_of_action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um)),
+        MeshConstants(mesh.action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um)),
         damping_ratio=_damping_ratio(dynamics),
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
         film=film if section.squeeze_film == "on" else None,

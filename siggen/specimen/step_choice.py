@@ -93,7 +93,9 @@ class Probe:
 
     def stretch(self, motion: Motion) -> Stretch:
         """Return where the record is looked at."""
-        pitches_hz = min(one.mesh.pair.pinion.teeth * one.turning * abs(self.point.speed_hz) for one in self.mesh.every)
+        pitches_hz = min(
+            one.mesh.tables.table_of_pair.shape[0] * one.turning * abs(self.point.speed_hz) for one in self.mesh.every
+        )
         compared_s = max(LEAST_S, LEAST_PITCHES / pitches_hz, self._sharp_s())
         ringing = self.ringing(motion)
         count = max(2, min(ceil(compared_s * self.config.fs_hz), self.config.samples))

@@ -12,6 +12,7 @@ from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.body import Body, modal_body
 from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
 from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.planetary import planetary_structure
 from siggen.dynamics.structure.structure import (
     Coupling,
     SpurStage,
@@ -28,6 +29,7 @@ from siggen.planning.specimen import Specimen
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.loaded_bearings import loaded_bearings, on_loaded_bearings
+from siggen.specimen.planetary_numbers import planetary_numbers
 from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.rotors import rotor_numbers
 from siggen.specimen.specimen_housing import coupled_modes
@@ -41,6 +43,8 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     dynamics, pair, stage = specimen.dynamics, gear_pair(specimen.gears), supported_stage(specimen)
     if specimen.stages:
         return staged_structure(stage, specimen)
+    if specimen.planetary is not None:
+        return planetary_structure(planetary_numbers(specimen))
     if dynamics.model != "casing":
         return ASSEMBLIES[dynamics.model](stage)
     found = carried_structure(stage, specimen_body(config, specimen), _shafts(dynamics, stage, pair))

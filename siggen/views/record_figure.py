@@ -21,7 +21,10 @@ HARMONICS = 3
 SIDEBANDS = 5
 """Orders of shaft sidebands that are marked on each side of a harmonic."""
 
-SHAFTS = (("pinion_shaft_hz", "C3", "--"), ("gear_shaft_hz", "C2", ":"))
+SHAFTS = (
+    ("pinion_shaft_hz", "C3", "--"), ("gear_shaft_hz", "C2", ":"), ("carrier_hz", "C3", "--"), ("planet_hz", "C2", ":")
+)  # fmt: skip
+"""Rotations whose sidebands are marked, as far as a record has them."""
 
 
 def amplitude_spectrum(signal: np.ndarray, fs_hz: float) -> tuple[np.ndarray, np.ndarray]:
@@ -74,11 +77,12 @@ def _draw_harmonic(
     ax: Axes, frequency_hz: np.ndarray, amplitude: np.ndarray, record: Mapping[str, Any], harmonic: int
 ) -> None:
     centre_hz = harmonic * record["mesh_hz"]
-    half_width_hz = (SIDEBANDS + 0.5) * record["pinion_shaft_hz"]
+    shafts = [one for one in SHAFTS if one[0] in record]
+    half_width_hz = (SIDEBANDS + 0.5) * max(record[name] for name, *_ in shafts)
     shown = np.abs(frequency_hz - centre_hz) <= half_width_hz
     ax.semilogy(frequency_hz[shown], np.maximum(amplitude[shown], np.finfo(float).tiny), lw=0.9, color="C0")
     ax.axvline(centre_hz, color="0.6", lw=0.8, label="mesh harmonic")
-    for name, color, style in SHAFTS:
+    for name, color, style in shafts:
         for order in range(1, SIDEBANDS + 1):
             for sign in (-1, 1):
                 label = f"±k · {name.removesuffix('_hz').replace('_', ' ')}" if order == sign == 1 else None

@@ -1,33 +1,43 @@
-"""What a sensor at rest sees of a body whose coordinates turn with a carrier.
+"""What a sensor at rest sees of bodies whose coordinates turn with a carrier.
 
-Equations: standard literature (accelerations in a turning frame). A ring that moves as a whole passes a force at the
-angle β before the sensor on as 1 and cos β, sin β of it: the first terms of its transfer as a Fourier series in the
-angle. No window: planets are heard from everywhere, as far as the ring moves.
+Derived: a body at (x, y) of a frame at the angle φ is at x cos φ - y sin φ, x sin φ + y cos φ in space. A ring that
+moves as a whole passes a force at the angle β before the sensor on as 1 and cos β, sin β of it: the first terms of its
+transfer as a Fourier series in the angle. No window: planets are heard from everywhere, as far as the ring moves.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from siggen.arrays import FloatArray
 
+CENTRAL = ("s", "c", "r")
+"""Bodies on the common axis, whose axes are those of the frame."""
 
-def fixed_accelerations(
-    place_m: FloatArray, speed_m_s: FloatArray, acceleration_m_s2: FloatArray, angle_rad: FloatArray, turning_hz: float
+
+def in_space(
+    coordinates: Sequence[str], states: FloatArray, static_deflection: FloatArray, angle_rad: FloatArray
 ) -> FloatArray:
-    """Return the acceleration along the fixed axes (2, k) of a point that moves in a turning frame [m/s²].
+    """Return states (k, 2n) with the places of central bodies along fixed axes, static deflections included.
 
     Parameters
     ----------
-    place_m, speed_m_s, acceleration_m_s2 : (2, k)
-        Along the axes of a frame that turns evenly, and their rates as the frame sees them.
+    coordinates : names of the n coordinates
+    states : (k, 2n)
+        About the static deflection.
+    static_deflection : (n,)
     angle_rad : (k,)
         Of the frame's x axis against the fixed one.
-    turning_hz : float
-        Of the frame.
+
+    Rates stay those of the frame: accelerations are taken from places.
     """
-    omega = 2.0 * np.pi * turning_hz
-    x = acceleration_m_s2[0] - 2.0 * omega * speed_m_s[1] - omega**2 * place_m[0]
-    y = acceleration_m_s2[1] + 2.0 * omega * speed_m_s[0] - omega**2 * place_m[1]
+    seen, names = states.copy(), list(coordinates)
     cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
-    return np.stack([cosine * x - sine * y, sine * x + cosine * y])
+    for body in CENTRAL:
+        x, y = names.index(f"x_{body}"), names.index(f"y_{body}")
+        along, across = states[:, x] + static_deflection[x], states[:, y] + static_deflection[y]
+        seen[:, x] = cosine * along - sine * across
+        seen[:, y] = sine * along + cosine * across
+    return seen

@@ -81,7 +81,11 @@ def planetary_structure(stage: PlanetaryStage) -> Structure:
         meshes=(*_sun_meshes(coordinates, stage), *_ring_meshes(coordinates, stage)),
         shaft_lines=(("theta_m", "theta_s"), *((f"theta_p{i}",) for i in numbers), ("theta_c", "theta_l")),
         torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -stage.ratio}),
-        motions={f"{place}/{axis}": vector(coordinates, {f"{axis}_{name}": 1.0}) for place, name, axis in _SEEN},
+        motions={
+            f"{place}/{direction}": vector(coordinates, {f"{axis}_{name}": 1.0})
+            for place, name in _SEEN.items()
+            for direction, axis in (("horizontal", "x"), ("vertical", "y"))
+        },
         bearing_forces={},
         bearing_directions={},
         line_speeds=_line_speeds(stage),
@@ -89,7 +93,8 @@ def planetary_structure(stage: PlanetaryStage) -> Structure:
     )
 
 
-_SEEN = [(place, place[0], axis) for place in ("sun", "carrier", "ring") for axis in ("x", "y")]
+_SEEN = {"sun_bearing": "s", "carrier_bearing": "c", "ring": "r"}
+"""Place of a sensor -> body whose motion it shows; along axes of the frame, which `in_space` turns."""
 
 
 def _line_speeds(stage: PlanetaryStage) -> tuple[float, ...]:

@@ -43,6 +43,13 @@ def rigid_rotation(structure: Structure) -> FloatArray:
     return np.asarray(turning_lines(structure).sum(axis=0))
 
 
+def frame_turns(structure: Structure) -> float:
+    """Return the turns of the frame in space per turn of the first shaft line; 0 where it stands still."""
+    if not structure.frame:
+        return 0.0
+    return float(rigid_rotation(structure)[structure.coordinates.index(structure.frame)])
+
+
 def rolling(structure: Structure) -> FloatArray:
     """Return (n,): how far each coordinate turns per turn of the first shaft line, both against the frame."""
     turning = rigid_rotation(structure)
@@ -50,7 +57,7 @@ def rolling(structure: Structure) -> FloatArray:
         return turning
     # what does not turn in space, such as a ring, turns back against the frame
     against = np.array([name.startswith("theta") for name in structure.coordinates])
-    frame = turning[structure.coordinates.index(structure.frame)]
+    frame = frame_turns(structure)
     return np.asarray((turning - frame * against) / (1.0 - frame))
 
 

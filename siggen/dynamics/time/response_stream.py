@@ -18,6 +18,8 @@ from siggen.compiled import njit
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
+from siggen.dynamics.structure.fixed_frame import in_space
+from siggen.dynamics.structure.shaft_lines import frame_turns
 from siggen.dynamics.time.decimation import Decimator, half_length, value_taps
 from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
 from siggen.dynamics.time.motion import Motion
@@ -45,8 +47,17 @@ class Run:
 
     def pitches(self, first: int, count: int) -> FloatArray:
         """Return the angle of the mesh law in base pitches at `count` steps from step `first`."""
-        turned = self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
+        per_turn = self.motion.teeth * (1.0 - frame_turns(self.motion.structure))
+        turned = self.drive.angle_rad(self.time_s(first, count)) * (per_turn / (2.0 * np.pi))
         return turned + self.motion.structure.mesh.flanks.ahead_pitches
+
+    def seen(self, first: int, states: FloatArray) -> FloatArray:
+        """Return states (steps, 2n) from step `first` on as sensors at rest see their places."""
+        motion = self.motion
+        if not motion.structure.frame:
+            return states
+        turned = self.drive.angle_rad(self.time_s(first, len(states))) * frame_turns(motion.structure)
+        return in_space(motion.structure.coordinates, states, motion.equations.static_deflection, turned)
 
     def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
         """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
@@ -149,7 +160,9 @@ class ResponseStream:
         readings = ValueDecimator((shafts[name] for name in self.readings), static, steps)
         end = (self.samples + self.ahead - 1) * steps + half + 1
         for block in stepped_blocks(run, state, begin, end):
-            piece = Piece(accelerations.take(block.states), forces.take(block), readings.take(block.states))
+            piece = Piece(
+                accelerations.take(run.seen(block.first, block.states)), forces.take(block), readings.take(block.states)
+            )
             self._count(block)
             if piece.acceleration_m_s2.shape[1]:
                 yield piece

@@ -1,0 +1,50 @@
+"""Columns of planetary sets: those of a pair under the names of sun and planets, and those of ring and carrier."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+
+from siggen.keys.column import HERTZ, Column, list_of
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+RENAMED = {
+    "faulty_gear": ("faulty_gear", "gear with damage: none, sun, planet or both"),
+    "faulty_teeth_pinion": ("faulty_teeth_sun", "indices of the sun's damaged teeth"),
+    "faulty_teeth_gear": ("faulty_teeth_planet", "indices of the first planet's damaged teeth"),
+    "teeth_pinion": ("teeth_sun", "number of teeth of the sun"),
+    "teeth_gear": ("teeth_planet", "number of teeth of each planet"),
+    "speed_hz": ("speed_hz", "nominal speed of the input (sun) shaft"),
+    "pinion_shaft_hz": ("sun_shaft_hz", "rotation frequency of the sun's shaft"),
+    "gear_shaft_hz": ("planet_hz", "rotation frequency of the planets about their pins, against the carrier"),
+    "start_angle_rad": (
+        "start_angle_rad",
+        "angle of the sun at the first sample; that of the carrier by their ratio",
+    ),
+}
+"""Column of a pair -> its name and its meaning in a planetary set."""
+ADDED = (
+    Column("teeth_ring", pa.int32(), "", "number of teeth of the ring"),
+    Column("planet_positions_deg", list_of(pa.float64()), "deg", "where the planets stand on the carrier"),
+    Column("carrier_hz", pa.float64(), HERTZ, "rotation frequency of the carrier"),
+    Column("pin_errors_um", list_of(pa.float64()), "um", "how far each planet's pin is ahead of its place"),
+)
+
+
+def of_planets(config: Config, columns: Iterable[Column]) -> tuple[Column, ...]:
+    """Return the columns of a set; of gearboxes that are pairs as they are."""
+    if config.planetary is None:
+        return tuple(columns)
+    return (*(_renamed(column) for column in columns), *ADDED)
+
+
+def _renamed(column: Column) -> Column:
+    if column.name not in RENAMED:
+        return column
+    name, meaning = RENAMED[column.name]
+    return replace(column, name=name, meaning=meaning)

@@ -1,0 +1,66 @@
+"""Section `planetary`: the pair of `gears` as sun and planets of a set whose ring is held."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Real, Section, Whole
+from siggen.keys.wording import AllowedText
+
+ROLES = {"sun": "pinion", "planet": "gear"}
+"""Name of a gear in a planetary set -> what it is in the pair of `gears`."""
+NAMES = {role: name for name, role in ROLES.items()}
+POSITIONS = AllowedText("a list of 3 to 5 angles in degrees, 0 first, ascending, below 360")
+
+
+class Planetary(Section):
+    """A ring round sun and planets, their carrier, and what holds them.
+
+    `gears.pinion` is the sun, which the motor drives; `gears.gear` is each planet; the carrier drives the load. The
+    ring is shifted to mesh without backlash. Supports are alike in all directions.
+    """
+
+    ring_teeth: Annotated[Whole, Field(ge=8, le=1000)] = Field(description="number of teeth of the ring")
+    positions_deg: Annotated[tuple[Real, ...], Field(min_length=1, max_length=9), POSITIONS] = Field(
+        default=(0.0, 120.0, 240.0),
+        description="where the planets stand on the carrier, in its sense of turning; rounded ones count as the place "
+        "nearby at which teeth fit",
+    )
+    pin_error_um: Annotated[Number, Within(least=0, most=200)] = Field(
+        default=0.0,
+        description="standard deviation of the place of each planet's pin along the tangent, drawn per gearbox",
+    )
+    sun_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
+        default=2e7, description="bearings of the sun's shaft; a floating sun is soft"
+    )
+    planet_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
+        default=2e8, description="pin and bearing of each planet"
+    )
+    ring_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
+        default=5e8, description="what holds the ring, round its rim; it keeps the ring from turning too"
+    )
+    carrier_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
+        default=2e8, description="both bearings of the carrier"
+    )
+    ring_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="null: steel, four modules thick behind the roots (assumed)"
+    )
+    carrier_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="null: a steel disc as wide as the gears and as large as the pins' circle (assumed)"
+    )
+    damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
+        default=0.03, description="of each body on its support alone"
+    )
+
+
+def pitches_per_turn(sun: int, ring: int) -> float:
+    """Return the base pitches of every mesh per turn of the sun, z_s z_r/(z_s + z_r) (Willis)."""
+    return sun * ring / (sun + ring)
+
+
+def in_pair(name: str) -> str:
+    """Return what a gear of a planetary set is in the pair of `gears`; any other name stays."""
+    return ROLES.get(name, name)

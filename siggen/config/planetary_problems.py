@@ -1,0 +1,98 @@
+"""What a planetary set cannot have, whether its teeth assemble, and damage on gears that a machine does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from siggen.config.dynamics import Dynamics
+from siggen.config.external_forces import Unbalance
+from siggen.config.gears import Gears
+from siggen.config.planetary import ROLES, Planetary
+from siggen.errors import Problem
+from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems, typed_places
+from siggen.keys.number import bounds
+
+BESIDE = "in a planetary set"
+KEYS = {"ring": "ring_teeth", "carrier": "positions_deg", "planets": "positions_deg"}
+"""What a problem of teeth is about -> key of the section."""
+
+
+def sets_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield what is wrong about a planetary set between the valid sections of a configuration."""
+    section: Planetary | None = sections.get("planetary")
+    if section is None:
+        if raw.get("planetary") is None:  # not one that is wrong itself
+            yield from _without_one(sections)
+        return
+    if "gears" in sections:
+        yield from _of_gears(sections["gears"], section)
+    if "dynamics" in sections:
+        yield from _of_dynamics(sections["dynamics"])
+    yield from _of_others(sections)
+    yield from _of_states(sections)
+
+
+def set_of(gears: Gears, section: Planetary) -> PlanetarySet:
+    """Return the teeth of a set and the places of its planets."""
+    sun, planet = gears.pinion.teeth, gears.gear.teeth
+    return PlanetarySet(sun, planet, section.ring_teeth, typed_places(section.positions_deg, sun + section.ring_teeth))
+
+
+def _without_one(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    for index, state in sections.get("states", {}).items():
+        for where, one in state.placed(f"states.{index}"):
+            if getattr(one, "gear", "") in ROLES:
+                yield Problem(f"{where}.gear", f"'{one.gear}'", "allowed: pinion, gear, either; or a section planetary")
+
+
+def _of_gears(gears: Gears, section: Planetary) -> Iterator[Problem]:
+    if gears.pairs:
+        yield Problem("gears.pairs", f"{len(gears.pairs)} pairs", f"allowed: none {BESIDE}")
+    if bounds(gears.helix_deg) != (0.0, 0.0):
+        yield Problem("gears.helix_deg", str(gears.helix_deg), f"allowed: 0 {BESIDE}")
+    for one in planetary_problems(set_of(gears, section)):
+        key = KEYS.get(one.where, "positions_deg" if one.where.startswith("planet ") else "")
+        path = f"planetary.{key}" if key else f"gears.{ROLES.get(one.where, one.where)}.teeth"
+        yield Problem(path, f"{one.name}: {one.received}", one.allowed)
+
+
+def _of_dynamics(dynamics: Dynamics) -> Iterator[Problem]:
+    if dynamics.model != "8dof":
+        received = f"'{dynamics.model}'{' (by default)' if dynamics.model == 'casing' else ''}"
+        yield Problem("dynamics.model", received, f"allowed: 8dof {BESIDE}, whose bodies stand on the ground")
+    if dynamics.mesh.law != "pairs":
+        yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {BESIDE}")
+    if dynamics.friction.model != "off":
+        received = f"'{dynamics.friction.model}'{' (by default)' if dynamics.friction.model == 'auto' else ''}"
+        yield Problem("dynamics.friction.model", received, f"allowed: off {BESIDE}, whose flanks do not rub so far")
+    if dynamics.shafts is not None:
+        yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
+    if dynamics.unbalance != Unbalance():
+        yield Problem("dynamics.unbalance", "a section", f"allowed: none {BESIDE}")
+    for which in ("pinion", "gear"):
+        if getattr(dynamics, which) != type(dynamics).model_fields[which].default:
+            allowed = f"allowed: none {BESIDE}; its supports stand in planetary, masses of sun and planets are discs'"
+            yield Problem(f"dynamics.{which}", "a section", allowed)
+
+
+def _of_others(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    for key, what in {"stages": "further meshes", "manufacture": "errors of single teeth"}.items():
+        if sections.get(key):
+            yield Problem(key, what, f"allowed: none {BESIDE}")
+    for key in ("background", "internals"):
+        if sections.get(key) is not None:
+            yield Problem(key, "a section", f"allowed: null {BESIDE}")
+    if "variation" in sections and sections["variation"].active:
+        yield Problem("variation", "a section", f"allowed: none {BESIDE}, which turns evenly")
+    for index, point in enumerate(sections.get("operating_points", ())):
+        if bounds(point.torque_nm)[0] <= 0.0:
+            yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")
+
+
+def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    for index, state in sections.get("states", {}).items():
+        for where, one in state.placed(f"states.{index}"):
+            if one.needs_pairs or one.needs_bearings:
+                allowed = f"allowed {BESIDE}: pits, spalls and cracks of sun and planets"
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)

@@ -1,0 +1,143 @@
+"""Planetary sets from the command line: plan, records by the closed rules of orders, labels, what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+import yaml
+
+from siggen.arrays import FloatArray
+from siggen.checks.loading import load_config
+from siggen.errors import ConfigError
+from tests.cli.test_stages import rows, run
+from tests.config.planets import CARRIER_HZ, SPALL, planets
+
+TURNS = 3
+PLANETS = 3
+
+
+def written(folder: Path, **changes: Any) -> str:
+    file = folder / "set.yaml"
+    file.write_text(yaml.safe_dump(planets(**changes)), encoding="utf-8")
+    return str(file)
+
+
+def generated(folder: Path, **changes: Any) -> Path:
+    done = run("generate", written(folder, **changes), "--out", str(folder / "set"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder / "set"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return generated(tmp_path_factory.mktemp("planets"))
+
+
+def states(made: Path) -> dict[str, dict[str, Any]]:
+    return {row["state"]: row for row in rows(made, "data")}
+
+
+def power(record: Mapping[str, Any], channel: str = "accel_ring_horizontal_m_s2") -> FloatArray:
+    """Return the power at whole and broken orders of the carrier, one third apart."""
+    signal = np.asarray(record[channel], dtype=np.float64)
+    return np.asarray(np.abs(np.fft.rfft(signal)) ** 2)
+
+
+def share_off(found: FloatArray, step: int) -> float:
+    """Return the share of the power that lies at no multiple of so many bins."""
+    return float(found[np.arange(found.size) % step != 0].sum() / found.sum())
+
+
+def test_a_healthy_ring_shows_multiples_of_its_planets_alone_and_none_at_the_mesh_frequency(made: Path) -> None:
+    found = power(states(made)["healthy"])
+    assert share_off(found, PLANETS * TURNS) < 1e-4  # -40 dB
+    assert found[78 * TURNS] > 1e4 * found[77 * TURNS]
+
+
+def test_a_spall_of_the_sun_adds_lines_that_no_healthy_set_has(made: Path) -> None:
+    """Its tooth comes to any planet 3 * 77/25 times per turn, never on a multiple of three planets passing."""
+    healthy, sun = (power(states(made)[name]) for name in ("healthy", "sun"))
+    assert share_off(sun, PLANETS * TURNS) > 1e-3 > 1e1 * share_off(healthy, PLANETS * TURNS)
+
+
+def test_a_spall_of_one_planet_is_heard_at_all_orders_of_the_carrier(made: Path) -> None:
+    assert share_off(power(states(made)["planet"]), PLANETS * TURNS) > 1e-3
+
+
+def test_labels_name_sun_planet_ring_and_carrier(made: Path) -> None:
+    found = states(made)
+    sun, planet = found["sun"], found["planet"]
+    assert (sun["faulty_gear"], planet["faulty_gear"]) == ("sun", "planet")
+    assert len(sun["faulty_teeth_sun"]) == len(planet["faulty_teeth_planet"]) == 1
+    assert (sun["teeth_sun"], sun["teeth_planet"], sun["teeth_ring"]) == (25, 26, 77)
+    assert sun["carrier_hz"] == pytest.approx(CARRIER_HZ)
+    assert sun["mesh_hz"] == pytest.approx(77 * CARRIER_HZ)
+    assert sun["planet_hz"] == pytest.approx(77 / 26 * CARRIER_HZ)
+    assert sun["planet_positions_deg"] == pytest.approx([0.0, 120.0, 240.0])
+    assert not [name for name in sun if "pinion" in name or "gear_" in name]
+    assert {row["gear"] for row in rows(made, "damage")} == {"sun", "planet"}
+
+
+def test_the_card_and_the_plan_say_what_the_machine_is(made: Path) -> None:
+    card = (made / "README.md").read_text(encoding="utf-8")
+    assert "a sun with 25 teeth drives 3 planets with 26 in a ring with 77" in " ".join(card.split())
+    assert "462 Hz" in run("plan", str(made / "config.yaml")).stdout
+
+
+def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:
+    healthy = [{"name": "healthy"}]
+    made = generated(tmp_path, states=healthy, planetary={"ring_teeth": 77, "pin_error_um": 20.0}, duration_s=0.5)
+    (record,) = rows(made, "data")
+    assert share_off(power(record), PLANETS * TURNS) > 1e-3  # ten times what a healthy set may have
+    assert np.std(record["pin_errors_um"]) > 1.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "allowed"),
+    [
+        ({"planetary": {"ring_teeth": 60}}, "planetary.ring_teeth", "at least 1"),
+        ({"planetary": {"ring_teeth": 77, "positions_deg": [0, 90, 180, 270]}}, "planetary.positions_deg", "360/102"),
+        ({"planetary": {"ring_teeth": 77, "positions_deg": [0, 180]}}, "planetary.positions_deg", "3 to 5"),
+        ({"dynamics": {"friction": {"model": "off"}}}, "dynamics.model", "8dof"),
+        ({"dynamics": {"model": "8dof"}}, "dynamics.friction.model", "off"),
+        ({"manufacture": {"accuracy_class": 6}}, "manufacture", "none"),
+        ({"operating_points": [{"speed_hz": 20.0, "torque_nm": 0.0}]}, "operating_points.0.torque_nm", "above 0"),
+        ({"sensors": [{"name": "b", "place": "pinion_bearing"}]}, "sensors.0.place", "ring"),
+        ({"planetary": None}, "states.1.damage.gear", "a section planetary"),
+        (
+            {"states": [{"name": "severe", "damage": {"kind": "chip", "gear": "sun", "height_mm": 1.0}}]},
+            "states.0.damage.kind", "pits, spalls and cracks",
+        ),
+        (
+            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "planet", "teeth": [26]}}]},
+            "states.0.damage.teeth", "the planet has 26 teeth",
+        ),
+    ],
+)  # fmt: skip
+def test_what_a_set_cannot_be_is_refused_with_its_path_and_what_is_allowed(
+    changes: dict[str, Any], path: str, allowed: str
+) -> None:
+    with pytest.raises(ConfigError) as told:
+        load_config(planets(**changes))
+    problems = {problem.path: problem for problem in told.value.problems}
+    assert path in problems, problems
+    assert allowed in str(problems[path])
+
+
+def test_teeth_that_do_not_assemble_are_told_by_path_and_line_in_a_fresh_process(tmp_path: Path) -> None:
+    told = run("plan", written(tmp_path, planetary={"ring_teeth": 60}))
+    assert told.returncode != 0
+    assert "planetary.ring_teeth" in told.stderr
+    assert "line" in told.stderr
+    assert "Traceback" not in told.stderr
+
+
+def test_columns_of_a_set_are_read_from_plain_parquet(made: Path) -> None:
+    schema = pq.read_schema(next((made / "data").iterdir()))
+    assert schema.field("carrier_hz").metadata[b"unit"] == b"Hz"
+    assert schema.field("accel_ring_vertical_m_s2").metadata[b"place"] == b"ring"
