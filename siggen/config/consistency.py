@@ -100,9 +100,9 @@ def _places(sections: Mapping[str, Any]) -> Places | None:
     if model != "casing":
         return Places(model)
     housing = sections.get("housing")
-    if housing is None:
-        return None
-    return Places({PlateHousing: PLATES, ModalHousing: MODAL}.get(type(housing), model))
+    if isinstance(housing, PlateHousing):
+        return Places(PLATES)
+    return None if housing is None else Places(MODAL if isinstance(housing, ModalHousing) else model)
 
 
 def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
