@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.records.channel_quantities import ANGULAR_SPEED
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 
@@ -47,7 +48,7 @@ def record_problems(record: Recording, frame_samples: int, *, needs_tacho: bool)
     whole = whole_record_problem(record, needs_tacho=needs_tacho)
     found = [RecordProblem(number, "", whole)] if whole else []
     for channel, signal in record.channels.items():
-        text = _channel_problem(signal, frame_samples)
+        text = _channel_problem(signal, frame_samples) or _clipped_text(record, channel)
         if text:
             found.append(RecordProblem(number, channel, text))
     return found
@@ -106,13 +107,23 @@ def _channel_problem(signal: np.ndarray, frame_samples: int) -> str:
     low, high = float(signal.min()), float(signal.max())
     if low == high:
         return f"constant ({low:g}) over all {signal.size} samples: is the sensor connected?"
-    share = clipped_share(signal)
-    if share > LARGEST_CLIPPED_SHARE:
-        return (
-            f"{share:.2%} of the samples stand clipped at {low:g} or {high:g}; up to {LARGEST_CLIPPED_SHARE:.1%} is "
-            "allowed. Widen the sensor's range (`range_m_s2` of an accelerometer)."
-        )
     return ""
+
+
+def _clipped_text(record: Recording, channel: str) -> str:
+    signal = record.channels[channel]
+    if not _stands_clipped(record, channel):
+        return ""
+    return (
+        f"{clipped_share(signal):.2%} of the samples stand clipped at {signal.min():g} or {signal.max():g}; up to "
+        f"{LARGEST_CLIPPED_SHARE:.1%} is allowed. Widen the sensor's range (`range_m_s2` of an accelerometer)."
+    )
+
+
+def _stands_clipped(record: Recording, channel: str) -> bool:
+    """Return whether a channel was clipped; counters of pulses clip nothing, their speed stands still between two."""
+    counted = record.quantities.get(channel) == ANGULAR_SPEED
+    return not counted and clipped_share(record.channels[channel]) > LARGEST_CLIPPED_SHARE
 
 
 def clipped_share(signal: np.ndarray) -> float:
@@ -127,11 +138,7 @@ def clipped_share(signal: np.ndarray) -> float:
 
 def clipped_channels(record: Recording) -> list[str]:
     """Return the channels that stand clipped in more than a thousandth of the samples."""
-    return [
-        name
-        for name, signal in record.channels.items()
-        if varies(signal) and clipped_share(signal) > LARGEST_CLIPPED_SHARE
-    ]
+    return [name for name, signal in record.channels.items() if varies(signal) and _stands_clipped(record, name)]
 
 
 def varies(signal: np.ndarray) -> bool:

@@ -19,6 +19,7 @@ from siggen.checks.housing_problems import housing_problems
 from siggen.checks.pair_problems import pair_problems
 from siggen.checks.ring_problems import ring_problems
 from siggen.checks.shaft_problems import shaft_problems
+from siggen.checks.stage_layout_problems import stage_layout_problems
 from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
 from siggen.config import Dynamics, Gears, ParsedConfig, Stiffness
@@ -58,7 +59,7 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     if gears.pairs:
         return pair_problems(parsed.sections, _problems)
     behind = (_located_in(path, one) for path, own in stage_sections(parsed.sections) for one in _problems(own))
-    return (*_problems(first_sections(parsed.sections)), *behind)
+    return (*_problems(first_sections(parsed.sections)), *behind, *stage_layout_problems(parsed.sections))
 
 
 def _has_stages(sections: Mapping[str, Any]) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 from siggen.config.helical_limits import helical_problems
@@ -12,13 +13,14 @@ from siggen.config.housing import ModalHousing, PlateHousing
 from siggen.config.planetary import in_pair
 from siggen.config.planetary_problems import sets_problems
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
+from siggen.config.stages import shaft_turns
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
 from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
-from siggen.sensors.sensor import MODAL, PLANETARY, PLATES, STAGED_CASING, STAGES
+from siggen.sensors.places import MODAL, PLANETARY, PLATES, Places
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -85,41 +87,47 @@ ON_BODY = ("base", "second_stage", "auxiliary_drive")
 
 
 def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    if "dynamics" not in sections:
-        return
-    model = sections["dynamics"].model
-    if sections.get("stages"):
-        model = STAGED_CASING if model == "casing" else STAGES
-    if sections.get("planetary") is not None:
-        model = PLANETARY
-    if model == "casing" and "housing" not in sections:  # wrong itself: which places there are is not known
-        return
-    if model == "casing" and isinstance(sections["housing"], PlateHousing):
-        model = PLATES
-    elif model == "casing" and isinstance(sections["housing"], ModalHousing):
-        model = MODAL
-    for index, sensor in sections.get("sensors", {}).items():
-        for problem in sensor.model_problems(model):
+    places = _places(sections)
+    for index, sensor in sections.get("sensors", {}).items() if places is not None else ():
+        for problem in sensor.model_problems(places):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
+
+
+def _places(sections: Mapping[str, Any]) -> Places | None:
+    """Return what there is for sensors; None where sections that say so are wrong themselves."""
+    if not {"dynamics", "stages"} <= sections.keys():
+        return None
+    if sections.get("planetary") is not None:
+        return Places(PLANETARY)
+    model, stages = sections["dynamics"].model, tuple(stage.name for stage in sections["stages"])
+    if stages:  # other models and housings are refused
+        return Places("casing" if model == "casing" else "8dof", stages)
+    if model != "casing":
+        return Places(model)
+    housing = sections.get("housing")
+    if isinstance(housing, PlateHousing):
+        return Places(PLATES)
+    return None if housing is None else Places(MODAL if isinstance(housing, ModalHousing) else model)
 
 
 def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
     sensors, written = sections.get("sensors", {}), raw.get("sensors")
     if isinstance(written, (list, tuple)) and len(written) > len(sensors):  # one may be missing that is wrong itself
         return
-    for index, sensor in sensors.items():
-        for problem in sensor.beside_problems({one.name: one for one in sensors.values()}):
+    places = _places(sections)
+    for index, sensor in sensors.items() if places is not None else ():
+        for problem in sensor.beside_problems({one.name: one for one in sensors.values()}, places):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 
 def _sensor_turns(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield sensors that read nothing of a record in which shafts turn as little as they may."""
-    if not {"duration_s", "gears", "operating_points"} <= sections.keys():
+    if not {"duration_s", "gears", "operating_points", "stages"} <= sections.keys():
         return
     pinion = sections["duration_s"] * min(bounds(point.speed_hz)[0] for point in sections["operating_points"])
     gears = sections["gears"]
-    gear = pinion * min(gears.teeth_of("pinion")) / max(gears.teeth_of("gear"))
-    turns = {"motor": pinion, "pinion": pinion, "gear": gear, "load": gear}
+    slowest = Fraction(min(gears.teeth_of("pinion")), max(gears.teeth_of("gear")))
+    turns = {name: pinion * float(one) for name, one in shaft_turns(slowest, sections["stages"]).items()}
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.duration_problems(turns):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)

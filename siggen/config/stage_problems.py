@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -33,14 +34,43 @@ def pair_of(sections: Mapping[str, Any], gear: str) -> Pair | None:
     return stages.get(name) if name else sections["gears"]
 
 
-TAKEN = ("pinion", "gear", "either")
-"""Words of the first mesh: a stage of such a name would take its places, labels and gears for its own."""
+TAKEN = {
+    **dict.fromkeys(("pinion", "gear"), "the first mesh has bearings and labels of this name"),
+    "either": "damage means a drawn gear by it",
+    "casing": "sensors stand on the casing by it",
+    **dict.fromkeys(("motor", "load"), "it turns before or behind all meshes, and a stage has a shaft of its own"),
+}
+"""Words that mean something else -> what."""
+PAIR = re.compile(r"(^|_)pair_[0-9]+$")
+"""Ends of names that pairs of teeth have in what no sensor sees."""
 
 
 def _names(sections: Mapping[str, Any]) -> Iterator[Problem]:
     for index, stage in enumerate(sections.get("stages", ())):
-        if stage.name in TAKEN:
-            yield Problem(f"stages.{index}.name", f"'{stage.name}'", f"allowed: another name than {', '.join(TAKEN)}")
+        if reason := _taken(stage.name):
+            allowed = f"allowed: another name than {', '.join(TAKEN)}, casing_..., ..._pair_0"
+            yield Problem(f"stages.{index}.name", f"'{stage.name}', but {reason}", allowed)
+    yield from _columns_twice(sections.get("stages", ()))
+
+
+def _taken(name: str) -> str | None:
+    """Return why a stage cannot have a name."""
+    if name.startswith("casing_"):
+        return "motions of sensors on the casing are called so"
+    if PAIR.search(name):
+        return "quantities of single pairs of teeth are called so"
+    return TAKEN.get(name)
+
+
+def _columns_twice(stages: tuple[Stage, ...]) -> Iterator[Problem]:
+    """Yield names that make a column of another stage, as `mesh_a` and `a_shaft` do."""
+    owners: dict[str, str] = {}
+    for index, stage in enumerate(stages):
+        for column in (f"mesh_{stage.name}_hz", f"{stage.name}_shaft_hz"):
+            owner = owners.setdefault(column, stage.name)
+            if owner != stage.name:
+                received = f"'{stage.name}', whose column {column} the stage {owner} has too"
+                yield Problem(f"stages.{index}.name", received, "allowed: a name whose columns are its own")
 
 
 BESIDE = "in a set with stages"

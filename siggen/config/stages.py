@@ -60,3 +60,13 @@ def turned(gears: Pair, stages: tuple[Stage, ...]) -> Iterator[Fraction]:
     for pair in (gears, *(stage.gears for stage in stages)):
         turns *= Fraction(pair.pinion.teeth, pair.gear.teeth)
         yield turns
+
+
+def shaft_turns(ratio: Fraction, stages: tuple[Stage, ...]) -> dict[str, Fraction]:
+    """Return what turns -> its turns per turn of the first pinion, whose gear turns by `ratio`."""
+    found, turns = {"motor": Fraction(1), "pinion": Fraction(1), "gear": ratio}, ratio
+    for stage in stages:
+        found[f"{stage.name}.pinion"] = turns
+        turns *= Fraction(stage.gears.pinion.teeth, stage.gears.gear.teeth)
+        found[f"{stage.name}.gear"] = turns
+    return {**found, "load": turns}

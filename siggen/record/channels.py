@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
+from siggen.config.stages import shaft_turns
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
 from siggen.noise.source import NoisyChannel
@@ -84,10 +86,11 @@ def _readings(
 def _running(config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> Running:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     pair = gear_pair(specimen.gears)
+    ratio = Fraction(specimen.gears.pinion.teeth, specimen.gears.gear.teeth)
     return Running(
         config.fs_hz,
         _angle_rad(rotation, config.fs_hz, 0, config.samples),
-        specimen.gears.pinion.teeth / specimen.gears.gear.teeth,
+        {shaft: float(turned) for shaft, turned in shaft_turns(ratio, specimen.stages).items()},
         point.torque_nm,
         (pair.pinion.base_radius_m, pair.gear.base_radius_m),
         2.0 * np.pi * named_uniforms(config.seed, Stage.NOISE, *record_owner(record))("line.phase"),

@@ -20,13 +20,15 @@ from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
+from siggen.sensors.places import BEARING_WORDS, MODAL, OF_SET, PLATE_OF, PLATES, RIMS, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity
 from siggen.sensors.resonance import Resonance
-from siggen.sensors.sensor import MODAL, PLATE_OF, PLATES, SIZE, AxisDraws, Sensor
+from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
 
 POSITION = AllowedText(
     "two numbers in mm, from a casing's centre of gravity or the middle of a plate; a distribution is drawn per gearbox"
 )
+PLACE = AllowedText(f"one of casing, {', '.join((*PLATE_OF, *RIMS, *OF_SET))}, {BEARING_WORDS}")
 
 
 class NoiseFloor(Section):
@@ -49,14 +51,11 @@ class Accelerometer(SourceKeys, Sensor):
     understood_kind: ClassVar[bool] = True
 
     kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
-    place: Literal[
-        "pinion_bearing", "gear_bearing", "lid", "wall", "pinion_end", "gear_end", "foot", "casing", "pinion_rim",
-        "gear_rim", "ring", "sun_bearing", "carrier_bearing",
-    ] = Field(
+    place: Annotated[str, PLACE] = Field(
         default="pinion_bearing",
         description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
         "modal or a path, rims with the model torsional; ring, sun_bearing and carrier_bearing of a planetary set",
-    )  # fmt: skip
+    )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,
         description="casing: horizontal and vertical from its centre of gravity; from the middle of a plate: lid: "
@@ -113,15 +112,18 @@ class Accelerometer(SourceKeys, Sensor):
         if any(axis not in axes for axis in self.axes):
             yield Problem("axes", ", ".join(self.axes), f"allowed: {', '.join(axes)} at place {self.place}")
 
-    def model_problems(self, model: str) -> Iterator[Problem]:
+    def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield what does not go with the model: its place, or what its path leaves out or has in it."""
-        if self.path is None or model == "torsional":
-            yield from super().model_problems(model)
-            if "axial" in self.axes and model not in {PLATES, MODAL}:
+        if self.path is None or places.model == "torsional":
+            yield from super().model_problems(places)
+            if "axial" in self.axes and places.model not in {PLATES, MODAL}:
                 allowed = "allowed: vertical, horizontal; axial needs housing.kind: plates or modal, or a path"
                 yield Problem("axes", ", ".join(self.axes), allowed)
-            yield from self._position_problems(model)
+            yield from self._position_problems(places.model)
             return
+        if places.stages:
+            allowed = f"allowed: null with stages ({', '.join(places.stages)}); it has forces of two shafts alone"
+            yield Problem("path", "a measured path", allowed)
         if self.cross_axis != 0.0:
             allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
             yield Problem("cross_axis", str(self.cross_axis), allowed)

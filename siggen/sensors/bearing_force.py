@@ -10,11 +10,11 @@ from pydantic import Field
 from siggen.errors import Problem
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real
+from siggen.keys.wording import AllowedText
 from siggen.sensing.inputs import FORCE, Input
+from siggen.sensors.places import BEARING_WORDS, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, Sensor
-
-BEARINGS = ("pinion_bearing", "gear_bearing")
 
 
 class ForceWasher(Sensor):
@@ -26,7 +26,7 @@ class ForceWasher(Sensor):
     plausible: ClassVar[tuple[float, float, str]] = (10.0, 1e7, "is it in N, not kN?")
 
     kind: Literal["bearing_force"] = Field(description="force of a shaft's bearings on the housing")
-    place: Literal["pinion_bearing", "gear_bearing"] = Field(
+    place: Annotated[str, AllowedText(BEARING_WORDS)] = Field(
         default="pinion_bearing", description="whose bearings; not with dynamics.model: torsional"
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal"], ...], Field(min_length=1)] = Field(
@@ -37,9 +37,9 @@ class ForceWasher(Sensor):
     )
     range_n: Annotated[Real, Field(gt=0)] = Field(description="readings are clipped at plus and minus this")
 
-    def model_problems(self, model: str) -> Iterator[Problem]:
+    def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield bearings that the model has not."""
-        yield from self.problems_among(() if model == "torsional" else BEARINGS, model)
+        yield from places.problems(self.place, places.bearings)
 
     @property
     def limit(self) -> float:

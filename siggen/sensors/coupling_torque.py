@@ -11,8 +11,9 @@ from siggen.errors import Problem
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real
 from siggen.sensing.inputs import SHAFT, Input
+from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import COUPLINGS_OF, AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, Sensor
 
 
 class TorqueSensor(Sensor):
@@ -25,7 +26,8 @@ class TorqueSensor(Sensor):
 
     kind: Literal["coupling_torque"] = Field(description="torque that a coupling passes on")
     place: Literal["input_coupling", "output_coupling"] = Field(
-        default="input_coupling", description="between motor and pinion or gear and load; not with dynamics.model: 6dof"
+        default="input_coupling",
+        description="motor to pinion, or last gear to load; not with dynamics.model: 6dof",
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
         default=("rotation",), description="what it measures"
@@ -35,9 +37,9 @@ class TorqueSensor(Sensor):
     )
     range_nm: Annotated[Real, Field(gt=0)] = Field(description="readings are clipped at plus and minus this")
 
-    def model_problems(self, model: str) -> Iterator[Problem]:
+    def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield a coupling that the model has not."""
-        yield from self.problems_among(COUPLINGS_OF[model], model)
+        yield from places.problems(self.place, places.couplings)
 
     @property
     def limit(self) -> float:

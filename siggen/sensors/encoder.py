@@ -14,12 +14,15 @@ from siggen.arrays import FloatArray
 from siggen.errors import Problem, SolverFailure
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real, Whole
+from siggen.keys.wording import AllowedText
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
+from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import SHAFTS_OF, AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
 
+ON_SHAFTS = AllowedText("motor, pinion, gear, load, or NAME.pinion and NAME.gear of a further stage")
 FEWEST_PULSES = 2
 """In a record: fewer have no time between them."""
 FASTEST_RAD_S = 1e5
@@ -39,7 +42,7 @@ class Encoder(Sensor):
     )
 
     kind: Literal["encoder"] = Field(description="angular speed of a shaft, from the pulses of a disc")
-    place: Literal["motor", "pinion", "gear", "load"] = Field(
+    place: Annotated[str, ON_SHAFTS] = Field(
         default="pinion", description="what it turns with; motor and load not with dynamics.model: 6dof"
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
@@ -61,13 +64,13 @@ class Encoder(Sensor):
         default=None, description="of what is stored; null: not quantised beyond the counter"
     )
 
-    def model_problems(self, model: str) -> Iterator[Problem]:
+    def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield a shaft that the model has not."""
-        yield from self.problems_among(SHAFTS_OF[model], model)
+        yield from places.problems(self.place, places.shafts)
 
     def duration_problems(self, turns: Mapping[str, float]) -> Iterator[Problem]:
         """Yield an encoder whose slowest record has too few pulses."""
-        if self.pulses_per_turn * turns[self.place] < FEWEST_PULSES:
+        if self.place in turns and self.pulses_per_turn * turns[self.place] < FEWEST_PULSES:
             least = int(np.ceil(FEWEST_PULSES / turns[self.place]))
             allowed = (
                 f"allowed: at least {least}; in duration_s its shaft makes {turns[self.place]:.3g} turns at the lowest "

@@ -16,8 +16,9 @@ from siggen.keys.number import Number, Within
 from siggen.keys.section import Real, Whole
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.stator_current import InductionMotor, active_current, phase_current
+from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import SHAFTS_OF, AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
 
 PHASES = ("phase_a", "phase_b", "phase_c")
@@ -60,9 +61,9 @@ class MotorCurrent(Sensor):
         default=100.0, description="readings are clipped at plus and minus this"
     )
 
-    def model_problems(self, model: str) -> Iterator[Problem]:
+    def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield a model without a motor."""
-        yield from self.problems_among(tuple(s for s in SHAFTS_OF[model] if s == "motor"), model)
+        yield from places.problems(self.place, tuple(shaft for shaft in places.shafts if shaft == "motor"))
 
     @property
     def limit(self) -> float:

@@ -15,7 +15,6 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.dynamics.structure.structure import COUPLINGS, SHAFTS
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN
 from siggen.keys.number import Number, Within, at
@@ -26,45 +25,10 @@ from siggen.noise.source import Source
 from siggen.seeding import Stage, generator
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.path import MeasuredPath
+from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.transducer import Transducer
 
-PLATES = "casing, housing.kind: plates"
-"""The model whose housing gives way."""
-MODAL = "casing, housing.kind: modal"
-"""The model whose housing gives way as given modes say."""
-STAGES = "8dof, stages"
-"""The model of gearboxes with further meshes behind the first one."""
-STAGED_CASING = "casing, stages"
-PLANETARY = "8dof, planetary"
-"""The model of a planetary set."""
-PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
-"""Place -> plate of the housing."""
-PLACES = {
-    "torsional": ("pinion_rim", "gear_rim"),
-    "6dof": ("pinion_bearing", "gear_bearing"),
-    "8dof": ("pinion_bearing", "gear_bearing"),
-    STAGES: ("pinion_bearing", "gear_bearing"),
-    STAGED_CASING: ("casing", "pinion_bearing", "gear_bearing"),
-    PLANETARY: ("ring", "sun_bearing", "carrier_bearing"),
-    "casing": ("casing", "pinion_bearing", "gear_bearing"),
-    PLATES: (*PLATE_OF, "pinion_bearing", "gear_bearing"),
-    MODAL: ("casing", *PLATE_OF, "pinion_bearing", "gear_bearing"),
-}
-"""Places whose motion a model has."""
-SHAFTS_OF = {model: tuple(SHAFTS) for model in PLACES} | {
-    "6dof": ("pinion", "gear"),
-    **dict.fromkeys((STAGES, STAGED_CASING), ("motor", "pinion", "gear")),
-    PLANETARY: (),
-}
-"""What turns in a model."""
-COUPLINGS_OF = {model: tuple(COUPLINGS) for model in PLACES} | {
-    "6dof": (),
-    STAGES: ("input_coupling",),
-    STAGED_CASING: ("input_coupling",),
-    PLANETARY: (),
-}
-"""Couplings that a model has."""
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
 
 
@@ -229,21 +193,15 @@ class Sensor(Section):
         """Yield what cannot be within the section, beside axes and gains."""
         yield from ()
 
-    def model_problems(self, model: str) -> Iterator[Problem]:
-        """Yield what does not go with `dynamics.model`: a place that it has not."""
-        yield from self.problems_among(PLACES[model], model)
-
-    def problems_among(self, places: tuple[str, ...], model: str) -> Iterator[Problem]:
-        """Yield a place that is none of those of a model."""
-        if self.place not in places:
-            named = f"one of {', '.join(places)}" if places else "none, so no sensor of this kind"
-            yield Problem("place", f"'{self.place}'", f"allowed: {named} (dynamics.model: {model})")
+    def model_problems(self, places: Places) -> Iterator[Problem]:
+        """Yield what does not go with the model of the gearboxes: a place that it has not."""
+        yield from places.problems(self.place, places.motions)
 
     def duration_problems(self, turns: Mapping[str, float]) -> Iterator[Problem]:  # noqa: ARG002
         """Yield what does not go with how often shafts turn in the slowest record, by shaft."""
         yield from ()
 
-    def beside_problems(self, others: Mapping[str, Sensor]) -> Iterator[Problem]:  # noqa: ARG002
+    def beside_problems(self, others: Mapping[str, Sensor], places: Places) -> Iterator[Problem]:  # noqa: ARG002
         """Yield what does not go with the other sensors of the set, by name."""
         yield from ()
 

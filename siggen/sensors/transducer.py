@@ -17,7 +17,7 @@ class Running:
     ----------
     fs_hz : sampling rate
     pinion_rad : (n,) prescribed angle of the pinion's shaft at the samples
-    gear_ratio : turns of the gear per turn of the pinion
+    turns : what turns -> its turns per turn of the pinion
     torque_nm : of the operating point, on the pinion's shaft
     base_radii_m : of pinion and gear
     line_rad : phase of the electrical line at the first sample, one for all sensors
@@ -26,15 +26,15 @@ class Running:
 
     fs_hz: float
     pinion_rad: FloatArray
-    gear_ratio: float
+    turns: Mapping[str, float]
     torque_nm: float
     base_radii_m: tuple[float, float]
     line_rad: float
     readings: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def shaft_rad(self, shaft: str) -> FloatArray:
-        """Return the prescribed angle (n,) of `motor` or `pinion`, or of `gear` or `load`."""
-        return self.pinion_rad if shaft in {"motor", "pinion"} else self.gear_ratio * self.pinion_rad
+        """Return the prescribed angle (n,) of what turns, such as `motor` or `gear`."""
+        return self.turns[shaft] * self.pinion_rad
 
 
 class Transducer(Protocol):

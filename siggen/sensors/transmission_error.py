@@ -14,6 +14,7 @@ from siggen.errors import Problem
 from siggen.keys.section import Whole
 from siggen.sensing.inputs import Input
 from siggen.sensors.encoder import Encoder
+from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
@@ -48,13 +49,14 @@ class TransmissionError(Sensor):
         default=None, description="of what is stored; null: not quantised beyond the counter"
     )
 
-    def model_problems(self, model: str) -> Iterator[Problem]:  # noqa: ARG002
+    def model_problems(self, places: Places) -> Iterator[Problem]:  # noqa: ARG002
         """Yield nothing: its encoders say what the model has not."""
         yield from ()
 
-    def beside_problems(self, others: Mapping[str, Sensor]) -> Iterator[Problem]:
-        """Yield names that are none of an encoder on a shaft of their side."""
-        for key, shafts in SHAFTS.items():
+    def beside_problems(self, others: Mapping[str, Sensor], places: Places) -> Iterator[Problem]:
+        """Yield names that are none of an encoder on a shaft of their side; behind further stages the load has none."""
+        for key, every in SHAFTS.items():
+            shafts = tuple(shaft for shaft in every if shaft != "load" or not places.stages)
             name = getattr(self, key)
             fitting = [n for n, one in others.items() if isinstance(one, Encoder) and one.place in shafts]
             if name not in fitting:

@@ -8,7 +8,7 @@ from math import cos, radians, sin
 from siggen.config import PlainRotor, RigidHousing, Stage
 from siggen.dynamics.structure.body import Body, Point, rigid_body
 from siggen.dynamics.structure.casing_structure import refuse_single_bolt
-from siggen.dynamics.structure.drivetrain import CommonShaft, NextStage, drivetrain
+from siggen.dynamics.structure.drivetrain import PLACES, CommonShaft, NextStage, drivetrain
 from siggen.dynamics.structure.structure import SpurStage, Structure
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
@@ -16,6 +16,9 @@ from siggen.planning.specimen import Specimen
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.rotors import rotor_numbers
+
+LEAST_SPAN = 0.5 / min(PLACES[0], PLACES[1] - PLACES[0])
+"""Distance of the bearings of a common shaft over both faces, from which on neither gears nor bearings overlap."""
 
 
 def staged_structure(first: SpurStage, specimen: Specimen) -> Structure:

@@ -8,12 +8,20 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow.csv as pc
 import pyarrow.parquet as pq
 import pytest
 import yaml
 
 from tests.config.staged import SLOW, SPALL, staged
+
+SENSORS = [
+    {"name": "bearing"},
+    {"name": "end", "place": "slow_bearing", "axes": ["horizontal"]},
+    {"kind": "bearing_force", "name": "washer", "place": "slow_bearing", "range_n": 1e5},
+    {"kind": "encoder", "name": "out", "place": "slow.gear"},
+]
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -35,13 +43,29 @@ def written(folder: Path, **changes: Any) -> str:
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("stages")
-    done = run("generate", written(folder, specimens=1, fs_hz=12_800.0, duration_s=0.1), "--out", str(folder / "set"))
+    file = written(folder, specimens=1, fs_hz=12_800.0, duration_s=0.1, sensors=SENSORS)
+    done = run("generate", file, "--out", str(folder / "set"))
     assert done.returncode == 0, done.stdout + done.stderr
     return folder / "set"
 
 
 def rows(made: Path, table: str) -> list[dict[str, Any]]:
     return [row for file in sorted((made / table).iterdir()) for row in pq.read_table(file).to_pylist()]
+
+
+def test_channels_at_the_third_shaft_are_called_by_quantity_sensor_axis_and_unit(made: Path) -> None:
+    table = pq.read_table(made / "data")
+    facts = {name: table.schema.field(name).metadata for name in table.column_names}
+    columns = {
+        "accel_end_horizontal_m_s2": (b"slow_bearing", b"m/s^2"),
+        "force_washer_vertical_n": (b"slow_bearing", b"N"),
+        "speed_out_rotation_rad_s": (b"slow.gear", b"rad/s"),
+    }
+    assert {name: (facts[name][b"place"], facts[name][b"unit"]) for name in columns} == columns
+    # A fifth of a turn of this shaft, so what vibrates stays in the means.
+    speed, force = (np.array(table.column(name).to_pylist()).mean(axis=1) for name in [*columns][:0:-1])
+    assert speed == pytest.approx(2.0 * np.pi * table.column("slow_shaft_hz").to_numpy(), rel=0.01)
+    assert np.abs(force) == pytest.approx(20.0 * 47 / 18 / (0.5 * 17 * 3e-3), rel=0.05)  # torque over pitch radius
 
 
 def test_labels_name_the_stage_and_its_frequencies(made: Path) -> None:

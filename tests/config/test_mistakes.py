@@ -109,7 +109,7 @@ MISTAKES = [
     ({"housing": {"kind": "rigid", "wall_mm": 8.0}}, "housing.wall_mm", "8.0", "known keys: kind, mass_kg"),
     ({"dynamics__model": "8dof", "housing": {"kind": "rigid"}}, "housing", "a section", "dynamics.model: casing"),
     ({"dynamics__model": "8dof", "housing__wall_mm": 8.0}, "housing", "a section", "dynamics.model: casing"),
-    ({"sensors__0__place": "roof"}, "sensors.0.place", "'roof'", "one of pinion_bearing, gear_bearing, lid, wall"),
+    ({"sensors__0__place": "roof"}, "sensors.0.place", "'roof'", "one of lid, wall, pinion_end, gear_end, foot"),
     (
         {"sensors__0__place": "casing", "sensors__0__position_mm": [60.0, 50.0]},
         "sensors.0.place",

@@ -26,10 +26,6 @@ class Element:
     damping: float
 
 
-SHAFTS = {"motor": "theta_m", "pinion": "theta_1", "gear": "theta_2", "load": "theta_l"}
-"""What turns -> coordinate of its rotation."""
-COUPLINGS = {"input_coupling": ("theta_m", "theta_1"), "output_coupling": ("theta_2", "theta_l")}
-"""Coupling -> rotations of its driving and of its driven end."""
 MODE = "eta_"
 """How the names of coordinates begin that are modes of a housing."""
 
@@ -85,15 +81,33 @@ class Structure:
         still = np.zeros(len(self.coordinates))
         found = {
             f"angle/{shaft}": (vector(self.coordinates, {name: 1.0}), still)
-            for shaft, name in SHAFTS.items()
+            for shaft, name in self._turning.items()
             if name in self.coordinates
         }
-        for coupling, ends in COUPLINGS.items():
+        for coupling, ends in self._couplings.items():
             if set(ends) <= set(self.coordinates):
                 place = self.coordinates.index(ends[0]), self.coordinates.index(ends[1])
                 twist = vector(self.coordinates, dict(zip(ends, (-1.0, 1.0), strict=True)))
                 found[f"torque/{coupling}"] = (self.stiffness[place] * twist, self.damping[place] * twist)
         return found
+
+    @property
+    def _turning(self) -> dict[str, str]:
+        """What turns -> coordinate of its rotation, without planets; gears of a further mesh are called by it."""
+        gears = {
+            f"{mesh.name}.{gear}" if mesh.name else gear: name
+            for mesh in (self.meshes if self.line_speeds is None else ())
+            for gear, name in zip(("pinion", "gear"), mesh.turning, strict=True)
+        }
+        return {"motor": "theta_m", **gears, "load": "theta_l"}
+
+    @property
+    def _couplings(self) -> dict[str, tuple[str, str]]:
+        """Coupling -> rotations of its driving and of its driven end; none of a planetary set."""
+        if self.line_speeds is not None:
+            return {}
+        first, last = self.meshes[0].turning[0], self.meshes[-1].turning[1]
+        return {"input_coupling": ("theta_m", first), "output_coupling": (last, "theta_l")}
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,11 @@ STATES = [
     {"name": "healthy"},
     {"name": "behind", "severity": "severe", "damage": {**SPALL, "gear": "slow.pinion", "teeth": 1}},
 ]
+THIRD_SHAFT = [
+    {"name": "end", "place": "slow_bearing"},
+    {"kind": "bearing_force", "name": "washer", "place": "slow_bearing", "range_n": 1e5},
+    {"kind": "encoder", "name": "out", "place": "slow.gear"},
+]
 
 
 def run(app: str, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -94,6 +99,19 @@ def test_classifiers_take_features_of_both_meshes_and_predict_refuses_them(made:
     told = run("diagnostics", "predict", str(folder), str(record), "--fs", "12800", "--teeth", "18,47")
     assert told.returncode != 0
     assert "further meshes slow" in told.stderr
+
+
+def test_a_report_takes_an_accelerometer_a_washer_and_an_encoder_of_the_third_shaft(tmp_path: Path) -> None:
+    raw = staged(specimens=3, fs_hz=12_800.0, duration_s=0.3, sensors=THIRD_SHAFT, states=STATES)
+    (tmp_path / "third.yaml").write_text(yaml.safe_dump(raw), encoding="utf-8")
+    done = run("siggen", "generate", str(tmp_path / "third.yaml"), "--out", str(tmp_path / "set"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    done = run("diagnostics", "report", str(tmp_path / "set"), "--out", str(tmp_path / "report"), "--no-cnn")
+    assert done.returncode == 0, done.stdout + done.stderr
+    page = (tmp_path / "report/report.html").read_text(encoding="utf-8")
+    assert "washer, vertical" in page
+    held = {name.partition("__")[2] for name in pq.read_schema(tmp_path / "report/features.parquet").names}
+    assert {"end_vertical", "washer_vertical", "out_rotation"} <= held
 
 
 def test_audit_explorer_and_calibration_take_the_set_or_say_why_not(made: Path) -> None:

@@ -18,7 +18,7 @@ from diagnostics.indicators.registry import ALL, BY_NAME, taken_of
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
 from diagnostics.records.channel_quantities import RECORDED
-from diagnostics.records.record_problems import clipped_share
+from diagnostics.records.record_problems import clipped_channels, clipped_share, record_problems
 from diagnostics.records.recording import Recording, recordings
 from diagnostics.signal.mesh_band import mesh_baseband
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
@@ -238,6 +238,14 @@ def test_unusable_record_stops_the_set_unless_it_is_left_out(small: Any, monkeyp
     assert math.isnan(column(found, "na4_pinion__bearing_vertical")[1])  # its history has a gap
     assert math.isfinite(column(found, "rms__bearing_horizontal")[0])
     assert [problem.record_id for problem in found.problems] == [0]
+
+
+def test_a_counter_whose_speed_stands_between_two_pulses_is_not_clipped(small: Any) -> None:
+    stepped = changed(next(iter(recordings(small))), clip=2.0)
+    assert clipped_channels(stepped) == ["bearing_vertical"]
+    counted = replace(stepped, quantities={"bearing_vertical": "angular speed"})
+    assert not clipped_channels(counted)
+    assert not record_problems(counted, 256, needs_tacho=True)
 
 
 def test_two_samples_at_the_peak_are_no_clipping() -> None:

@@ -1,0 +1,124 @@
+"""What does not fit into a gearbox with further meshes: gears on a short shaft, and shafts that stand in one another.
+
+Gears of one shaft stand at a third and two thirds between its bearings, so all three gaps hold what stands in them from
+1.5 times both faces on. Shafts without a common mesh have no common plane of gears either, so one may end before the
+other begins. They stand beside each other, or in one line: coaxial (reverted) gearboxes, whose centre distances are
+equal and which fold by 180 degrees. Two axes a little apart are refused: neither do the shafts pass each other, nor
+does one bore of the wall between them hold the bearings of both. All of it is derived.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import combinations, pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Gears, Stage
+from siggen.config.gears import Pair
+from siggen.errors import Problem
+from siggen.gears.geometry.gear_pair import geometry_problems
+from siggen.keys.drawing import corners
+from siggen.keys.number import Number, bounds
+from siggen.planning.stages import stage_sections
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.staged_structure import LEAST_SPAN
+
+ON_ONE_AXIS_MM = 0.02
+"""Axes as near as this are one: boxes are bored no closer (half of IT7 of 50 to 80 mm, ISO 286-1)."""
+BETWEEN = 5
+"""Values of a range at which axes are looked at, its bounds included."""
+
+
+def stage_layout_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield what does not fit, at the bounds of all numbers; nothing where pairs are refused for themselves."""
+    gears: Gears | None = sections.get("gears")
+    stages: tuple[Stage, ...] = sections.get("stages", ())
+    if gears is None or gears.pairs or not stages:
+        return
+    every: list[Pair] = [gears, *(own["gears"] for _, own in stage_sections(sections))]
+    for index, (stage, (before, own)) in enumerate(zip(stages, pairwise(every), strict=True)):
+        yield from _span(stage, index, _widest_mm(before) + _widest_mm(own))
+    distances = [_centre_distances_mm(pair) for pair in every]
+    if all(one.size for one in distances):
+        yield from _axes(every, stages, distances)
+
+
+def _span(stage: Stage, index: int, faces_mm: float) -> Iterator[Problem]:
+    if stage.span_mm is not None and bounds(stage.span_mm)[0] < LEAST_SPAN * faces_mm:
+        received = f"{bounds(stage.span_mm)[0]:g} mm for faces of {faces_mm:g} mm together"
+        allowed = (
+            f"allowed: at least {LEAST_SPAN * faces_mm:g} mm, {LEAST_SPAN:g} times both face_width_mm, since the gears "
+            "stand at a third and at two thirds between the bearings; or null"
+        )
+        yield Problem(f"stages.{index}.span_mm", received, allowed)
+
+
+class _Shaft(NamedTuple):
+    """A shaft: what it is called, and the largest radius of what is in its gears' bores [mm]."""
+
+    name: str
+    radius_mm: float
+
+
+def _axes(every: list[Pair], stages: tuple[Stage, ...], distances: list[FloatArray]) -> Iterator[Problem]:
+    """Yield the first shaft that stands in one in front of it, by the stage whose direction sets it."""
+    shafts = _shafts(every, stages)
+    turned = [np.zeros(1), *(np.radians(_values(stage.direction_deg)) for stage in stages)]
+    for first, last in combinations(range(len(shafts)), 2):
+        if last < first + 2:
+            continue
+        apart = _apart_mm(distances[first:last], turned[first:last])
+        together_mm = shafts[first].radius_mm + shafts[last].radius_mm
+        if apart.max() <= ON_ONE_AXIS_MM or apart.min() >= together_mm:
+            continue
+        received = (
+            f"{stages[last - 2].direction_deg}, with which the axis of {shafts[last].name} stands {apart.min():.4g} mm "
+            f"from that of {shafts[first].name}"
+        )
+        allowed = (
+            f"allowed: a direction with at least {together_mm:.4g} mm, the radii of both shafts (bore_radius_mm), "
+            "or 0: 180 degrees and equal centre distances (coaxial)"
+        )
+        yield Problem(f"stages.{last - 2}.direction_deg", received, allowed)
+        return
+
+
+def _shafts(every: list[Pair], stages: tuple[Stage, ...]) -> list[_Shaft]:
+    names = ("pinion_shaft", "gear_shaft", *(f"{stage.name}_shaft" for stage in stages))
+    driven = [_bore_mm(pair, "gear") for pair in every]
+    driving = [_bore_mm(pair, "pinion") for pair in every]
+    common = [min(pair) for pair in zip(driven, driving[1:], strict=False)]
+    return [_Shaft(*one) for one in zip(names, (driving[0], *common, driven[-1]), strict=True)]
+
+
+def _apart_mm(distances: list[FloatArray], turned: list[FloatArray]) -> FloatArray:
+    """Return how far two axes may be apart [mm]: sums of centre distances along their directions."""
+    place = np.zeros(1, dtype=np.complex128)
+    for distance, direction in zip(distances, turned, strict=True):
+        step = distance[:, None] * np.exp(1j * direction[None, :])
+        place = (place[:, None] + step.reshape(1, -1)).ravel()
+    return np.abs(place)
+
+
+def _values(number: Number) -> FloatArray:
+    return np.unique(np.linspace(*bounds(number), BETWEEN))
+
+
+def _centre_distances_mm(pair: Pair) -> FloatArray:
+    """Return the centre distances of the corners of a section; none where teeth do not mesh."""
+    pairs = [gear_pair(corner) for corner in corners(pair)]
+    if any(geometry_problems(one) for one in pairs):
+        return np.empty(0)
+    found = [1e3 * one.working_centre_distance_m for one in pairs]
+    return np.unique(np.linspace(min(found), max(found), BETWEEN))
+
+
+def _widest_mm(pair: Pair) -> float:
+    return bounds(pair.face_width_mm)[1]
+
+
+def _bore_mm(pair: Pair, which: str) -> float:
+    return bounds(getattr(pair, which).bore_radius_mm)[1]

@@ -1,0 +1,104 @@
+"""Shafts and gears of further meshes that do not fit beside each other, names that are taken, and coaxial gearboxes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from siggen.checks.loading import load_config
+from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.time.equations import mesh_springs
+from siggen.errors import ConfigError, Problem
+from siggen.planning.specimen import draw_specimen
+from siggen.specimen.staged_structure import axis_places_m
+from siggen.specimen.structure import structure
+from tests.config.staged import SLOW, staged
+
+HEALTHY = [{"name": "healthy"}]
+THIN = {"pinion": {"teeth": 17, "bore_radius_mm": 10.0}, "gear": {"teeth": 35, "bore_radius_mm": 20.0}}
+EQUAL = {**SLOW["gears"], **THIN, "module_mm": 2.5}
+"""2.5 mm (17 + 35)/2 = 2 mm (18 + 47)/2."""
+
+
+def one_more(**changes: Any) -> dict[str, Any]:
+    return staged(stages=[{**SLOW, **changes}], states=HEALTHY)
+
+
+def told(raw: dict[str, Any]) -> Problem:
+    with pytest.raises(ConfigError) as refused:
+        load_config(raw)
+    (problem,) = refused.value.problems
+    return problem
+
+
+def test_gears_of_one_shaft_need_one_and_a_half_times_their_faces_between_its_bearings() -> None:
+    """20 and 30 mm wide, at a third and at two thirds: they touch at (20 + 30)/2 = span/3."""
+    problem = told(one_more(span_mm={"kind": "uniform", "low": 74.9, "high": 160}))
+    assert problem.path == "stages.0.span_mm"
+    assert problem.received == "74.9 mm for faces of 50 mm together"
+    assert "at least 75 mm" in problem.allowed
+    assert load_config(one_more(span_mm=75.0)).stages
+
+
+@pytest.mark.parametrize(
+    "gears", [{**EQUAL, "module_mm": 2.4}, {**EQUAL, "gear": {"teeth": 36, "bore_radius_mm": 20.0}}]
+)
+def test_axes_a_little_apart_are_refused(gears: dict[str, Any]) -> None:
+    problem = told(one_more(direction_deg=180.0, gears=gears))
+    assert problem.path == "stages.0.direction_deg"
+    apart_mm = abs(65.0 - 0.5 * gears["module_mm"] * (17 + gears["gear"]["teeth"]))
+    assert f"the axis of slow_shaft stands {apart_mm:.4g} mm from that of pinion_shaft" in problem.received
+    assert "at least 32 mm, the radii of both shafts" in problem.allowed
+    assert load_config(one_more(direction_deg=120.0, gears=gears)).stages
+
+
+def test_a_direction_that_is_drawn_is_refused_where_one_gearbox_could_not_be() -> None:
+    problem = told(one_more(direction_deg={"kind": "uniform", "low": 150, "high": 180}, gears=EQUAL))
+    assert "stands 0 mm" in problem.received or "e-" in problem.received
+
+
+@pytest.mark.parametrize("direction_deg", [180.0, -180.0])
+def test_a_coaxial_gearbox_stands_and_its_layshaft_alone_holds_the_casing_against_turning(direction_deg: float) -> None:
+    """Both shafts of one axis have no arm about it: a force times the centre distance is the torque, in and out."""
+    config = load_config({**one_more(direction_deg=direction_deg, gears=EQUAL), "dynamics": {"model": "8dof"}})
+    specimen = draw_specimen(config, 0)
+    places = axis_places_m(specimen)
+    assert places["slow_bearing"] == pytest.approx(places["pinion_bearing"], abs=1e-15)
+    found, torque_nm = structure(config, specimen), 20.0
+    loaded = found.stiffness + mesh_springs(found, [3e8, 5e8])
+    rest = static_solution(found, loaded, torque_nm * found.torque_vector)
+    forces = {name: float(row @ rest) for name, (row, _) in found.bearing_forces.items()}
+    for axis in ("horizontal", "vertical"):
+        assert sum(force for name, force in forces.items() if name.endswith(axis)) == pytest.approx(0.0, abs=1e-6)
+    # The motor turns the shafts from x to y and the load back, as its shaft turns that way too.
+    ratio = 47 * 35 / (18 * 17)
+    assert 0.065 * forces["gear_bearing/vertical"] == pytest.approx(torque_nm * (1 - ratio), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("pinion", "bearings and labels"), ("either", "drawn gear"), ("casing", "stand on the casing"),
+        ("load", "turns before or behind"), ("casing_a", "motions of sensors"), ("a_pair_1", "pairs of teeth"),
+    ],
+)  # fmt: skip
+def test_a_name_that_means_something_else_is_refused_with_the_reason(name: str, reason: str) -> None:
+    problem = told(one_more(name=name))
+    assert problem.path == "stages.0.name"
+    assert f"'{name}', but" in problem.received
+    assert reason in problem.received
+
+
+def test_two_stages_that_share_a_column_are_refused_and_the_line_is_told(tmp_path: Path) -> None:
+    stages = [{**SLOW, "name": "mesh_a"}, {**SLOW, "name": "a_shaft", "gears": EQUAL}]
+    file = tmp_path / "two.yaml"
+    file.write_text(yaml.safe_dump(staged(stages=stages, states=HEALTHY), sort_keys=False), encoding="utf-8")
+    line = [i for i, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1) if "name: a_shaft" in text]
+    with pytest.raises(ConfigError) as refused:
+        load_config(file)
+    (problem,) = refused.value.problems
+    assert problem.received == "'a_shaft', whose column mesh_a_shaft_hz the stage mesh_a has too"
+    assert str(line[0]) in problem.where

@@ -1,0 +1,125 @@
+"""Sensors at every shaft of a gearbox with two meshes: places by the user's names, and what they read there."""
+
+from __future__ import annotations
+
+from math import cos, pi, radians, sin
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, channels
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.planning.specimen import draw_specimen
+from siggen.record.simulation import simulate
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.staged_structure import axis_places_m
+from tests.config.staged import SLOW, staged
+
+TORQUE_NM = 20.0
+DIRECTION_DEG = 35.0
+TURNS = {"motor": 1.0, "pinion": 1.0, "gear": 18 / 47, "slow.pinion": 18 / 47, "slow.gear": 18 / 47 * 17 / 52}
+TURNS["load"] = TURNS["slow.gear"]
+BEARINGS = ("pinion_bearing", "gear_bearing", "slow_bearing")
+WASHER = {"kind": "bearing_force", "axes": ["vertical", "horizontal"], "range_n": 1e6, "bits": None}
+ENCODER = {"kind": "encoder", "pulses_per_turn": 2_000, "counter_hz": 1e15, "pitch_error": 0, "eccentricity": 0}
+
+
+def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
+    """Return a configuration of two meshes without friction, errors of teeth or noise."""
+    plain = {
+        "sensors": list(sensors), "stages": [{**SLOW, "direction_deg": DIRECTION_DEG}], "fs_hz": 12_800.0,
+        "states": [{"name": "healthy"}], "dynamics": {"model": "8dof", "friction": {"model": "off"}},
+    }  # fmt: skip
+    return load_config(staged(**{**plain, **changes}))
+
+
+def refused(*sensors: dict[str, Any], **changes: Any) -> dict[str, str]:
+    """Return path -> what was received and what is allowed."""
+    with pytest.raises(ConfigError) as told:
+        loaded(*sensors, **changes)
+    return {one.path: f"{one.received}; {one.allowed}" for one in told.value.problems}
+
+
+def signals(config: Config) -> dict[str, np.ndarray]:
+    """Return the channels of the first record, which has no noise."""
+    (record,) = simulate(config, [0])
+    assert isinstance(record, Record), record
+    return {name: values.astype(float) for name, values in record.channels.items()}
+
+
+def mean(signal: np.ndarray) -> float:
+    """Return the mean with a Hann window, to which lines below the first turn of a shaft in a second leak nothing."""
+    return float(np.average(signal, weights=np.hanning(signal.size)))
+
+
+def test_bearings_carry_the_mesh_forces_of_their_shaft_and_couplings_and_encoders_what_passes() -> None:
+    """Mesh forces by the torques along both lines of action, which a drawing of the gears gives: no structure in it."""
+    washers = [{**WASHER, "name": place, "place": place} for place in BEARINGS]
+    encoders = [{**ENCODER, "name": shaft.replace(".", "_"), "place": shaft} for shaft in TURNS]
+    flange = {"kind": "coupling_torque", "name": "out", "place": "output_coupling", "range_nm": 1e5, "bits": None}
+    config = loaded(*washers, flange, *encoders, duration_s=1.0)
+    found, specimen = signals(config), draw_specimen(config, 0)
+    pairs = gear_pair(specimen.gears), gear_pair(specimen.stages[0].gears)
+    sizes = TORQUE_NM / pairs[0].pinion.base_radius_m, TORQUE_NM * 47 / 18 / pairs[1].pinion.base_radius_m
+    # x from the first pinion to its gear; the first pinion turns from x to y, the second one back.
+    first = radians(90.0) - pairs[0].working_pressure_angle_rad
+    second = radians(DIRECTION_DEG - 90.0) + pairs[1].working_pressure_angle_rad
+    driven = [size * np.array([cos(angle), sin(angle)]) for size, angle in zip(sizes, (first, second), strict=True)]
+    for place, expected in zip(BEARINGS, (-driven[0], driven[0] - driven[1], driven[1]), strict=True):
+        pressing = [mean(found[f"{place}_{axis}"]) for axis in ("horizontal", "vertical")]
+        np.testing.assert_allclose(pressing, expected, rtol=1e-6)
+    assert mean(found["out_rotation"]) == pytest.approx(TORQUE_NM * 47 / 18 * 52 / 17, rel=1e-6)
+    for shaft, turns in TURNS.items():
+        # Sampled speeds hold the vibration of both ends of the record: the angle of a mesh of 10 µm, of 200 rad.
+        assert found[f"{shaft.replace('.', '_')}_rotation"].mean() == pytest.approx(60.0 * pi * turns, rel=1e-6)
+    assert [(one.column, one.unit, one.place) for one in channels(config)][4:6] == [
+        ("force_slow_bearing_vertical_n", "N", "slow_bearing"), ("force_slow_bearing_horizontal_n", "N", "slow_bearing")
+    ]  # fmt: skip
+
+
+def test_a_rigid_casing_moves_at_the_third_shaft_as_two_sensors_elsewhere_on_it_say() -> None:
+    corner, other = (60.0, 50.0), (-70.0, -40.0)
+    plain = {"axes": ["vertical", "horizontal"], "bits": None}
+    placed = {"corner": corner, "other": other}
+    sensors = [{**plain, "name": name, "place": "casing", "position_mm": list(at)} for name, at in placed.items()]
+    sensors += [{**plain, "name": place, "place": place} for place in BEARINGS]
+    config = loaded(*sensors, dynamics={"model": "casing"}, housing={"kind": "rigid"})
+    found = signals(config)
+    apart = 1e-3 * (np.array(corner) - other)
+    x, y = (found[f"corner_{axis}"] - found[f"other_{axis}"] for axis in ("horizontal", "vertical"))
+    for turned in (y / apart[0], -x / apart[1]):  # rocking from horizontal to vertical [rad/s²]
+        for place, at in axis_places_m(draw_specimen(config, 0)).items():
+            across, up = np.array(at) - 1e-3 * np.array(corner)
+            told = {
+                "vertical": found["corner_vertical"] + across * turned,
+                "horizontal": found["corner_horizontal"] - up * turned,
+            }
+            for axis, expected in told.items():
+                seen = found[f"{place}_{axis}"]
+                # Channels are float32, and rocking is a difference of two of them.
+                assert np.abs(seen - expected).max() < 1e-6 * np.abs(seen).max(), (place, axis)
+
+
+def test_unknown_places_are_refused_with_those_of_this_gearbox() -> None:
+    found = refused(
+        {"name": "a", "place": "fast_bearing"}, {**WASHER, "name": "b", "place": "slow.gear"},
+        {**ENCODER, "name": "c", "place": "slow_gear"},
+    )  # fmt: skip
+    where = "(dynamics.model: 8dof, stages: slow)"
+    assert found["sensors.0.place"].startswith(
+        f"'fast_bearing'; allowed: one of pinion_bearing, gear_bearing, slow_bearing {where}"
+    )
+    assert "one of pinion_bearing, gear_bearing, slow_bearing" in found["sensors.1.place"]
+    turning = "motor, pinion, gear, slow.pinion, slow.gear, load"
+    assert found["sensors.2.place"] == f"'slow_gear'; allowed: one of {turning} {where}; did you mean 'slow.gear'?"
+    one_mesh = refused({"name": "a", "place": "slow_bearing"}, stages=[], states=[{"name": "healthy"}])
+    assert "one of pinion_bearing, gear_bearing (dynamics.model: 8dof)" in one_mesh["sensors.0.place"]
+
+
+def test_encoders_of_the_load_behind_further_stages_tell_nothing_of_the_first_mesh() -> None:
+    pair = {"kind": "transmission_error", "name": "te", "pinion_encoder": "in", "gear_encoder": "out"}
+    encoders = {**ENCODER, "name": "in", "place": "pinion"}, {**ENCODER, "name": "out", "place": "load"}
+    assert refused(*encoders, pair)["sensors.2.gear_encoder"].startswith("'out'; allowed: an encoder at place gear: ")
