@@ -16,6 +16,7 @@ from siggen.config import Config
 from siggen.config.stages import shaft_turns
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
+from siggen.gears.geometry.gear_pair import GearPair
 from siggen.noise.source import NoisyChannel
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen, draw_operating_point
@@ -85,16 +86,20 @@ def _readings(
 
 def _running(config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> Running:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    pair = gear_pair(specimen.gears)
+    pairs = {"mesh": specimen.gears, **{f"{stage.name}.mesh": stage.gears for stage in specimen.stages}}
     ratio = Fraction(specimen.gears.pinion.teeth, specimen.gears.gear.teeth)
     return Running(
         config.fs_hz,
         _angle_rad(rotation, config.fs_hz, 0, config.samples),
         {shaft: float(turned) for shaft, turned in shaft_turns(ratio, specimen.stages).items()},
         point.torque_nm,
-        (pair.pinion.base_radius_m, pair.gear.base_radius_m),
+        {mesh: _base_radii_m(gear_pair(pair)) for mesh, pair in pairs.items()},
         2.0 * np.pi * named_uniforms(config.seed, Stage.NOISE, *record_owner(record))("line.phase"),
     )
+
+
+def _base_radii_m(pair: GearPair) -> tuple[float, float]:
+    return pair.pinion.base_radius_m, pair.gear.base_radius_m
 
 
 def _disturbances(

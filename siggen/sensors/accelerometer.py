@@ -20,7 +20,7 @@ from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
-from siggen.sensors.places import BEARING_WORDS, MODAL, OF_SET, PLATE_OF, PLATES, RIMS, Places
+from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, PLATES, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity
 from siggen.sensors.resonance import Resonance
 from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
@@ -28,7 +28,6 @@ from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
 POSITION = AllowedText(
     "two numbers in mm, from a casing's centre of gravity or the middle of a plate; a distribution is drawn per gearbox"
 )
-PLACE = AllowedText(f"one of casing, {', '.join((*PLATE_OF, *RIMS, *OF_SET))}, {BEARING_WORDS}")
 
 
 class NoiseFloor(Section):
@@ -51,10 +50,10 @@ class Accelerometer(SourceKeys, Sensor):
     understood_kind: ClassVar[bool] = True
 
     kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
-    place: Annotated[str, PLACE] = Field(
+    place: Annotated[str, IN_MOTION] = Field(
         default="pinion_bearing",
         description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
-        "modal or a path, rims with the model torsional; ring, sun_bearing and carrier_bearing of a planetary set",
+        "modal or a path, rims with the model torsional, NAME_bearing with stages",
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,

@@ -10,9 +10,8 @@ from pydantic import Field
 from siggen.errors import Problem
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real
-from siggen.keys.wording import AllowedText
 from siggen.sensing.inputs import FORCE, Input
-from siggen.sensors.places import BEARING_WORDS, Places
+from siggen.sensors.places import AT_BEARINGS, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, Sensor
 
@@ -26,8 +25,9 @@ class ForceWasher(Sensor):
     plausible: ClassVar[tuple[float, float, str]] = (10.0, 1e7, "is it in N, not kN?")
 
     kind: Literal["bearing_force"] = Field(description="force of a shaft's bearings on the housing")
-    place: Annotated[str, AllowedText(BEARING_WORDS)] = Field(
-        default="pinion_bearing", description="whose bearings; not with dynamics.model: torsional"
+    place: Annotated[str, AT_BEARINGS] = Field(
+        default="pinion_bearing",
+        description="whose bearings, NAME_bearing: of the shaft of NAME.gear; not with dynamics.model: torsional",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="directions of the force, one channel each"

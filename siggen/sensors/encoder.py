@@ -14,15 +14,13 @@ from siggen.arrays import FloatArray
 from siggen.errors import Problem, SolverFailure
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real, Whole
-from siggen.keys.wording import AllowedText
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
-from siggen.sensors.places import Places
+from siggen.sensors.places import TURNING, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
 
-ON_SHAFTS = AllowedText("motor, pinion, gear, load, or NAME.pinion and NAME.gear of a further stage")
 FEWEST_PULSES = 2
 """In a record: fewer have no time between them."""
 FASTEST_RAD_S = 1e5
@@ -42,8 +40,9 @@ class Encoder(Sensor):
     )
 
     kind: Literal["encoder"] = Field(description="angular speed of a shaft, from the pulses of a disc")
-    place: Annotated[str, ON_SHAFTS] = Field(
-        default="pinion", description="what it turns with; motor and load not with dynamics.model: 6dof"
+    place: Annotated[str, TURNING] = Field(
+        default="pinion",
+        description="what it turns with, NAME.gear of stages too; motor and load not with dynamics.model: 6dof",
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
         default=("rotation",), description="what it measures"

@@ -6,8 +6,10 @@ speed is NAME_shaft_hz runs in NAME_bearing.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
@@ -27,7 +29,32 @@ ON_CASING = {"casing": ("casing",), PLATES: tuple(PLATE_OF), MODAL: ("casing", *
 """Places on the housing of a model."""
 OF_SET = ("ring", "sun_bearing", "carrier_bearing")
 """Places of a planetary set."""
-BEARING_WORDS = "pinion_bearing, gear_bearing, or NAME_bearing: the shaft of NAME.gear of a further stage"
+STAGE = "[a-z][a-z0-9_]{0,39}"
+"""Names of further stages."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceText:
+    """Words of `place` for readers of a file, and those with the NAME of a further stage; a gearbox has some."""
+
+    words: tuple[str, ...]
+    of_stages: tuple[str, ...]
+
+    @property
+    def allowed_text(self) -> str:
+        """All words."""
+        return f"one of {', '.join(self.words)}, of a further stage {', '.join(self.of_stages)}"
+
+    def __get_pydantic_json_schema__(self, _: Any, __: Any) -> dict[str, Any]:
+        """Return the words, or a pattern for those of stages."""
+        endings = "|".join(re.escape(word.removeprefix("NAME")) for word in self.of_stages)
+        return {"anyOf": [{"enum": list(self.words)}, {"type": "string", "pattern": f"^{STAGE}({endings})$"}]}
+
+
+AT_BEARINGS = PlaceText(BEARINGS, ("NAME_bearing",))
+IN_MOTION = PlaceText((*BEARINGS, *PLATE_OF, "casing", *RIMS, *OF_SET), ("NAME_bearing",))
+BETWEEN_TEETH = PlaceText(("mesh",), ("NAME.mesh",))
+TURNING = PlaceText(("motor", *GEARS, "load"), tuple(f"NAME.{gear}" for gear in GEARS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +97,17 @@ class Places:
         if self.model == PLANETARY:
             return ()
         return self.gears if self.model == "6dof" else ("motor", *self.gears, "load")
+
+    @property
+    def meshes(self) -> tuple[str, ...]:
+        """Every mesh."""
+        return ("mesh", *(f"{stage}.mesh" for stage in self.stages))
+
+    def ends_of(self, mesh: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Return what turns as the driving and as the driven gear of a mesh do, but for couplings in between."""
+        gears = tuple(f"{mesh.removesuffix('mesh')}{gear}" for gear in GEARS)
+        first, last = mesh == self.meshes[0], mesh == self.meshes[-1]
+        return (gears[0], *(("motor",) if first else ())), (gears[1], *(("load",) if last else ()))
 
     @property
     def couplings(self) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ class Running:
     pinion_rad : (n,) prescribed angle of the pinion's shaft at the samples
     turns : what turns -> its turns per turn of the pinion
     torque_nm : of the operating point, on the pinion's shaft
-    base_radii_m : of pinion and gear
+    base_radii_m : `mesh`, `NAME.mesh` -> of its pinion and gear
     line_rad : phase of the electrical line at the first sample, one for all sensors
     readings : channel -> (n,) of those that show something of the model and were read as a whole already
     """
@@ -28,7 +28,7 @@ class Running:
     pinion_rad: FloatArray
     turns: Mapping[str, float]
     torque_nm: float
-    base_radii_m: tuple[float, float]
+    base_radii_m: Mapping[str, tuple[float, float]]
     line_rad: float
     readings: Mapping[str, FloatArray] = field(default_factory=dict)
 

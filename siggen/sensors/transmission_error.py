@@ -14,13 +14,11 @@ from siggen.errors import Problem
 from siggen.keys.section import Whole
 from siggen.sensing.inputs import Input
 from siggen.sensors.encoder import Encoder
-from siggen.sensors.places import Places
+from siggen.sensors.places import BETWEEN_TEETH, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
 
-SHAFTS = {"pinion_encoder": ("pinion", "motor"), "gear_encoder": ("gear", "load")}
-"""Key -> shafts on which its encoder may sit."""
 LARGEST_UM = 1e6
 MICROMETRES = 1e6
 
@@ -39,24 +37,26 @@ class TransmissionError(Sensor):
     )
 
     kind: Literal["transmission_error"] = Field(description="difference of two encoders on the line of action")
-    place: Literal["mesh"] = Field(default="mesh", description="between both encoders")
+    place: Annotated[str, BETWEEN_TEETH] = Field(
+        default="mesh", description="between both encoders, NAME.mesh with stages"
+    )
     axes: Annotated[tuple[Literal["line_of_action"], ...], Field(min_length=1)] = Field(
         default=("line_of_action",), description="along which it counts"
     )
-    pinion_encoder: str = Field(description="name of an encoder of the set on pinion or motor")
-    gear_encoder: str = Field(description="name of an encoder of the set on gear or load")
+    pinion_encoder: str = Field(description="name of an encoder of the set on its pinion, or on the motor in front")
+    gear_encoder: str = Field(description="name of an encoder of the set on its gear, or on the load behind")
     bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
         default=None, description="of what is stored; null: not quantised beyond the counter"
     )
 
-    def model_problems(self, places: Places) -> Iterator[Problem]:  # noqa: ARG002
-        """Yield nothing: its encoders say what the model has not."""
-        yield from ()
+    def model_problems(self, places: Places) -> Iterator[Problem]:
+        """Yield a mesh that the gearbox has not; its encoders say what else there is not."""
+        yield from places.problems(self.place, places.meshes)
 
     def beside_problems(self, others: Mapping[str, Sensor], places: Places) -> Iterator[Problem]:
-        """Yield names that are none of an encoder on a shaft of their side; behind further stages the load has none."""
-        for key, every in SHAFTS.items():
-            shafts = tuple(shaft for shaft in every if shaft != "load" or not places.stages)
+        """Yield names that are none of an encoder on a shaft of their side."""
+        ends = places.ends_of(self.place) if self.place in places.meshes else ()
+        for key, shafts in zip(("pinion_encoder", "gear_encoder"), ends, strict=False):
             name = getattr(self, key)
             fitting = [n for n, one in others.items() if isinstance(one, Encoder) and one.place in shafts]
             if name not in fitting:
@@ -79,19 +79,20 @@ class TransmissionError(Sensor):
 
     def transducer(self, axis: str, draw: AxisDraws) -> Transducer:  # noqa: ARG002
         """Return the difference of both channels."""
-        return Difference(f"{self.pinion_encoder}_rotation", f"{self.gear_encoder}_rotation")
+        return Difference(self.place, f"{self.pinion_encoder}_rotation", f"{self.gear_encoder}_rotation")
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The channels of both encoders."""
+    """A mesh, and the channels of both encoders."""
 
+    mesh: str
     pinion: str
     gear: str
 
     def reading(self, shown: FloatArray, running: Running) -> FloatArray:  # noqa: ARG002
         """Return the error (n,) [um] at the samples."""
-        radii, readings = running.base_radii_m, running.readings
+        radii, readings = running.base_radii_m[self.mesh], running.readings
         rate = radii[0] * readings[self.pinion] - radii[1] * readings[self.gear]
         after = np.cumsum(rate) / running.fs_hz  # each speed holds from half an interval before its sample on
         error = MICROMETRES * (after - 0.5 * rate / running.fs_hz)
