@@ -12,6 +12,7 @@ import pyarrow.compute as pc
 
 from diagnostics.records.gear_train import further_meshes, teeth_columns
 from siggen.dataset.reading import Dataset
+from siggen.errors import UsageError
 
 LABEL_NAMES = (
     *("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split"),
@@ -21,6 +22,8 @@ LABEL_NAMES = (
 """Columns that go along with the indicators; scalars only, so that they fit a CSV file."""
 
 TACHO_NAME = "tacho_s"
+CARRIER = "carrier_hz"
+"""Column that planetary sets alone have."""
 BATCH_ROWS = 16
 
 
@@ -60,8 +63,20 @@ def recordings(
 
 
 def meshes_behind(dataset: Dataset) -> tuple[str, ...]:
-    """Return the names of a set's meshes behind the first one; none for gearboxes with one mesh."""
-    return further_meshes(dataset.labels().column_names)
+    """Return the names of a set's meshes behind the first one; none for gearboxes with one mesh.
+
+    Raises
+    ------
+    UsageError
+        If gearboxes are planetary sets.
+    """
+    names = dataset.labels().column_names
+    if CARRIER in names:
+        raise UsageError(
+            f"{dataset.path}: received planetary sets (column {CARRIER}); allowed: pairs of gears on two shafts, with "
+            "or without further stages. Read signals and labels with siggen.open"
+        )
+    return further_meshes(names)
 
 
 def _in_states(batch: Any, states: Sequence[str]) -> Any:
