@@ -16,7 +16,6 @@ from siggen.config import Config
 from siggen.config.stages import shaft_turns
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
-from siggen.gears.geometry.gear_pair import GearPair
 from siggen.noise.source import NoisyChannel
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen, draw_operating_point
@@ -54,7 +53,7 @@ def measured_channels(
         for name, values in seen.items():
             (whole[name].append if name in whole else recorders[name].take)(values)
     if whole:
-        for name, reading in _readings(instrument, whole, _running(config, specimen, record, rotation)):
+        for name, reading in _readings(instrument, whole, _running(config, specimen, record, rotation, instrument)):
             recorders[name].take(reading)
     disturbances = _disturbances(config, specimen, record, instrument, recorders, rotation)
     for first in range(0, config.samples, BLOCK_SAMPLES):
@@ -84,22 +83,30 @@ def _readings(
             yield channel.name, found[channel.name]
 
 
-def _running(config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> Running:
+def _running(
+    config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation, instrument: Instrument
+) -> Running:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    pairs = {"mesh": specimen.gears, **{f"{stage.name}.mesh": stage.gears for stage in specimen.stages}}
     ratio = Fraction(specimen.gears.pinion.teeth, specimen.gears.gear.teeth)
     return Running(
         config.fs_hz,
         _angle_rad(rotation, config.fs_hz, 0, config.samples),
         {shaft: float(turned) for shaft, turned in shaft_turns(ratio, specimen.stages).items()},
         point.torque_nm,
-        {mesh: _base_radii_m(gear_pair(pair)) for mesh, pair in pairs.items()},
+        _base_radii_m(specimen),
+        {channel.name: channel.sensor.place for channel in instrument.channels},
         2.0 * np.pi * named_uniforms(config.seed, Stage.NOISE, *record_owner(record))("line.phase"),
     )
 
 
-def _base_radii_m(pair: GearPair) -> tuple[float, float]:
-    return pair.pinion.base_radius_m, pair.gear.base_radius_m
+def _base_radii_m(specimen: Specimen) -> dict[str, float]:
+    """Return what turns -> base radius of the gear that it turns with."""
+    pairs = {"": specimen.gears, **{f"{stage.name}.": stage.gears for stage in specimen.stages}}
+    found: dict[str, float] = {}
+    for name, pair in pairs.items():
+        both = gear_pair(pair)
+        found |= {f"{name}pinion": both.pinion.base_radius_m, f"{name}gear": both.gear.base_radius_m}
+    return {**found, "motor": found["pinion"], "load": both.gear.base_radius_m}
 
 
 def _disturbances(

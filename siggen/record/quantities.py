@@ -39,16 +39,19 @@ MEANINGS = {
 
 
 ANGLE, TRANSMISSION_ERROR = "pinion_angle_rad", "transmission_error_m"
+APPROACH = "approach_m"
+"""Of the mesh without a name; a planetary set, whose meshes share one load, has none and no transmission error."""
 
 
 def internal_quantities(specimen: Specimen, response: Response) -> dict[str, FloatArray]:
     """Return name -> (n,) at the samples of a response that holds its internals."""
+    inner = response.internals
     return {
         ANGLE: np.mod(response.angle_rad, 2.0 * np.pi),
         **{acceleration_name(place): a for place, a in response.acceleration_m_s2.items()},
         **{bearing_force_name(place): f for place, f in response.bearing_force_n.items()},
-        **response.internals,
-        TRANSMISSION_ERROR: transmission_error_m(response.internals["approach_m"], specimen),
+        **inner,
+        **({TRANSMISSION_ERROR: transmission_error_m(inner[APPROACH], specimen)} if APPROACH in inner else {}),
     }
 
 

@@ -53,7 +53,6 @@ class PlaceText:
 
 AT_BEARINGS = PlaceText(BEARINGS, ("NAME_bearing",))
 IN_MOTION = PlaceText((*BEARINGS, *PLATE_OF, "casing", *RIMS, *OF_SET), ("NAME_bearing",))
-BETWEEN_TEETH = PlaceText(("mesh",), ("NAME.mesh",))
 TURNING = PlaceText(("motor", *GEARS, "load"), tuple(f"NAME.{gear}" for gear in GEARS))
 
 
@@ -99,15 +98,13 @@ class Places:
         return self.gears if self.model == "6dof" else ("motor", *self.gears, "load")
 
     @property
-    def meshes(self) -> tuple[str, ...]:
-        """Every mesh."""
-        return ("mesh", *(f"{stage}.mesh" for stage in self.stages))
-
-    def ends_of(self, mesh: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Return what turns as the driving and as the driven gear of a mesh do, but for couplings in between."""
-        gears = tuple(f"{mesh.removesuffix('mesh')}{gear}" for gear in GEARS)
-        first, last = mesh == self.meshes[0], mesh == self.meshes[-1]
-        return (gears[0], *(("motor",) if first else ())), (gears[1], *(("load",) if last else ()))
+    def ends_of_meshes(self) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]:
+        """What turns as the driving and as the driven gear of each mesh do, but for a coupling in between."""
+        driving, driven = self.gears[::2], self.gears[1::2]
+        return tuple(
+            ((a, "motor") if a == driving[0] else (a,), (b, "load") if b == driven[-1] else (b,))
+            for a, b in zip(driving, driven, strict=True)
+        )
 
     @property
     def couplings(self) -> tuple[str, ...]:

@@ -19,7 +19,8 @@ class Running:
     pinion_rad : (n,) prescribed angle of the pinion's shaft at the samples
     turns : what turns -> its turns per turn of the pinion
     torque_nm : of the operating point, on the pinion's shaft
-    base_radii_m : `mesh`, `NAME.mesh` -> of its pinion and gear
+    base_radii_m : what turns -> base radius of the gear that it turns with
+    places : channel -> where its sensor is
     line_rad : phase of the electrical line at the first sample, one for all sensors
     readings : channel -> (n,) of those that show something of the model and were read as a whole already
     """
@@ -28,13 +29,18 @@ class Running:
     pinion_rad: FloatArray
     turns: Mapping[str, float]
     torque_nm: float
-    base_radii_m: Mapping[str, tuple[float, float]]
+    base_radii_m: Mapping[str, float]
+    places: Mapping[str, str]
     line_rad: float
     readings: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def shaft_rad(self, shaft: str) -> FloatArray:
         """Return the prescribed angle (n,) of what turns, such as `motor` or `gear`."""
         return self.turns[shaft] * self.pinion_rad
+
+    def base_radius_m(self, channel: str) -> float:
+        """Return the base radius of the gear that an encoder's channel turns with."""
+        return self.base_radii_m[self.places[channel]]
 
 
 class Transducer(Protocol):

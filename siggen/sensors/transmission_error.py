@@ -14,7 +14,7 @@ from siggen.errors import Problem
 from siggen.keys.section import Whole
 from siggen.sensing.inputs import Input
 from siggen.sensors.encoder import Encoder
-from siggen.sensors.places import BETWEEN_TEETH, Places
+from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
@@ -37,9 +37,7 @@ class TransmissionError(Sensor):
     )
 
     kind: Literal["transmission_error"] = Field(description="difference of two encoders on the line of action")
-    place: Annotated[str, BETWEEN_TEETH] = Field(
-        default="mesh", description="between both encoders, NAME.mesh with stages"
-    )
+    place: Literal["mesh"] = Field(default="mesh", description="between both encoders")
     axes: Annotated[tuple[Literal["line_of_action"], ...], Field(min_length=1)] = Field(
         default=("line_of_action",), description="along which it counts"
     )
@@ -49,16 +47,18 @@ class TransmissionError(Sensor):
         default=None, description="of what is stored; null: not quantised beyond the counter"
     )
 
-    def model_problems(self, places: Places) -> Iterator[Problem]:
-        """Yield a mesh that the gearbox has not; its encoders say what else there is not."""
-        yield from places.problems(self.place, places.meshes)
+    def model_problems(self, places: Places) -> Iterator[Problem]:  # noqa: ARG002
+        """Yield nothing: its encoders say what the model has not."""
+        yield from ()
 
     def beside_problems(self, others: Mapping[str, Sensor], places: Places) -> Iterator[Problem]:
-        """Yield names that are none of an encoder on a shaft of their side."""
-        ends = places.ends_of(self.place) if self.place in places.meshes else ()
-        for key, shafts in zip(("pinion_encoder", "gear_encoder"), ends, strict=False):
-            name = getattr(self, key)
-            fitting = [n for n, one in others.items() if isinstance(one, Encoder) and one.place in shafts]
+        """Yield names that are none of encoders on both sides of one mesh, that of the pinion's encoder."""
+        turning = {name: one.place for name, one in others.items() if isinstance(one, Encoder)}
+        ends = places.ends_of_meshes
+        own = [end for end in ends if turning.get(self.pinion_encoder) in end[0]] or ends
+        for key, side, meshes in (("pinion_encoder", 0, ends), ("gear_encoder", 1, own)):
+            name, shafts = getattr(self, key), tuple(shaft for end in meshes for shaft in end[side])
+            fitting = [other for other, place in turning.items() if place in shafts]
             if name not in fitting:
                 listed = ", ".join(fitting) or "none there is; add one"
                 yield Problem(key, f"'{name}'", f"allowed: an encoder at place {' or '.join(shafts)}: {listed}")
@@ -79,20 +79,19 @@ class TransmissionError(Sensor):
 
     def transducer(self, axis: str, draw: AxisDraws) -> Transducer:  # noqa: ARG002
         """Return the difference of both channels."""
-        return Difference(self.place, f"{self.pinion_encoder}_rotation", f"{self.gear_encoder}_rotation")
+        return Difference(f"{self.pinion_encoder}_rotation", f"{self.gear_encoder}_rotation")
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A mesh, and the channels of both encoders."""
+    """The channels of both encoders."""
 
-    mesh: str
     pinion: str
     gear: str
 
     def reading(self, shown: FloatArray, running: Running) -> FloatArray:  # noqa: ARG002
         """Return the error (n,) [um] at the samples."""
-        radii, readings = running.base_radii_m[self.mesh], running.readings
+        radii, readings = [running.base_radius_m(name) for name in (self.pinion, self.gear)], running.readings
         rate = radii[0] * readings[self.pinion] - radii[1] * readings[self.gear]
         after = np.cumsum(rate) / running.fs_hz  # each speed holds from half an interval before its sample on
         error = MICROMETRES * (after - 0.5 * rate / running.fs_hz)

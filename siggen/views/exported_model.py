@@ -34,6 +34,7 @@ from siggen.record.specimen_state import refused_as, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
 from siggen.specimen.step_choice import stepped_motion
+from siggen.views.pairs_alone import refuse_planetary
 
 FORMAT_VERSION = 5
 """Raised when a key changes its meaning or goes away; new keys leave it."""
@@ -56,7 +57,10 @@ def exported_model(whole: Config, record_id: int) -> Model:
     ------
     SolverFailure
         If what was drawn cannot be built; says why.
+    UsageError
+        For a planetary set.
     """
+    refuse_planetary(whole, "an exported model")
     record = planned_record(whole, record_id)
     config = state_config(whole, record.specimen_id, record.state_id)
     specimen = draw_specimen(config, record.specimen_id)

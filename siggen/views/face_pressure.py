@@ -27,6 +27,7 @@ from siggen.record.specimen_state import SpecimenState, refused_as
 from siggen.specimen.contact import face_options, largest_force_n
 from siggen.specimen.errors import specimen_errors
 from siggen.views.flank_views import FlankView, flank_view
+from siggen.views.pairs_alone import refuse_planetary
 
 POSITIONS = 161
 """Along the path of contact: every 0.09 mm of arc on the flanks of a module of 3 mm."""
@@ -85,6 +86,7 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
         raise UsageError(
             "dynamics.mesh.law: received linear; allowed: pairs, whose tooth pairs have forces of their own"
         )
+    refuse_planetary(config, "pressures of a flank")
     record = planned_record(config, record_id)
     config = state_config(config, record.specimen_id, record.state_id)
     torque_nm = draw_operating_point(config, record.specimen_id, record.operating_point_id).torque_nm

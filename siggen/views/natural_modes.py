@@ -11,9 +11,11 @@ from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.time.modes import Modes, natural_modes
+from siggen.gears.stiffness.internal_stiffness import internal_tables
 from siggen.gears.stiffness.mesh_tables import mesh_tables
-from siggen.planning.specimen import draw_specimen
+from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.specimen.gears import gear_pair, stiffness_options
+from siggen.specimen.planetary_numbers import planets_in_ring
 from siggen.specimen.structure import structure
 
 
@@ -41,15 +43,24 @@ class SpecimenModes:
 def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
     """Return the modes of one specimen without damage, undamped, at the mean over the angle of its mesh stiffness."""
     specimen = draw_specimen(config, specimen_id)
-    options = stiffness_options(specimen.stiffness)
-    pairs = [gear_pair(gears) for gears in (specimen.gears, *(stage.gears for stage in specimen.stages))]
-    stiffness = [mean_mesh_stiffness(mesh_tables(pair, (), options)) for pair in pairs]
+    stiffness = _mean_stiffness(specimen)
     assembled = structure(config, specimen)
     return SpecimenModes(assembled.coordinates, stiffness[0], assembled.mass, natural_modes(assembled, stiffness))
 
 
+def _mean_stiffness(specimen: Specimen) -> list[float]:
+    """Return the mean stiffness of every healthy mesh of a gearbox, in the order of its structure."""
+    options = stiffness_options(specimen.stiffness)
+    if specimen.planetary is not None:
+        pair, inner = planets_in_ring(specimen)
+        each = mesh_tables(pair, (), options), internal_tables(pair, inner, options)
+        count = len(specimen.planetary.positions_deg)
+        return [mean_mesh_stiffness(tables) for tables in each for _ in range(count)]
+    pairs = [gear_pair(gears) for gears in (specimen.gears, *(stage.gears for stage in specimen.stages))]
+    return [mean_mesh_stiffness(mesh_tables(pair, (), options)) for pair in pairs]
+
+
 def kinetic_shares(found: SpecimenModes) -> FloatArray:
     """Return the share of each degree of freedom in the kinetic energy of each mode, (modes, n)."""
-    return found.modes.shapes**2 * np.diag(
-        found.mass
-    )  # mass-normalised shapes and a diagonal mass matrix: rows add to 1
+    # Mass-normalised shapes: rows add to 1; bodies that move with others, such as planets, make the mass no diagonal.
+    return np.asarray(found.modes.shapes * (found.modes.shapes @ found.mass))

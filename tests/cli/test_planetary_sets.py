@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -87,6 +89,37 @@ def test_the_card_and_the_plan_say_what_the_machine_is(made: Path) -> None:
     card = (made / "README.md").read_text(encoding="utf-8")
     assert "a sun with 25 teeth drives 3 planets with 26 in a ring with 77" in " ".join(card.split())
     assert "462 Hz" in run("plan", str(made / "config.yaml")).stdout
+
+
+def test_every_mesh_carries_its_share_of_the_torque_in_the_mean(made: Path, tmp_path: Path) -> None:
+    file = tmp_path / "meshes.parquet"
+    done = run("simulate", str(made / "config.yaml"), "--record", "0", "--out", str(file))
+    assert done.returncode == 0, done.stderr
+    table = pq.read_table(file)
+    names = [f"{ring}_{planet}_mesh_force_n" for ring in ("sun", "ring") for planet in (1, 2, 3)]
+    means = [np.mean(table.column(name).to_numpy()) for name in names]
+    base_radius_m = 0.5 * 2e-3 * 25 * np.cos(np.radians(20.0))
+    assert means == pytest.approx([60.0 / PLANETS / base_radius_m] * 6, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("siggen.cli.app", "export-model", "{set}/config.yaml", "--record", "0", "--out", "{set}/../m.npz"),
+        ("siggen.cli.app", "inspect", "pressure", "{set}/config.yaml", "--record", "1", "--out", "{set}/../p.csv"),
+        ("diagnostics.cli.app", "indicators", "{set}"),
+    ],
+)
+def test_what_knows_no_carrier_says_so(made: Path, command: tuple[str, ...]) -> None:
+    module, *arguments = (word.format(set=made) for word in command)
+    code = f"from {module} import main; main()"
+    told = subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert told.returncode == 2
+    assert "planetary" in told.stderr
+    assert "allowed" in told.stderr
+    assert "Traceback" not in told.stderr
 
 
 def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:

@@ -122,7 +122,7 @@ def test_unknown_places_are_refused_with_those_of_this_gearbox() -> None:
 def test_a_transmission_error_of_a_further_mesh_has_its_own_base_circles() -> None:
     """A disc off its axis leads by e/r sin of its angle: 1.5 turns, so both extremes are there."""
     inner, out = {**ENCODER, "name": "in", "place": "slow.pinion"}, {**ENCODER, "name": "out", "place": "slow.gear"}
-    error = {"kind": "transmission_error", "name": "of_out", "place": "slow.mesh", "pinion_encoder": "in"}
+    error = {"kind": "transmission_error", "name": "of_out", "pinion_encoder": "in"}
     off = {**out, "name": "off", "eccentricity": 1e-3}
     pairs = {**error, "gear_encoder": "out"}, {**error, "name": "of_off", "gear_encoder": "off"}
     found = signals(loaded(inner, out, off, *pairs, duration_s=0.4))
@@ -132,11 +132,12 @@ def test_a_transmission_error_of_a_further_mesh_has_its_own_base_circles() -> No
     assert found["of_out_line_of_action"].std() < 20.0  # of teeth; wrong radii would drift by the turns of a shaft
 
 
-def test_encoders_of_a_transmission_error_sit_on_the_shafts_of_its_mesh() -> None:
-    first = {"kind": "transmission_error", "name": "te", "pinion_encoder": "in", "gear_encoder": "out"}
-    encoders = {**ENCODER, "name": "in", "place": "pinion"}, {**ENCODER, "name": "out", "place": "load"}
-    assert refused(*encoders, first)["sensors.2.gear_encoder"].startswith("'out'; allowed: an encoder at place gear: ")
-    behind = refused(*encoders, {**first, "place": "slow.mesh"})
-    assert list(behind) == ["sensors.2.pinion_encoder"]
-    assert behind["sensors.2.pinion_encoder"].startswith("'in'; allowed: an encoder at place slow.pinion: ")
-    assert "allowed: one of mesh, slow.mesh" in refused(*encoders, {**first, "place": "fast.mesh"})["sensors.2.place"]
+def test_encoders_of_a_transmission_error_sit_on_both_sides_of_one_mesh() -> None:
+    error = {"kind": "transmission_error", "name": "te", "pinion_encoder": "in", "gear_encoder": "out"}
+    places = {"in": "pinion", "out": "load", "middle": "slow.pinion"}
+    encoders = [{**ENCODER, "name": name, "place": place} for name, place in places.items()]
+    first = refused(*encoders, error)
+    assert first == {"sensors.3.gear_encoder": "'out'; allowed: an encoder at place gear: none there is; add one"}
+    assert loaded(*encoders, {**error, "pinion_encoder": "middle"}).sensors
+    other = refused(*encoders, {**error, "pinion_encoder": "out"})["sensors.3.pinion_encoder"]
+    assert other == "'out'; allowed: an encoder at place pinion or motor or slow.pinion: in, middle"
