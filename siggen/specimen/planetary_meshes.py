@@ -15,13 +15,16 @@ from math import cos
 
 import numpy as np
 
+from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair, ring_begins_pitches
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, ToothTables
 from siggen.gears.stiffness.internal_stiffness import internal_tables
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, MeshTables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import Specimen
+from siggen.specimen.contact import tip_relief
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, TeethUnderTorque
 from siggen.specimen.planetary_numbers import pin_errors_m, planetary_teeth, planets_in_ring
 
@@ -47,18 +50,23 @@ class Moved:
 
 @dataclass(frozen=True, slots=True)
 class RingTeeth:
-    """Perfect teeth of a planet and its ring."""
+    """Teeth of a planet and its ring, relieved at both tips as those of the sun are; no corner of theirs carries."""
 
     pair: InternalPair
+    relief: TipRelief
 
-    def under(self, torque_nm: float) -> MissingMaterial:  # noqa: ARG002 - they are the same under any
-        """Return the missing material: none."""
-        inner = self.pair
-        planet, ring = (
-            ToothTables(np.zeros((1, 2)), np.zeros(z, dtype=np.int32), np.zeros(z))
-            for z in (inner.planet.teeth, inner.ring.teeth)
-        )
-        return MissingMaterial(inner.contact_start_m, inner.contact_end_m, planet, ring)
+    def under(self, torque_nm: float) -> MissingMaterial:  # noqa: ARG002 - it is the same under any
+        """Return the missing material along the path of contact: planets leave at their tips, the ring's enter."""
+        start_m, end_m = self.pair.contact_start_m, self.pair.contact_end_m
+        position_m = np.linspace(start_m, end_m, TABLE_POINTS)
+        planet = self._relieved(end_m - position_m, self.pair.planet.teeth)
+        ring = self._relieved(position_m - start_m, self.pair.ring.teeth)
+        return MissingMaterial(start_m, end_m, planet, ring)
+
+    def _relieved(self, to_tip_m: FloatArray, teeth: int) -> ToothTables:
+        share = np.clip(1.0 - to_tip_m / self.relief.length_m, 0.0, None)
+        profile = self.relief.amount_m * share**2
+        return ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
 
 
 def with_planets(
@@ -73,7 +81,8 @@ def with_planets(
     against = 1.0 - 1.0 / (1.0 + teeth.ring / teeth.sun)
     pairs = zip(_each(first, other, errors.size), errors, strict=True)
     suns = [_moved(one, error, pair, drives=False) for one, error in pairs]
-    rings = [_moved(_in_ring(first, pair, inner, options), error, inner, drives=True) for error in errors]
+    in_ring = _in_ring(first, RingTeeth(inner, tip_relief(specimen.dynamics, pair)), _ring_tables(pair, inner, options))
+    rings = [_moved(in_ring, error, inner, drives=True) for error in errors]
     lag = ring_begins_pitches(pair, inner)
     behind = (
         *(MeshBehind(one, against, float(begins)) for one, begins in zip(suns[1:], teeth.sun_begins[1:], strict=True)),
@@ -94,15 +103,10 @@ def _moved(mesh: SpecimenMesh, error_m: float, pair: GearPair | InternalPair, *,
     return mesh if late_m == 0.0 else replace(mesh, missing=Moved(mesh.missing, late_m, drives))
 
 
-def _in_ring(first: SpecimenMesh, pair: GearPair, inner: InternalPair, options: StiffnessOptions) -> SpecimenMesh:
-    return SpecimenMesh(
-        pair,
-        first.structure,
-        _ring_tables(pair, inner, options),
-        RingTeeth(inner),
-        sham=first.sham,
-        line_of_action_m=inner.line_of_action_m,
-    )
+def _in_ring(first: SpecimenMesh, teeth: RingTeeth, tables: MeshTables) -> SpecimenMesh:
+    """Return a planet in its ring, on the same structure; what is asked of the pair alone is that of sun and planet."""
+    action_m = teeth.pair.line_of_action_m
+    return SpecimenMesh(first.pair, first.structure, tables, teeth, sham=first.sham, line_of_action_m=action_m)
 
 
 _ring_tables = lru_cache(maxsize=2)(internal_tables)  # states of a specimen share them
