@@ -21,6 +21,12 @@ def clean() -> MeasuredSet:
     return measured(Plant())
 
 
+@pytest.fixture(scope="module")
+def twice() -> MeasuredSet:
+    """Return a clean set with two records of every state of a gearbox at one operating point."""
+    return measured(Plant(points=1, repeats=2))
+
+
 def traps(found: MeasuredSet) -> list[str]:
     return [finding.trap for finding in separability_findings(found)]
 
@@ -146,29 +152,29 @@ def test_kurtosis_alone_that_separates_slight_is_found(clean: MeasuredSet) -> No
 @pytest.mark.parametrize(
     ("gain_db", "expected"), [(9.5, ["slight_separable_by_rms"]), pytest.param(1.0, [], marks=pytest.mark.slow)]
 )
-def test_a_gain_of_damaged_records_is_found_where_gearboxes_differ_more(gain_db: float, expected: list[str]) -> None:
+def test_a_gain_of_damaged_records_is_found_where_gearboxes_differ_more(
+    twice: MeasuredSet, gain_db: float, expected: list[str]
+) -> None:
     """Levels of gearboxes are spread over 40 dB, so that no threshold on the rms alone tells a gain of three."""
-    clean = measured(Plant(points=1, repeats=2))
-    specimens, of_record = np.unique(clean.labels["specimen_id"], return_inverse=True)
+    specimens, of_record = np.unique(twice.labels["specimen_id"], return_inverse=True)
     of_gearbox = 10.0 ** np.random.default_rng(3).permutation(np.linspace(-1.0, 1.0, specimens.size))
-    gain = np.where(clean.healthy, 1.0, 10.0 ** (gain_db / 20.0)) * of_gearbox[of_record]
-    changed = replace(clean, values={**clean.values, "rms": clean.values["rms"] * gain[:, None]})
+    gain = np.where(twice.healthy, 1.0, 10.0 ** (gain_db / 20.0)) * of_gearbox[of_record]
+    changed = replace(twice, values={**twice.values, "rms": twice.values["rms"] * gain[:, None]})
     assert [finding.trap for finding in simple_thresholds(changed)] == expected
 
 
-def test_a_gain_on_one_channel_is_found_beside_a_small_change_that_tells_as_well() -> None:
+def test_a_gain_on_one_channel_is_found_beside_a_small_change_that_tells_as_well(twice: MeasuredSet) -> None:
     """1 dB on the channel that comes last by name tells the states too, and may be physics; 9.5 dB may not."""
-    clean = measured(Plant(points=1, repeats=2))
-    specimens, of_record = np.unique(clean.labels["specimen_id"], return_inverse=True)
+    specimens, of_record = np.unique(twice.labels["specimen_id"], return_inverse=True)
     spread = 10.0 ** np.random.default_rng(3).permutation(np.linspace(-1.0, 1.0, specimens.size))
     # every record as loud as its gearbox: nothing but the gains differs
-    rms = np.repeat(spread[of_record][:, None], len(clean.channels), axis=1)
-    first, last = (clean.channels.index(choice(clean.channels)) for choice in (min, max))
-    rms[~clean.healthy, first] *= 10.0 ** (9.5 / 20.0)
-    rms[~clean.healthy, last] *= 10.0 ** (1.0 / 20.0)
-    found = simple_thresholds(replace(clean, values={**clean.values, "rms": rms}))
+    rms = np.repeat(spread[of_record][:, None], len(twice.channels), axis=1)
+    first, last = (twice.channels.index(choice(twice.channels)) for choice in (min, max))
+    rms[~twice.healthy, first] *= 10.0 ** (9.5 / 20.0)
+    rms[~twice.healthy, last] *= 10.0 ** (1.0 / 20.0)
+    found = simple_thresholds(replace(twice, values={**twice.values, "rms": rms}))
     assert [finding.trap for finding in found] == ["slight_separable_by_rms"]
-    assert clean.channels[first] in found[0].measured
+    assert twice.channels[first] in found[0].measured
 
 
 def test_solver_settings_of_a_state_are_found(clean: MeasuredSet) -> None:

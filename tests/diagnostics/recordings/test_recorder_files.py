@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 import sys
 from collections.abc import Callable
@@ -25,6 +26,7 @@ FS_HZ, SAMPLES, NAMES = 51_200, 40_960, ("vertical", "horizontal")
 STANDARD_GRAVITY_M_S2 = 9.80665
 
 
+@functools.cache
 def signals() -> np.ndarray:
     """Return lines of 20 and 30 teeth at 25 Hz in noise, of two channels, in g, with the digits that type 58 keeps."""
     time_s, rng = np.arange(SAMPLES) / FS_HZ, np.random.default_rng(8)
@@ -79,15 +81,22 @@ WRITERS: dict[str, Callable[[Path], None]] = {
 }
 
 
-def written(folder: Path, kind: str) -> Path:
-    path = folder / f"run.{kind}"
-    WRITERS[kind](path)
-    return path
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Give the function that returns a file of a kind, written once."""
+    folder = tmp_path_factory.mktemp("sound")
+
+    @functools.cache
+    def written(kind: str) -> Path:
+        WRITERS[kind](folder / f"run.{kind}")
+        return folder / f"run.{kind}"
+
+    return written
 
 
 @pytest.mark.parametrize("kind", WRITERS)
-def test_values_rate_and_unit_come_back_from_the_file_alone(kind: str, tmp_path: Path) -> None:
-    path = written(tmp_path, kind)
+def test_values_rate_and_unit_come_back_from_the_file_alone(kind: str, sound: Callable[[str], Path]) -> None:
+    path = sound(kind)
     found = read_recording(path, NAMES, RecordingFacts())
     for name, expected in zip(NAMES, signals(), strict=True):
         np.testing.assert_array_equal(read_columns(path).values[name], expected)
@@ -101,10 +110,13 @@ def test_values_rate_and_unit_come_back_from_the_file_alone(kind: str, tmp_path:
 
 @pytest.mark.parametrize("kind", WRITERS)
 def test_the_command_ends_with_one_sentence_where_a_file_was_cut(
-    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    kind: str,
+    sound: Callable[[str], Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    path = written(tmp_path, kind)
-    content = path.read_bytes()
+    content, path = sound(kind).read_bytes(), tmp_path / f"run.{kind}"
     command = ["siggen-diagnostics", "indicators", str(path), "--teeth", "20,30", "--speed-range", "20,30"]
     monkeypatch.setattr(sys, "argv", command)
     for share in (0.0, 0.01, 0.4, 0.6, 0.99):  # at 0.5 lies the end of the first of two equal records: a whole file
@@ -118,9 +130,9 @@ def test_the_command_ends_with_one_sentence_where_a_file_was_cut(
 
 
 @pytest.mark.parametrize("kind", WRITERS)
-def test_mutated_files_give_indicators_or_a_sentence(kind: str, tmp_path: Path) -> None:
-    path, chance = written(tmp_path, kind), Random(11)
-    content = path.read_bytes()
+def test_mutated_files_give_indicators_or_a_sentence(kind: str, sound: Callable[[str], Path], tmp_path: Path) -> None:
+    path, chance = tmp_path / f"run.{kind}", Random(11)
+    content = sound(kind).read_bytes()
     outcomes = []
     for _ in range(30):
         path.write_bytes(mutated_bytes(content, chance))
