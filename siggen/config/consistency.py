@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -81,6 +82,7 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
 
 
 WITH_BEARINGS = "6dof, 8dof, casing"
+OF_BEARINGS = re.compile(r"dynamics\.(pinion|gear)\.bearing")
 AT_BEARINGS = ("rubbing", "bearings", "machines", "shafts", "belt")
 ON_BODY = ("base", "second_stage", "auxiliary_drive")
 """Parts of the background that press on bearings, and those that press on what carries them."""
@@ -210,10 +212,17 @@ def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) ->
     grade, model = dynamics.unbalance.grade_mm_s, f"a model with bearings: {WITH_BEARINGS} (dynamics.model: torsional)"
     if bounds(grade)[1] > 0.0:
         yield Problem("dynamics.unbalance.grade_mm_s", str(grade), f"allowed: 0, or {model}")
+    for which in ("pinion", "gear"):
+        if getattr(dynamics, which).bearing is not None:
+            yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null, or {model}")
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
             if one.needs_bearings:
                 yield Problem(f"{where}.kind", f"'{one.kind_word()}'", f"allowed: {model}")
+        for change in state.changes:
+            if OF_BEARINGS.match(change.path):
+                allowed = f"allowed: keys that rotations alone feel, or {model}"
+                yield Problem(f"states.{index}.changes.{change.path}", change.text, allowed)
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

@@ -20,6 +20,12 @@ CLUSTER = {
     "depth_mm": 0.2,
 }
 
+RIM = {"name": "bearing", "place": "pinion_rim", "axes": ["tangential"]}
+SOFT_BEARING = {
+    "name": "soft", "severity": "slight", "fault": "soft",
+    "changes": {"dynamics.pinion.bearing_stiffness_x_n_per_m": {"times": 0.5}},
+}  # fmt: skip
+
 # what is written, where: path of the problem, part of what was received, part of what is allowed
 MISTAKES = [
     # keys
@@ -77,6 +83,18 @@ MISTAKES = [
     ),
     ({"sensors__0__axes": ["tangential"]}, "sensors.0.axes", "tangential", "vertical, horizontal, axial at place"),
     ({"dynamics__model": "torsional"}, "sensors.0.place", "'pinion_bearing'", "one of pinion_rim, gear_rim"),
+    (
+        {"dynamics__model": "torsional", "sensors__0": RIM, "dynamics__pinion": {"bearing": {}}},
+        "dynamics.pinion.bearing",
+        "a section",
+        "a model with bearings",
+    ),
+    (
+        {"dynamics__model": "torsional", "sensors__0": RIM, "states": [{"name": "healthy"}, SOFT_BEARING]},
+        "states.1.changes.dynamics.pinion.bearing_stiffness_x_n_per_m",
+        "times 0.5",
+        "a model with bearings",
+    ),
     (
         {"dynamics__model": "8dof", "sensors__0__place": "casing", "sensors__0__position_mm": [60.0, 50.0]},
         "sensors.0.place",
