@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
+from siggen.config.planetary import NAMES
+
 if TYPE_CHECKING:
     from siggen.config import Config
 
@@ -38,8 +40,17 @@ def class_names(config: Config) -> dict[str, tuple[str, ...]]:
         "state": tuple(state.name for state in config.states),
         "fault": tuple(dict.fromkeys(state.fault for state in config.states)),
         "severity": tuple(dict.fromkeys(state.severity for state in config.states)),
-        "faulty_gear": FAULTY_GEARS,
+        "faulty_gear": _faulty_gears(config),
     }
+
+
+def _faulty_gears(config: Config) -> tuple[str, ...]:
+    """Return what `faulty_gear` may say of the gearboxes of a set."""
+    none, *gears = FAULTY_GEARS
+    if config.planetary is not None:
+        return (none, *(NAMES.get(gear, gear) for gear in gears))
+    behind = tuple(f"{stage.name}.{gear}" for stage in config.stages for gear in gears)
+    return (none, *gears, *behind, *(("several",) if behind else ()))
 
 
 def _entry(view: str, schema: pa.Schema, counts: Counts, names: Mapping[str, Sequence[str]]) -> dict[str, Any]:

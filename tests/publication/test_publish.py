@@ -11,12 +11,16 @@ import yaml
 from typer.testing import CliRunner
 
 import siggen
+from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
+from siggen.publication.dataset_info import class_names
 from siggen.publication.publication_facts import TEMPLATE, read_publication_facts
 from siggen.publication.publish import publish
 from siggen.publication.spdx_licence import _identifiers
 from siggen.sets.verification import verify
+from tests.config.planets import planets
+from tests.config.staged import staged
 from tests.publication.conftest import facts_file
 
 
@@ -168,3 +172,9 @@ def test_the_header_has_the_features_that_datasets_would_write(kept: Path, publi
         own = next(f for f in header["dataset_info"][0]["features"] if f["name"] == name)
         features[name] = datasets.ClassLabel(names=list(own["dtype"]["class_label"]["names"].values()))
     assert header["dataset_info"][0]["features"] == features._to_yaml_list()
+
+
+def test_class_labels_name_the_gears_of_every_mesh_and_of_planetary_sets() -> None:
+    named = [class_names(load_config(raw))["faulty_gear"] for raw in (staged(), planets())]
+    assert named[0] == ("none", "pinion", "gear", "both", "slow.pinion", "slow.gear", "slow.both", "several")
+    assert named[1] == ("none", "sun", "planet", "both")
