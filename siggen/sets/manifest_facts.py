@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from siggen.columns.record import channels
 from siggen.dataset.card_making import stated_tolerance
 from siggen.keys.column import Column
+from siggen.planning.plan import rows_per_group
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -25,6 +26,7 @@ def manifest_facts(config: Config, quantities: Sequence[Column]) -> dict[str, An
         "specimens": config.specimens,
         "fs_hz": float(config.fs_hz),
         "duration_s": float(config.duration_s),
+        "rows_per_group": rows_per_group(config),
         "channels": [asdict(channel) for channel in channels(config)],
         **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
     }
