@@ -33,8 +33,8 @@ This page is printed by `make reference` from `siggen schema` and the files in `
   replaced. The set's own `config.yaml` holds the result.
 * The default stands last, in brackets. A key without brackets is required wherever its section stands.
 * **expert**: no shipped configuration sets the key.
-* A line is one thing to learn. A key of one meaning in several places, or with the unit of each kind, has one line; what
-  differs between them is divided by a slash. A section that holds nothing but its keys has none.
+* A key of one meaning in several places, or with the unit of each kind of sensor, has one line and is counted once; what
+  differs between them is divided by a slash. Sections are not counted, and one that holds nothing but its keys has no line.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
   `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
@@ -221,6 +221,10 @@ class Entry:
             found.setdefault(text.lower(), text)
         return " / ".join(found.values())
 
+    def is_section(self, schema: Schema) -> bool:
+        """Whether it is a section, or a list of some: keys that hold values stand in it."""
+        return any(True for _ in schema.sections(self.keys[0].schema))
+
     def is_plain(self, schema: Schema) -> bool:
         """Whether it is a section that holds nothing but its keys."""
         return self.values(schema) == "section" and set(self.defaults) <= {"", SECTION_DEFAULT}
@@ -293,7 +297,8 @@ def listing_of(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]
 def page() -> str:
     """Return the page."""
     schema = Schema(json.loads(CliRunner().invoke(app, ["schema"], catch_exceptions=False).output))
-    keys = without_repeated(schema, list(schema.keys(schema.content)))
+    keys_everywhere = list(schema.keys(schema.content))
+    keys = without_repeated(schema, keys_everywhere)
     users: dict[str, list[str]] = {key.path: [] for key in keys}
     for path in sorted(CONFIGS.glob("*.yaml")):
         for key in Shipped(path).set_keys(schema) & set(users):
@@ -301,8 +306,9 @@ def page() -> str:
     tops = [(key, entries(schema, keys, key.path)) for key in keys if key.path in schema.content["properties"]]
     plain = [Entry((key,), "") for key, _ in tops]
     every = [*plain, *(entry for _, tables in tops for rows in tables for entry in rows)]
-    count = sum(not entry.is_plain(schema) or entry.keys[0].path in REPEATED for entry in every)
-    lines = [HEAD, f"There are {count} keys to learn.", ""]
+    count = sum(not entry.is_section(schema) for entry in every)
+    places = sum(not Entry((key,), "").is_section(schema) for key in keys_everywhere)
+    lines = [HEAD, f"There are {count} keys in {places} places.", ""]
     alone = [Entry((key,), "") for key, tables in tops if not tables]
     lines += ["## Top level", "", *listing_of(schema, alone, users)]
     for top, tables in tops:
