@@ -22,12 +22,14 @@ class Inverter(Source):
     about: ClassVar[str] = ""
     meaning: ClassVar[str] = "RMS of the inverter's lines at"
 
-    carrier_hz: Annotated[Number, Within(above=0)] = Field(description="switching frequency, drawn per gearbox")
+    carrier_hz: Annotated[Number, Within(above=0)] = Field(
+        description="switching frequency, drawn per gearbox; its k-th sidebands have 1/(1 + k) of the amplitude"
+    )
     modulation_hz: Annotated[Number, Within(above=0)] = Field(
         default=50.0, description="electrical frequency of the motor, drawn per record"
     )
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="of the carrier, drawn per record and axis; the k-th sidebands have 1/(1 + k) of it"
+        description="amplitude of a line, drawn per record and axis"
     )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> Part:

@@ -33,7 +33,9 @@ POSITION = AllowedText(
 class NoiseFloor(Section):
     """White noise of a given size; a distribution is drawn for every record and axis."""
 
-    floor_m_s2: Annotated[Number, Within(least=0)] = Field(description="standard deviation of the noise")
+    floor_m_s2: Annotated[Number, Within(least=0)] = Field(
+        description="standard deviation of the white noise, drawn per record and axis"
+    )
 
 
 class Accelerometer(SourceKeys, Sensor):
@@ -61,7 +63,7 @@ class Accelerometer(SourceKeys, Sensor):
         "horizontal and axial, wall: horizontal and vertical, ends: vertical and axial; null: up to 15 mm, drawn",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential", "axial"], ...], Field(min_length=1)] = Field(
-        default=("vertical",), description="directions it measures, one channel each"
+        default=("vertical",), description="what it measures, one channel each"
     )
     noise: Annotated[NoiseFloor | None, AllowedText("null, or a mapping with floor_m_s2")] = Field(
         default=None, description="added before clipping and quantisation"

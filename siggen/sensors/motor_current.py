@@ -38,7 +38,7 @@ class MotorCurrent(Sensor):
     kind: Literal["motor_current"] = Field(description="current of a phase of the induction motor that drives")
     place: Literal["motor"] = Field(default="motor", description="the motor; not with dynamics.model: 6dof")
     axes: Annotated[tuple[Literal["phase_a", "phase_b", "phase_c"], ...], Field(min_length=1)] = Field(
-        default=("phase_a",), description="phases, one channel each"
+        default=("phase_a",), description="what it measures, one channel each"
     )
     pole_pairs: Annotated[Whole, Field(ge=1, le=50)] = Field(default=2, description="of the motor")
     rated_torque_nm: Annotated[Number, Within(above=0)] = Field(description="torque at the rated slip")
@@ -55,7 +55,7 @@ class MotorCurrent(Sensor):
         default=5.0, description="amplitude of the magnetising current, whatever the load"
     )
     floor_a: Annotated[Number, Within(least=0)] = Field(
-        default=0.0, description="standard deviation of its white noise, drawn for every record and phase"
+        default=0.0, description="standard deviation of the white noise, drawn per record and axis"
     )
     range_a: Annotated[Real, Field(gt=0)] = Field(
         default=100.0, description="readings are clipped at plus and minus this"
