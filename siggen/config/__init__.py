@@ -15,7 +15,7 @@ from siggen.config.config import BLOCK, Config, OperatingRange, Splits
 from siggen.config.dynamics import Coupling, Dynamics, PlainRotor, Rotor, by_reference
 from siggen.config.external_forces import Unbalance
 from siggen.config.gears import Gears, Pair, Wheel
-from siggen.config.housing import Bolts, Feet, Housing, ModalHousing, PlateHousing, RigidHousing
+from siggen.config.housing import Bolts, Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
@@ -44,7 +44,6 @@ __all__ = [
     "Config",
     "Coupling",
     "Dynamics",
-    "Feet",
     "ForeignMesh",
     "Friction",
     "Gears",

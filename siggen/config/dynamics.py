@@ -13,6 +13,10 @@ from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
 
+BEARINGS = "both bearings of the shaft, horizontal (x) and vertical (y)"
+DAMPED = "the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+MACHINE = "of the machine that drives, or is driven"
+
 
 class PlainRotor(Section):
     """Mass of a gear and the bearings of its shaft (x along the centre line, y vertical)."""
@@ -23,18 +27,10 @@ class PlainRotor(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=2e8, description="both bearings of the shaft, horizontal"
-    )
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=2e8, description="both bearings of the shaft, vertical"
-    )
-    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
-        default=1000.0, description="horizontal; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
-    )
-    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
-        default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
-    )
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
+    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
+    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
 
 
 class Rotor(PlainRotor):
@@ -87,8 +83,8 @@ class Dynamics(Section):
     backlash_um: Annotated[Number, Within(least=0)] = Field(
         default=80.0, description="total play along the line of action"
     )
-    motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=4e-3, description="of the driving machine")
-    load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=1e-2, description="of the driven machine")
+    motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=4e-3, description=MACHINE)
+    load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=1e-2, description=MACHINE)
     pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")
     gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
     input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")

@@ -10,6 +10,11 @@ from siggen.config.oil import Oil
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
+DAMPING_PARTS = (
+    "parts of the mesh damping ratio with damping: asperity_share: always there, in a full oil film, where asperities "
+    "carry all"
+)
+
 
 class Mesh(Section):
     """The law of the mesh force; everything but `law` is used by the law pairs alone."""
@@ -39,13 +44,11 @@ class Mesh(Section):
         "asperity share La of friction.model: mixed_ehl",
     )
     structure_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.04, description="part of the mesh damping ratio that is always there (damping: asperity_share)"
+        default=0.04, description=DAMPING_PARTS
     )
-    film_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.02, description="part of the mesh damping ratio in a full oil film (damping: asperity_share)"
-    )
+    film_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.02, description=DAMPING_PARTS)
     asperity_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.05, description="part of the mesh damping ratio where asperities carry all (damping: asperity_share)"
+        default=0.05, description=DAMPING_PARTS
     )
 
 

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, at
 from siggen.keys.section import Section
 from siggen.noise.density import Density
@@ -23,19 +24,18 @@ from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 SPECTRUM_TAPS = 16_384
 """Of the filter of a sensor's noise: at 25.6 kHz densities are smoothed over 1.6 Hz."""
 
+LEVEL_TIME_MS = Uniform(low=1.0, high=8.0)
+"""Correlation time of the random level (measured: the level changes within 10 ms)."""
+DEPTHS = "of the power, once per turn of that shaft; 1/√2 and 1/√3 of it twice and three times"
+
 
 class NoiseModulation(Section):
     """Strength over time M = G exp(s U - s²/2) of noise: by the turning shafts, and by chance; of mean 1."""
 
-    pinion_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(
-        default=0.0, description="of the power, once per turn of the pinion; 1/√2 and 1/√3 of it twice and three times"
-    )
-    gear_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description="the same of the gear")
+    pinion_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
+    gear_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
     level_std: Annotated[Number, Within(least=0, most=2)] = Field(
         default=0.0, description="s of the random level; kurtosis of the noise 3 exp(s²)"
-    )
-    level_time_ms: Annotated[Number, Within(least=0.1, most=1000)] = Field(
-        default=3.0, description="correlation time of the level"
     )
 
 
@@ -88,13 +88,14 @@ class NoiseStrength:
         rng = draws.record("noise_spectrum.modulation")
         numbers = {
             name: at(getattr(section, name), draws.level(f"noise_spectrum.modulation.{name}", rng))
-            for name in ("pinion_depth", "gear_depth", "level_std", "level_time_ms")
+            for name in ("pinion_depth", "gear_depth", "level_std")
         }
+        time_ms = at(LEVEL_TIME_MS, draws.level("noise_spectrum.modulation.level_time_ms", rng))
         self._phasors = []
         for shaft, order in (("pinion", 1.0), ("gear", gear_order)):
             uniforms = [draws.specimen(f"noise_spectrum.modulation.{shaft}.{k}") for k in range(SHAFT_LINES)]
             self._phasors.append((order, shaft_phasors(numbers[f"{shaft}_depth"], 2.0 * pi * np.array(uniforms))))
-        self._level = LevelCourse(numbers["level_std"], 1e-3 * numbers["level_time_ms"] * fs_hz, rng)
+        self._level = LevelCourse(numbers["level_std"], 1e-3 * time_ms * fs_hz, rng)
 
     def take(self, angle_rad: FloatArray) -> FloatArray:
         """Return M (k,) at the next samples, whose pinion angles (k,) are given."""
