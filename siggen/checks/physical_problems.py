@@ -6,7 +6,7 @@ Everything is checked at the bounds of the distributions, so that no specimen ca
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,17 +17,17 @@ from siggen.checks.bearing_problems import bearing_problems
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.pair_problems import pair_problems
-from siggen.checks.ring_problems import ring_problems
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.stage_layout_problems import stage_layout_problems
 from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
-from siggen.config import Dynamics, Gears, ParsedConfig, Stiffness
+from siggen.config import Dynamics, Gears, ParsedConfig, Planetary, Stiffness
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import allowed_text, found_problems, in_mm
 from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
+from siggen.gears.geometry.internal_pair import internal_problems, ring_round
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
@@ -36,6 +36,25 @@ from siggen.planning.drawn_parts import possible_states
 from siggen.planning.stages import first_sections, stage_of, stage_sections
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.gears import gear_pair, stiffness_options
+
+
+def ring_problems(section: Planetary | None, pairs: Sequence[GearPair]) -> Iterator[Problem]:
+    """Yield why planets of sound pairs of sun and planet do not mesh with the ring, each reason once."""
+    if section is None:
+        return
+    for text in dict.fromkeys(text for pair in pairs for text in _texts(pair, section.ring_teeth)):
+        yield Problem("planetary.ring_teeth", f"{section.ring_teeth}: {text[0]}", text[1])
+
+
+def _texts(pair: GearPair, ring: int) -> Iterator[tuple[str, str]]:
+    try:
+        inner = ring_round(pair, ring)
+    except ValueError:
+        yield "no ring meshes with planets at this distance", "allowed: a ring nearer to z_sun + 2 z_planet"
+        return
+    for one in internal_problems(inner):
+        yield f"{one.name}, {one.where}: {one.received}", one.allowed
+
 
 KEYS = {
     "teeth": "teeth",

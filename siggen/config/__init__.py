@@ -12,8 +12,7 @@ from siggen.config.background import (
     ShaftLines,
 )
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
-from siggen.config.dynamics import Coupling, Dynamics, PlainRotor, Rotor, by_reference
-from siggen.config.external_forces import Unbalance
+from siggen.config.dynamics import Coupling, Dynamics, PlainRotor, Rotor, Shaft, Shafts, Unbalance, by_reference
 from siggen.config.gears import Gears, Pair, Wheel
 from siggen.config.housing import Bolts, Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
@@ -25,7 +24,6 @@ from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.planetary import Planetary
 from siggen.config.presets import config_file
-from siggen.config.shafts import Shaft, Shafts
 from siggen.config.stages import Stage
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness

@@ -6,12 +6,39 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.external_forces import Unbalance
 from siggen.config.mesh import Friction, Mesh
-from siggen.config.shafts import Shafts
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
+
+
+class Shaft(Section):
+    """A round steel shaft of one diameter on two bearings, with its gear between them."""
+
+    bearing_span_mm: Annotated[Number, Within(above=0, most=2000)] = Field(
+        default=100.0, description="distance of the bearings"
+    )
+    gear_position: Annotated[Number, Within(above=0, below=1)] = Field(
+        default=0.5, description="middle of the gear from one bearing, as a share of the span"
+    )
+    diameter_mm: Annotated[Number, Within(least=5)] = Field(default=25.0, description="of the shaft")
+
+
+class Shafts(Section):
+    """Shafts of both gears; bearing stiffnesses of `dynamics.pinion` and `dynamics.gear` are those of both bearings."""
+
+    pinion: Shaft = Field(default=Shaft(), description="shaft of the pinion")
+    gear: Shaft = Field(default=Shaft(), description="shaft of the gear")
+
+
+class Unbalance(Section):
+    """Residual unbalance of both shafts by balance quality grade; its phase is drawn per specimen."""
+
+    grade_mm_s: Annotated[Number, Within(least=0, most=100)] = Field(
+        default=0.0,
+        description="eccentricity times speed at 50 Hz of the pinion shaft; 2.5 and 6.3 are the grades G2.5 and G6.3",
+    )
+
 
 BEARINGS = "both bearings of the shaft, horizontal (x) and vertical (y)"
 DAMPED = "the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"

@@ -7,19 +7,44 @@ from math import pi
 from typing import Annotated, ClassVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.errors import Problem
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, at
-from siggen.keys.section import Section
-from siggen.noise.density import Density
+from siggen.keys.problems import refusal
+from siggen.keys.section import Real, Section
 from siggen.noise.source import Draws, MeasuredPart, NoisyChannel, Part, Source
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
 from siggen.sensing.sensor_response import high_pass_response
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
+
+
+class Density(Section):
+    """A one-sided density over frequency, straight between its knots in log-log, constant beyond them.
+
+    In a file `file: NAME.csv` stands for both lists: its columns are frequency_hz and density. Its numbers become part
+    of the configuration when it is loaded, so that the set needs no file.
+    """
+
+    frequency_hz: Annotated[tuple[Real, ...], Field(min_length=2)] = Field(description="knots, ascending, above 0")
+    density: Annotated[tuple[Real, ...], Field(min_length=2)] = Field(description="one above 0 for each knot")
+
+    @model_validator(mode="after")
+    def _knots(self) -> Density:
+        if len(self.frequency_hz) != len(self.density):
+            received = f"{len(self.frequency_hz)} frequencies, {len(self.density)} densities"
+            raise refusal([Problem("density", received, "allowed: as many as frequencies")])
+        rising = all(a < b for a, b in zip(self.frequency_hz, self.frequency_hz[1:], strict=False))
+        if not rising or self.frequency_hz[0] <= 0.0:
+            raise refusal([Problem("frequency_hz", str(list(self.frequency_hz)), "allowed: ascending, above 0")])
+        if min(self.density) <= 0.0:
+            raise refusal([Problem("density", f"{min(self.density):g}", "allowed: numbers above 0")])
+        return self
+
 
 SPECTRUM_TAPS = 16_384
 """Of the filter of a sensor's noise: at 25.6 kHz densities are smoothed over 1.6 Hz."""
