@@ -3,39 +3,11 @@
 from __future__ import annotations
 
 import io
-import re
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.ticker import LogFormatterMathtext, LogFormatterSciNotation
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-class PowerLabels(LogFormatterSciNotation):
-    """Powers of ten with raised digits, at the places where matplotlib would write a formula."""
-
-    def __call__(self, x: float, pos: int | None = None) -> str:
-        """Return the label of one tick: 10⁻², 2×10³, or nothing."""
-        formula = super().__call__(x, pos)
-        text = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(RAISED), formula)
-        return re.sub(r"\\mathdefault|[${}]", "", text.replace(r"\times", "×"))
-
-
-def write_powers(figure: Figure) -> None:
-    """Replace the formulas that logarithmic axes are labelled with by default; labels of one's own stay."""
-    for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            if isinstance(axis.get_major_formatter(), LogFormatterMathtext):
-                axis.set_major_formatter(PowerLabels())
-            if isinstance(axis.get_minor_formatter(), LogFormatterMathtext):
-                axis.set_minor_formatter(PowerLabels(labelOnlyBase=False))
-
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -105,7 +77,7 @@ def png_bytes(figure: Figure) -> bytes:
     """Return the figure as PNG with a palette of its own colours."""
     from PIL import Image
 
-    from diagnostics.page.style import write_powers
+    from diagnostics.page.power_labels import write_powers
 
     write_powers(figure)
     drawn, stream = io.BytesIO(), io.BytesIO()

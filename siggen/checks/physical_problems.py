@@ -17,44 +17,25 @@ from siggen.checks.bearing_problems import bearing_problems
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.pair_problems import pair_problems
+from siggen.checks.ring_problems import ring_problems, rings_round
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.stage_layout_problems import stage_layout_problems
 from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
-from siggen.config import Dynamics, Gears, ParsedConfig, Planetary, Stiffness
+from siggen.config import Dynamics, Gears, ParsedConfig, Stiffness
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import allowed_text, found_problems, in_mm
 from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
-from siggen.gears.geometry.internal_pair import internal_problems, ring_round
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
-from siggen.planning.stages import first_sections, stage_of, stage_sections
+from siggen.planning.stages import first_sections, ring_sections, stage_of, stage_sections
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.gears import gear_pair, stiffness_options
-
-
-def ring_problems(section: Planetary | None, pairs: Sequence[GearPair]) -> Iterator[Problem]:
-    """Yield why planets of sound pairs of sun and planet do not mesh with the ring, each reason once."""
-    if section is None:
-        return
-    for text in dict.fromkeys(text for pair in pairs for text in _texts(pair, section.ring_teeth)):
-        yield Problem("planetary.ring_teeth", f"{section.ring_teeth}: {text[0]}", text[1])
-
-
-def _texts(pair: GearPair, ring: int) -> Iterator[tuple[str, str]]:
-    try:
-        inner = ring_round(pair, ring)
-    except ValueError:
-        yield "no ring meshes with planets at this distance", "allowed: a ring nearer to z_sun + 2 z_planet"
-        return
-    for one in internal_problems(inner):
-        yield f"{one.name}, {one.where}: {one.received}", one.allowed
-
 
 KEYS = {
     "teeth": "teeth",
@@ -78,7 +59,8 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     if gears.pairs:
         return pair_problems(parsed.sections, _problems)
     behind = (_located_in(path, one) for path, own in stage_sections(parsed.sections) for one in _problems(own))
-    return (*_problems(first_sections(parsed.sections)), *behind, *stage_layout_problems(parsed.sections))
+    ring = _of_ring(parsed.sections)
+    return (*_problems(first_sections(parsed.sections)), *ring, *behind, *stage_layout_problems(parsed.sections))
 
 
 def _has_stages(sections: Mapping[str, Any]) -> bool:
@@ -106,7 +88,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
         for path, damage in state.placed(f"states.{index}"):
             problems += _state_problems(flanks, damage, path, through_face=through_face)
     if sections.get("manufacture") is not None:
-        problems += _tolerance_problems(sound)
+        problems += _outside_tolerances(sound, ("pinion", "gear"))
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)
     problems += bearing_problems(sections)
     problems += variation_problems(sections, sound)
@@ -118,11 +100,29 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 
-def _tolerance_problems(pairs: list[GearPair]) -> Iterator[Problem]:
+def _of_ring(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield what is wrong with the ring of a planetary set: damage off its flanks, each path once, and tolerances."""
+    section, gears = sections.get("planetary"), sections["gears"]
+    if section is None:
+        return
+    sound = [one for one in map(gear_pair, corners(_without_material(gears))) if not geometry_problems(one)]
+    rings = rings_round(section, sound)
+    if sections.get("manufacture") is not None:
+        yield from _outside_tolerances(rings, ("gear",), "ring")
+    found = [
+        problem
+        for state, one in ring_sections(sections)["states"].items()
+        for path, damage in one.placed(f"states.{state}")
+        for problem in _state_problems(rings, damage, path, through_face=True)
+    ]
+    yield from {problem.path: problem for problem in reversed(found)}.values()
+
+
+def _outside_tolerances(pairs: Sequence[GearPair], members: Sequence[str], name: str = "") -> Iterator[Problem]:
     for pair in pairs:
-        for which in ("pinion", "gear"):
+        for which in members:
             for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which):
-                received = f"tolerances for a {which} with {problem.name} {problem.received}"
+                received = f"tolerances for a {name or which} with {problem.name} {problem.received}"
                 yield Problem("manufacture", received, f"{problem.allowed}; or null")
 
 
@@ -167,7 +167,7 @@ def _located(problem: GeometryProblem) -> Problem:
     return Problem(f"{section}.{key}" if key else section, received, allowed_text(problem.allowed))
 
 
-def _state_problems(pairs: list[GearPair], damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:
+def _state_problems(pairs: Sequence[GearPair], damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:
     """Yield what is wrong with the damage of a state; with `through_face` it may take the whole contact length."""
     for pair in pairs:
         misplaced = [replace(problem, path=f"{path}.{problem.path}") for problem in damage.place_problems(pair)]

@@ -10,6 +10,7 @@ from siggen.config.oil import Oil
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
+ROUGHNESS = "rms roughness of either flank, and of its lands inside damage (mixed_ehl)"
 DAMPING_PARTS = (
     "parts of the mesh damping ratio with damping: asperity_share: always there, in a full oil film, where asperities "
     "carry all"
@@ -67,10 +68,8 @@ class Friction(Section):
     oil_temperature_c: Annotated[Number, Within(least=-20, most=150)] = Field(
         default=50.0, description="at the inlet of the contact"
     )
-    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
-        default=0.4, description="rms roughness of either flank (mixed_ehl)"
-    )
+    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(default=0.4, description=ROUGHNESS)
     pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=2.0,
-        description="rms roughness of a flank's lands inside damage (mixed_ehl)",
+        description=ROUGHNESS,
     )

@@ -12,6 +12,8 @@ from siggen.keys.wording import AllowedText
 
 ROLES = {"sun": "pinion", "planet": "gear"}
 """Name of a gear in a planetary set -> what it is in the pair of `gears`."""
+RING = "ring"
+"""The gear that is in no mesh of the pair of `gears`."""
 NAMES = {role: name for name, role in ROLES.items()}
 POSITIONS = AllowedText("a list of 3 to 5 angles in degrees, 0 first, ascending, below 360")
 
@@ -42,6 +44,12 @@ class Planetary(Section):
     planet_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=SUPPORTS)
     ring_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=5e8, description=SUPPORTS)
     carrier_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=SUPPORTS)
+    ring_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="null: steel, four modules thick behind the roots (assumed)"
+    )
+    damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
+        default=0.03, description="of each body on its support alone"
+    )
 
 
 def pitches_per_turn(sun: int, ring: int) -> float:
@@ -50,5 +58,5 @@ def pitches_per_turn(sun: int, ring: int) -> float:
 
 
 def in_pair(name: str) -> str:
-    """Return what a gear of a planetary set is in the pair of `gears`; any other name stays."""
-    return ROLES.get(name, name)
+    """Return what a gear of a planetary set is in its own pair, a ring behind a planet; any other name stays."""
+    return {**ROLES, RING: "gear"}.get(name, name)

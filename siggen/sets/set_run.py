@@ -25,7 +25,7 @@ from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
 from siggen.keys.column import Column
-from siggen.planning.plan import ShardPlan, shards
+from siggen.planning.plan import ShardPlan, rows_per_group, shards
 from siggen.sets import physics as contents
 from siggen.sets.earlier_shards import Again, EarlierShards
 from siggen.sets.interruption import Interruption
@@ -49,13 +49,11 @@ def manifest_facts(config: Config, quantities: Sequence[Column]) -> dict[str, An
         "specimens": config.specimens,
         "fs_hz": float(config.fs_hz),
         "duration_s": float(config.duration_s),
+        "rows_per_group": rows_per_group(config),
         "channels": [asdict(channel) for channel in channels(config)],
         **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
     }
 
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 Progress = Callable[[int, int], None]
 """(records done, records of the set); called after every chunk."""

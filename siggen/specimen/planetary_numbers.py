@@ -27,8 +27,6 @@ from siggen.seeding import Stage, named_generator
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.rotors import rotor_numbers
 
-DAMPING_RATIO = 0.03
-"""Of each body on its support alone (assumed, as of shafts in bearings)."""
 RIM_MODULES = 4.0
 """Thickness of a ring behind its roots (assumed)."""
 
@@ -72,15 +70,18 @@ def planetary_numbers(specimen: Specimen) -> PlanetaryStage:
     assert section is not None
     pair, inner = planets_in_ring(specimen)
     sun, planet = (rotor_numbers(PlainRotor(), gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
-    ring = _ring(section, inner)
+    damping = constant(section.damping_ratio)
+    ring = _ring(section, inner, damping)
     return PlanetaryStage(
         sun_angle_rad=pair.working_pressure_angle_rad,
         ring_angle_rad=inner.working_pressure_angle_rad,
         centre_distance_m=pair.working_centre_distance_m,
-        sun=_body(sun.base_radius_m, (sun.mass_kg, sun.inertia_kg_m2), section.sun_stiffness_n_per_m),
-        planet=_body(planet.base_radius_m, (planet.mass_kg, planet.inertia_kg_m2), section.planet_stiffness_n_per_m),
+        sun=_body(sun.base_radius_m, (sun.mass_kg, sun.inertia_kg_m2), section.sun_stiffness_n_per_m, damping),
+        planet=_body(
+            planet.base_radius_m, (planet.mass_kg, planet.inertia_kg_m2), section.planet_stiffness_n_per_m, damping
+        ),
         ring=ring,
-        carrier=_carrier(section, pair),
+        carrier=_carrier(section, pair, damping),
         places_turns=tuple(float(place) for place in planetary_teeth(specimen).places),
         motor_inertia_kg_m2=constant(dynamics.motor_inertia_kg_m2),
         load_inertia_kg_m2=constant(dynamics.load_inertia_kg_m2),
@@ -89,27 +90,26 @@ def planetary_numbers(specimen: Specimen) -> PlanetaryStage:
     )
 
 
-def _body(radius_m: float, inertias: tuple[float, float], stiffness: Number) -> PlanetaryBody:
+def _body(radius_m: float, inertias: tuple[float, float], stiffness: Number, ratio: float) -> PlanetaryBody:
     (mass, inertia), stiffness_n_per_m = inertias, constant(stiffness)
-    return PlanetaryBody(
-        radius_m, mass, inertia, stiffness_n_per_m, 2.0 * DAMPING_RATIO * sqrt(stiffness_n_per_m * mass)
-    )
+    return PlanetaryBody(radius_m, mass, inertia, stiffness_n_per_m, 2.0 * ratio * sqrt(stiffness_n_per_m * mass))
 
 
-def _ring(section: Planetary, inner: InternalPair) -> PlanetaryBody:
-    ring = inner.ring
+def _ring(section: Planetary, inner: InternalPair, ratio: float) -> PlanetaryBody:
+    ring = inner.gear
     root, outer = ring.root_radius_m, ring.root_radius_m + RIM_MODULES * ring.module_m
-    mass = STEEL_DENSITY_KG_M3 * pi * (outer**2 - root**2) * inner.face_width_m
+    steel_kg = STEEL_DENSITY_KG_M3 * pi * (outer**2 - root**2) * inner.face_width_m
+    mass = steel_kg if section.ring_mass_kg is None else constant(section.ring_mass_kg)
     held = constant(section.ring_stiffness_n_per_m)
-    damping = 2.0 * DAMPING_RATIO * sqrt(held * mass)
+    damping = 2.0 * ratio * sqrt(held * mass)
     inertia = 0.5 * mass * (outer**2 + root**2)
     return PlanetaryBody(ring.base_radius_m, mass, inertia, held, damping, held * outer**2, damping * outer**2)
 
 
-def _carrier(section: Planetary, pair: GearPair) -> PlanetaryBody:
+def _carrier(section: Planetary, pair: GearPair, ratio: float) -> PlanetaryBody:
     radius = pair.working_centre_distance_m
     mass = STEEL_DENSITY_KG_M3 * pi * radius**2 * pair.face_width_m
-    return _body(radius, (mass, 0.5 * mass * radius**2), section.carrier_stiffness_n_per_m)
+    return _body(radius, (mass, 0.5 * mass * radius**2), section.carrier_stiffness_n_per_m, ratio)
 
 
 def _coupling(section: CouplingSection) -> Coupling:
