@@ -41,7 +41,6 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     """
     # compile nothing, but load the physics
     from siggen.checks.density_files import with_density_files
-    from siggen.checks.loading import emptied_pairs
     from siggen.checks.mode_files import mode_problems, with_mode_file
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.quantity_names import quantity_problems
