@@ -46,7 +46,7 @@ def written(folder: Path, **changes: Any) -> str:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("stages")
     file = written(folder, specimens=1, fs_hz=12_800.0, duration_s=0.1, sensors=SENSORS)
-    done = run("generate", file, "--out", str(folder / "set"))
+    done = run("generate", file, "--out", str(folder / "set"), "--engine", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder / "set"
 
@@ -168,7 +168,7 @@ def test_modes_are_those_of_all_shafts(tmp_path: Path) -> None:
 
 def test_the_preset_of_two_stages_is_generated_and_verified(tmp_path: Path) -> None:
     little = ("--set", "specimens=1", "--set", "duration_s=0.1")
-    done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"))
+    done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"), "--engine", "serial")
     assert done.returncode == 0, done.stderr
     states = {row["state"]: row["faulty_gear"] for row in rows(tmp_path / "set", "metadata")}
     expected = {"slight": "slow.pinion", "severe": "slow.pinion", "fast_severe": "pinion"}

@@ -62,7 +62,8 @@ class Given:
 
     def _generate(self, name: str, out: Path, more: Sequence[str]) -> None:
         config, *changes = [*SMALLER[name], *more]
-        command = ["siggen", "generate", str(Path(__file__).parents[2] / config), "--out", str(out), "--workers", "1"]
+        file = str(Path(__file__).parents[2] / config)
+        command = ["siggen", "generate", file, "--out", str(out), "--engine", "serial"]
         command += [word for change in changes for word in ("--set", change)]
         subprocess.run([*command, *SPLITS], check=True, env=dict(self._environment), capture_output=True)
 
