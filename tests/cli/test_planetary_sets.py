@@ -120,7 +120,6 @@ def test_every_mesh_carries_its_share_of_the_torque_in_the_mean(made: Path, tmp_
     [
         ("siggen.cli.app", "export-model", "{set}/config.yaml", "--record", "0", "--out", "{set}/../m.npz"),
         ("siggen.cli.app", "inspect", "pressure", "{set}/config.yaml", "--record", "1", "--out", "{set}/../p.csv"),
-        ("diagnostics.cli.app", "indicators", "{set}"),
     ],
 )
 def test_what_knows_no_carrier_says_so(made: Path, command: tuple[str, ...]) -> None:
