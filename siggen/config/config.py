@@ -70,7 +70,6 @@ class OperatingRange(Section):
     )
 
 
-STATES = AllowedText("a list of at least one mapping with a name; or the section life instead")
 OPERATING_POINTS = AllowedText("a list of at least one mapping with speed_hz and torque_nm")
 
 
@@ -105,9 +104,7 @@ class Config(Section):
     operating_points: Annotated[tuple[OperatingRange, ...], Field(min_length=1), OPERATING_POINTS] = Field(
         description="speeds and torques; ranges are drawn for each entry"
     )
-    states: Annotated[tuple[State, ...], Field(min_length=1), STATES] = Field(
-        default=(), description="conditions of health"
-    )
+    states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(default=(), description="conditions of health")
     life: Life | None = Field(
         default=None, description="null: `states`; given: gearboxes run until teeth fail, and `states` has no entry"
     )

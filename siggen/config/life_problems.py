@@ -9,17 +9,11 @@ from siggen.config.life import Life
 from siggen.errors import Problem
 from siggen.keys.number import bounds, number_text
 
-STATES = "allowed: a list of at least one state, or a section life"
-
 
 def life_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield neither or both of `states` and `life`, and what a life cannot be beside."""
-    if "life" not in sections:
-        return
-    life: Life | None = sections["life"]
+    """Yield states beside a life, and what else it cannot be beside."""
+    life: Life | None = sections.get("life")
     if life is None:
-        if "states" not in raw:
-            yield Problem("states", "nothing", STATES)
         return
     if raw.get("states"):
         yield Problem("states", "states beside a section life", "allowed: one of both; with life states: []")

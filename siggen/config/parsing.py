@@ -76,7 +76,7 @@ def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     if isinstance(value := raw.get(name), (list, tuple)) and len(value) > MOST_ENTRIES:
         return None, [Problem(name, f"a list of {len(value)}", f"allowed: at most {MOST_ENTRIES} entries")]
     if name not in raw:
-        if field.is_required():
+        if field.is_required() or (name == "states" and not raw.get("life")):
             return None, [missing_key(name, field)]
         return field.get_default(call_default_factory=True), []
     return _validated(_adapter(name), raw[name], (name,))

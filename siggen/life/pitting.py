@@ -128,7 +128,7 @@ class PittingCourse:
             for pits, outlines, sizes in self._sized(time)
             for pit, edges, size in zip(pits, outlines, sizes, strict=True)
         )
-        return ListedPits(height_reading="arc", irregular=listed) if listed else None
+        return ListedPits(height_reading="arc", outlines=listed) if listed else None
 
     def _flank(self, gear: str) -> Flank:
         return self.wearing.flanks[("pinion", "gear").index(gear)]
@@ -257,5 +257,5 @@ def _listed(pit: Pit, edges: Edges, size_m: float) -> ListedIrregular:
 
 
 _ANY = ListedIrregular(edges_mm=((0.0, 1.0, 1.0), (1.0, 1.0, 1.0)), depth_mm=0.1, edge_radius_mm=0.1)
-EXAMPLE = ListedPits(irregular=(_ANY,))
+EXAMPLE = ListedPits(outlines=(_ANY,))
 """The kind of damage that a state with pits has, for whoever asks what a set's damage is."""

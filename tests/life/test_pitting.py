@@ -135,8 +135,8 @@ def test_a_later_outline_holds_an_earlier_one_at_any_two_ages() -> None:
             older, newer = one.damage(early), one.damage(late)
             assert older is not None
             assert newer is not None
-            grown_now = {(spall.gear, spall.tooth, spall.edge_radius_mm): spall for spall in newer.irregular}
-            for spall in older.irregular:
+            grown_now = {(spall.gear, spall.tooth, spall.edge_radius_mm): spall for spall in newer.outlines}
+            for spall in older.outlines:
                 later = grown_now[spall.gear, spall.tooth, spall.edge_radius_mm]
                 face, low, high = np.array(later.edges_mm).T
                 at, lower, upper = np.array(spall.edges_mm).T
