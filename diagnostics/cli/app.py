@@ -6,10 +6,8 @@ import os
 import sys
 from collections.abc import Callable
 from importlib.metadata import version
-from typing import Any
 
 import typer
-from typer.core import TyperGroup
 
 from diagnostics.cli.audit import audit
 from diagnostics.cli.baseline import baseline
@@ -19,32 +17,14 @@ from diagnostics.cli.explore import explore
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
+from diagnostics.cli.score import score
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
 
 PROGRAM = "siggen-diagnostics"
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
-MOVED = {
-    "score": "report SET --predictions FILE",
-    "train": "report SET --models-only",
-    "features": "indicators SET --out FILE.parquet",
-}
-"""Commands of earlier states, and what does their work."""
-
-
-class Commands(TyperGroup):
-    """The commands; the name of an earlier one is answered with what does its work."""
-
-    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return the command that the arguments begin with."""
-        if args and args[0] in MOVED:
-            now = MOVED[args[0]]
-            ctx.fail(f"No such command '{args[0]}'; use: {PROGRAM} {now} (see {PROGRAM} {now.split()[0]} -h).")
-        return super().resolve_command(ctx, args)
-
 
 app = typer.Typer(
     name=PROGRAM,
-    cls=Commands,
     help="Judge vibration sets that siggen wrote, classifiers of them, and recordings of a machine.",
     epilog="Begin with: siggen-diagnostics report data/quickstart",
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -53,7 +33,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 COMMANDS: dict[str, tuple[Callable[..., None], ...]] = {
-    "A set, in the order of work": (audit, indicators, report, predict),
+    "A set, in the order of work": (audit, indicators, report, score, predict),
     "A machine of your own, in the order of work": (baseline, check, calibrate),
     "Look at a set, or at recordings": (explore,),
 }

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.own_predictions import PredictionOptions, judged
 from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, Seed, TrainingOptions, opened
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
@@ -40,32 +39,18 @@ def report(
         bool, typer.Option("--models-only", help="Write models and metrics.json alone; DIR_models unless told.")
     ] = False,
     indicator: OwnIndicators = None,
-    own: PredictionOptions,
     training: TrainingOptions,
     pages: PageOptions,
     seed: Seed = 0,
 ) -> None:
     """Train classifiers on a set, judge them on gearboxes that they have not seen, and write report.html and models.
 
-    Beside the page: metrics.json, tables and figures. Or judge the predictions of your own classifier alike.
+    Beside the page: metrics.json, tables and figures.
 
     Example: siggen-diagnostics report data/quickstart --studies
 
     Example: siggen-diagnostics report data/quickstart --models-only --out models --test data/other_gears
-
-    Example: siggen-diagnostics report data/quickstart --predictions mine.parquet --baselines data/quickstart_report
     """
-    if own.predictions is not None:
-        not_now = {
-            "--models-only": models_only,
-            "--explore": pages.explore,
-            "--open": pages.show,
-            "--indicator": indicator,
-        }
-        _refuse({**not_now, "--test": training.test}, "--predictions judges what is in its file, and trains nothing")
-        judged(directory, own, out, seed, training.classes)
-        return
-    _refuse({"--baselines": own.baselines, "--json": own.as_json}, "needs --predictions FILE")
     if models_only:
         _refuse({"--explore": pages.explore, "--open": pages.show}, "--models-only writes no page")
     from diagnostics.base.beside import beside
@@ -80,16 +65,14 @@ def report(
 
     if training.cnn and not missing_packages("torch"):
         check_device(training.device)
-    indicators = load_indicators(indicator)
+    own = load_indicators(indicator)
     classes = check_kind(training.classes, "--classes")
     dataset, second = open_sets(directory, training.test, training.channel or (), classes)
     options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
     if models_only:
-        typer.echo(str(_models((dataset, second), out or beside(dataset.path, "_models"), seed, options, indicators)))
+        typer.echo(str(_models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)))
         return
-    path = _page(
-        (dataset, second), out or beside(dataset.path, "_report"), seed, options, indicators, explore=pages.explore
-    )
+    path = _page((dataset, second), out or beside(dataset.path, "_report"), seed, options, own, explore=pages.explore)
     typer.echo(str(path))
     if pages.show:
         opened(path)

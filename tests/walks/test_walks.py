@@ -72,13 +72,11 @@ def test_from_a_set_to_scores_of_own_classifiers_beside_the_baselines(rig: Path,
     (rig / "tree.py").write_text(tree)
     (rig / "network.py").write_text(network)
     in_python = walk(rig, "python tree.py")
-    by_command = walk(
-        rig, "siggen-diagnostics report set --predictions mine.parquet --baselines models --out scores.csv"
-    )
+    by_command = walk(rig, "siggen-diagnostics score set mine.parquet --baselines models --out scores.csv")
     assert by_command.removesuffix("scores.csv\n") == in_python
     rows = pyarrow.csv.read_csv(rig / "scores.csv").to_pylist()
     assert {row["name"] for row in rows} == {"yours", "indicators", "boosting", "rms"}
-    assert printed(rig, "siggen-diagnostics report set --predictions mine.parquet --baselines models")["scores"] == rows
+    assert printed(rig, "siggen-diagnostics score set mine.parquet --baselines models")["scores"] == rows
     reported = json.loads((models / "metrics.json").read_text())["classifiers"]
     for row in rows:
         if row["name"] != "yours":

@@ -14,7 +14,7 @@ import pytest
 
 import diagnostics.cli.app
 import siggen.cli.app
-from diagnostics.cli.app import COMMANDS, MOVED, main
+from diagnostics.cli.app import COMMANDS, main
 from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
 from siggen.columns.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
@@ -34,17 +34,6 @@ def test_every_command_explains_itself_with_an_example(
 ) -> None:
     assert run(monkeypatch, command.__name__, "-h") == 0
     assert "Example: siggen-diagnostics" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("name", MOVED)
-def test_a_command_of_before_is_answered_with_what_does_its_work(
-    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    known = {command.__name__ for some in COMMANDS.values() for command in some}
-    assert name not in known
-    assert MOVED[name].split()[0] in known
-    assert run(monkeypatch, name, "set") == 2
-    assert f"siggen-diagnostics {MOVED[name].split()[0]} SET" in " ".join(capsys.readouterr().err.split())
 
 
 def test_version(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,8 +17,6 @@ runner = CliRunner()
     ("arguments", "refused"),
     [
         (("--models-only", "--open"), "--open: --models-only writes no page"),
-        (("--predictions", "mine.csv", "--explore", "--test", "other"), "--explore, --test: --predictions judges"),
-        (("--json",), "--json: needs --predictions FILE"),
     ],
 )
 def test_options_of_another_way_are_refused_before_anything_is_read(

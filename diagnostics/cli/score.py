@@ -1,0 +1,58 @@
+"""`siggen-diagnostics score`: predictions of any classifier, judged on the test records of a set."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from diagnostics.cli.set_options import Classes, Seed
+from siggen.cli.json_output import AsJson, echo_json
+
+
+def score(
+    directory: Annotated[
+        Path, typer.Argument(metavar="SET", help="Folder or s3://... of a finished set.", show_default=False)
+    ],
+    predictions: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="Predictions, .parquet or .csv: record_id, and damage (a number that rises with damage), "
+            "p_CLASS of every class (probabilities), or class (its name).",
+            show_default=False,
+        ),
+    ],
+    baselines: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Folder that `report` wrote: its classifiers are judged on the same records."),
+    ] = None,
+    split: Annotated[str, typer.Option(metavar="test|validation", help="Whose records are judged.")] = "test",
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="TABLE", help="Write the rows too, .parquet or .csv.")
+    ] = None,
+    classes: Classes = "state",
+    seed: Seed = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Judge the predictions of your own classifier, with limits over gearboxes.
+
+    Missing, doubled and unknown records and values that cannot be are refused in one list.
+
+    Example: siggen-diagnostics score data/quickstart mine.parquet --baselines data/quickstart_report
+    """
+    from diagnostics.indicators.classifier_table import check_suffix, write_table
+    from diagnostics.scoring.score import score as scored
+    from siggen.dataset.reading import open as open_set
+
+    if out:
+        check_suffix(out)
+    found = scored(open_set(directory), predictions, baselines=baselines, split=split, seed=seed, classes=classes)
+    if as_json:
+        echo_json({"split": split, "classes": classes, "scores": found.to_table().to_pylist()})
+    else:
+        typer.echo(str(found))
+    if out:
+        write_table(found.to_table(), out)
+        typer.echo(str(out), err=as_json)
