@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.columns import clocks, read_columns
 from diagnostics.recordings.file_channels import file_channels
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from siggen.errors import UsageError
