@@ -185,6 +185,22 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
     return " ".join(str(text).split())
 
 
+REPEATED = {"machine.shafts[]": "dynamics.pinion", "machine.gears[]": "gears.pinion", "machine.meshes[]": "gears"}
+"""Section -> the section whose keys it repeats with the same meaning: one line says so."""
+
+
+def without_repeated(schema: Schema, keys: list[Key]) -> list[Key]:
+    """Return the keys without those that a section repeats from another one with the same meaning and range."""
+    meanings = {key.path: (described(schema, key.schema), allowed(schema, key.schema)) for key in keys}
+    left = []
+    for key in keys:
+        section = next((one for one in REPEATED if key.path.startswith(f"{one}.")), None)
+        same = None if section is None else meanings.get(REPEATED[section] + key.path.removeprefix(section))
+        if same != meanings[key.path]:
+            left.append(key)
+    return left
+
+
 @dataclass(frozen=True)
 class Entry:
     """A key wherever it stands in one list with the same meaning and range: described once, counted once."""
@@ -236,6 +252,8 @@ def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str 
     names = ", ".join(f"`{name}`" for name in entry.names)
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
+    if (of := REPEATED.get(f"{first.path}[]")) is not None:
+        values += f"; other keys as in `{of}`"
     ending = f" ({defaults})" if defaults else ""
     return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
 
@@ -254,7 +272,8 @@ def listing_of(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]
 def page() -> str:
     """Return the page."""
     schema = Schema(json.loads(CliRunner().invoke(app, ["schema"], catch_exceptions=False).output))
-    keys = list(schema.keys(schema.content))
+    everywhere = list(schema.keys(schema.content))
+    keys = without_repeated(schema, everywhere)
     users: dict[str, list[str]] = {key.path: [] for key in keys}
     for path in sorted(CONFIGS.glob("*.yaml")):
         for key in Shipped(path).set_keys(schema) & set(users):
@@ -262,7 +281,7 @@ def page() -> str:
     tops = [(key, entries(schema, keys, key.path)) for key in keys if key.path in schema.content["properties"]]
     plain = [Entry((key,), "") for key, _ in tops]
     count = len(plain) + sum(len(rows) for _, tables in tops for rows in tables)
-    lines = [HEAD, f"There are {count} keys in {len(keys)} places.", ""]
+    lines = [HEAD, f"There are {count} keys in {len(everywhere)} places.", ""]
     alone = [Entry((key,), "") for key, tables in tops if not tables]
     lines += ["## Top level", "", *listing_of(schema, alone, users)]
     for top, tables in tops:

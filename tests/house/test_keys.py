@@ -9,7 +9,7 @@ import pytest
 
 from tests.house.source_tree import ROOT
 
-MOST_KEYS = 347
+MOST_KEYS = 359
 """Keys of docs/reference/yaml.md. A new key is worth more than one that can go: lower this with every one that goes."""
 SAME = {("stages", "gears"), ("stages", "gear")}
 """Sections that hold keys of another one with the same meaning; they stand or fall with that."""
