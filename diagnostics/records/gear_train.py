@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from diagnostics.records.planetary_members import MEMBERS, Planets, planets_of
+
 TEETH = re.compile(r"teeth_(?P<mesh>[a-z][a-z0-9_]*)_pinion")
 GEARS = ("pinion", "gear")
 
@@ -30,6 +32,8 @@ class Mesh:
         Of its pinion per turn of the first pinion.
     before, behind : int
         Teeth of the other gear on its pinion's and on its gear's shaft; 0 where there is none.
+    planets : Planets, optional
+        Of a planetary set, whose sun and ring are pinion and gear here.
     """
 
     name: str
@@ -37,6 +41,23 @@ class Mesh:
     turns: Fraction = Fraction(1)
     before: int = 0
     behind: int = 0
+    planets: Planets | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GearNames:
+    """What columns of indicators are called after: shafts of the first mesh, and further meshes."""
+
+    shafts: tuple[str, ...] = GEARS
+    meshes: tuple[str, ...] = ()
+
+    @property
+    def is_planetary(self) -> bool:
+        """Whether the shafts are members of a planetary set, which turn against its carrier."""
+        return self.shafts == MEMBERS
+
+
+PAIR = GearNames()
 
 
 def further_meshes(columns: Iterable[str]) -> tuple[str, ...]:
@@ -59,6 +80,8 @@ def gear_train(labels: Mapping[str, Any]) -> tuple[Mesh, ...]:
     labels : mapping of str
         Of the record, in the order of the set's columns.
     """
+    if (planets := planets_of(labels)) is not None:
+        return (Mesh("", (planets.teeth[0], planets.ring), planets=planets),)
     names = ("", *further_meshes(labels))
     pairs = [_teeth(labels, name) for name in names]
     turns, found = Fraction(1), []

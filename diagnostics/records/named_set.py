@@ -15,9 +15,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pyarrow as pa
 
 from diagnostics.records.gear_train import GEARS
-from siggen.columns.background_columns import background_columns
-from siggen.columns.common_columns import common_columns
-from siggen.config import parse
 from siggen.config.names import NO_NAMES, Names
 from siggen.dataset.reading import Dataset, RowGroup
 from siggen.dataset.reading import open as open_dataset
@@ -102,7 +99,7 @@ class NamedSet(Dataset):
 
     def read_as(self, names: Names, short: Mapping[str, str]) -> NamedSet:
         """Return the set with the words of a machine: column of the files -> column here."""
-        self.names, self._short = names, dict(short)
+        self.own_names, self._short = names, dict(short)
         self._own = {here: there for there, here in short.items()}
         return self
 
@@ -135,18 +132,15 @@ class NamedSet(Dataset):
 def open_set(path: PurePath | str) -> Dataset:
     """Return a set as diagnostics reads it; raises DatasetError as `siggen.open`."""
     dataset = open_dataset(path)
-    if dataset.config.get("machine") is None:
+    names, short = dataset.names()
+    if names == NO_NAMES:
         return dataset
-    config = parse(dataset.config).config
-    if config is None:  # written by another version; its columns say what they are
-        return dataset
-    columns = (*common_columns(config), *background_columns(config))
     dataset.__class__ = NamedSet
     assert isinstance(dataset, NamedSet)
-    return dataset.read_as(config.names, {config.names.column(one.name): one.name for one in columns})
+    return dataset.read_as(names, short)
 
 
 def words_of(dataset: Dataset) -> Words:
     """Return what says the user's names of a set."""
     channels = frozenset(channel.name for channel in dataset.channels)
-    return Words(dataset.names, channels) if isinstance(dataset, NamedSet) else Words()
+    return Words(dataset.own_names, channels) if isinstance(dataset, NamedSet) else Words()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from siggen.config.dynamics import Rotor
 from siggen.config.gears import ToothForm, Wheel
+from siggen.config.stages import DIRECTION, SPAN
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -16,34 +17,35 @@ NAME_TEXT = AllowedText("lower-case letters, digits and _, beginning with a lett
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), NAME_TEXT]
 
 
+NAMED: Any = Field(description="its name: in places of sensors, damage, columns, messages and pages")
+
+
 class MachineShaft(Rotor):
     """A shaft on two bearings; masses are those of the gear that the shaft in front drives, of the first its own."""
 
-    name: Name = Field(description="of the shaft, its bearings NAME_bearing and its speed NAME_shaft_hz")
+    name: Name = NAMED
     span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
         default=None,
-        description="distance of the bearings of a shaft with two gears, as thick as the thinner bore of both; null: "
-        "twice both face widths (assumed)",
+        description=SPAN,
     )
 
 
 class MachineGear(Wheel):
     """A gear on a shaft."""
 
-    name: Name = Field(description="of the gear: in damage, encoders, labels, pages")
+    name: Name = NAMED
     shaft: str = Field(description="name of the shaft that it stands on")
 
 
 class MachineMesh(ToothForm):
     """A gear that drives another one."""
 
-    name: Name = Field(description="of the mesh: in labels and pages, mesh_NAME_hz")
+    name: Name = NAMED
     driver: str = Field(description="name of the driving gear")
     driven: str = Field(description="name of the driven gear")
     direction_deg: Annotated[Number, Within(least=-180, most=180)] = Field(
         default=0.0,
-        description="of the line from driver to driven gear against that of the first mesh, in the sense in which the "
-        "first shaft turns",
+        description=DIRECTION,
     )
 
 

@@ -163,7 +163,7 @@ def simulated(
         "contact_loss_share": response.contact_loss_share,
         "status": "ok",
         **channel_labels,
-    }, state.static)  # fmt: skip
+    }, state.at_rest)  # fmt: skip
     internals = None
     if isinstance(response, StreamedInternals):
         internals = {config.names.column(name): values for name, values in response.quantities().items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from siggen.config import Config, Pair, Stiffness, Wheel
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
@@ -36,6 +37,11 @@ def gear_pair(gears: Pair) -> GearPair:
 def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
     """Return the options of the stiffness model that a section `stiffness` names."""
     return StiffnessOptions(stiffness.beam, coupling=stiffness.coupled_by)
+
+
+def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
+    """Return the options of one pair of a gearbox: in a ring neighbours do not act on each other."""
+    return options if pair.tips_meet_flanks else replace(options, coupling="none")
 
 
 def model_notes(config: Config) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import pytest
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import approach_of
 from siggen.dynamics.time.linear_motion import RungeKutta
-from siggen.dynamics.time.product_integration import SHIFTED_LEGENDRE, ProductIntegration, scheme
+from siggen.dynamics.time.product_integration import HERMITE_DIP, SHIFTED_LEGENDRE, ProductIntegration, scheme
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.conftest import arched_row, make_tables
 from tests.dynamics.integration_runs import model, reference, relative_error, trajectory
@@ -101,3 +101,9 @@ def test_same_bytes_every_time(structure: Structure, sharp_tables: MeshTables) -
     equations, law, start = model(structure, sharp_tables)
     runs = [trajectory(ProductIntegration, equations, law, start, STEP, 500).tobytes() for _ in range(2)]
     assert runs[0] == runs[1]
+
+
+def test_no_cubic_dips_deeper_below_its_ends_than_the_bound_on_its_slopes() -> None:
+    """Hermite's functions of the end slopes are x (1 - x)² and -x² (1 - x); a third of the way is where they end."""
+    x = np.linspace(0.0, 1.0, 3001)
+    assert np.max(x * (1.0 - x) ** 2) == pytest.approx(HERMITE_DIP, rel=1e-6)
