@@ -288,7 +288,7 @@ def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str 
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
     if (of := TAKEN_OVER.get(f"{first.path}[]")) is not None:
-        values += f"; other keys as in {' and '.join(f'`{one}`' for one in of)}"
+        values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
     ending = f" ({defaults})" if defaults else ""
     return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
 
