@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from siggen.checks.quantity_names import acceleration_name
+from siggen.columns.own_columns import own_labels
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
@@ -163,7 +164,9 @@ def simulated(
         "status": "ok",
         **channel_labels,
     }, state.at_rest)  # fmt: skip
-    internals = response.quantities() if isinstance(response, StreamedInternals) else None
+    internals = None
+    if isinstance(response, StreamedInternals):
+        internals = {config.names.column(name): values for name, values in response.quantities().items()}
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
     return Record(planned, labels, channels, tacho_s, internals)
 
@@ -201,9 +204,9 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record
             state = state_of(record.state_id)
             made = simulated(machine.config, machine.specimen, machine.instrument, state, record)
             labels = {**made.labels, **machine.labels, **state_labels(whole, record.state_id)}
-            yield replace(made, labels=labels)
+            yield replace(made, labels=own_labels(whole, labels))
         except SolverFailure as failure:
-            yield RecordFailure(record.record_id, failure.status, failure.reason)
+            yield RecordFailure(record.record_id, failure.status, whole.names.text(failure.reason))
 
 
 def _staged_state(machine: Machine, state_id: int) -> SpecimenState:
