@@ -77,3 +77,5 @@ LIFE_TABLES: dict[str, tuple[Column, ...]] = {
     "pits": PIT_COLUMNS,
 }
 """Tables of `life/<table>/<split>.parquet`."""
+NULLABLE = {"rul_rated_h", "rul_h"}
+"""Columns that are null where a gearbox was suspended: nobody knows them."""
