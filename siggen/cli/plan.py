@@ -161,11 +161,9 @@ def plan_summary(config: Config) -> dict[str, Any]:
 def _notes(config: Config) -> dict[str, Any]:
     """Return how exact its tables are, how it varies, and what a user should know about it, in words."""
     from siggen.checks.contact_notes import contact_notes
-    from siggen.checks.damage_notes import damage_notes
+    from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
-    from siggen.checks.state_notes import state_notes
-    from siggen.checks.torque_notes import torque_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.specimen.gears import model_notes
     from siggen.views.table_error import table_error_text

@@ -40,13 +40,15 @@ BLOCK = 20
 
 CONFIG_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter or a digit, at most 200")
 
+SHARES = "of every 20 gearboxes (or pairs), for fitting, for choosing and for judging"
+
 
 class Splits(Section):
     """How many of every 20 specimens belong to each split."""
 
-    train: Annotated[Whole, Field(ge=0)] = Field(default=12, description="for fitting")
-    validation: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for choosing")
-    test: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for judging")
+    train: Annotated[Whole, Field(ge=0)] = Field(default=12, description=SHARES)
+    validation: Annotated[Whole, Field(ge=0)] = Field(default=4, description=SHARES)
+    test: Annotated[Whole, Field(ge=0)] = Field(default=4, description=SHARES)
     by: Literal["gearbox", "pair"] = Field(
         default="gearbox",
         description="what splits never share; pair: gear pairs (gears.pairs), so that test holds gears never seen",

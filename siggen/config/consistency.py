@@ -12,7 +12,7 @@ from typing import Any
 from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
 from siggen.config.life_problems import life_problems
-from siggen.config.planetary import in_pair
+from siggen.config.planetary import RING, in_pair
 from siggen.config.planetary_problems import sets_problems
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
 from siggen.config.stages import shaft_turns
@@ -323,7 +323,9 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             if (pair := pair_of(sections, gear)) is None:  # told by `_stages_named`
                 continue
             selected = most_teeth(teeth)
-            count = min(pair.teeth_of(in_pair(gear.rpartition(".")[2])))
+            planetary = sections.get("planetary") if gear == RING else None
+            name = in_pair(gear.rpartition(".")[2])
+            count = min(pair.teeth_of(name)) if planetary is None else planetary.ring_teeth
             if isinstance(selected, int):
                 if selected > count:
                     yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")

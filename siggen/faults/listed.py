@@ -11,7 +11,9 @@ from pydantic import Field, model_validator
 from siggen.errors import Problem
 from siggen.faults.fault import Fault, HitTeeth
 from siggen.faults.flank_place import (
+    FACE_CENTRE,
     FACE_WIDTH,
+    MIDDLE_HEIGHT,
     MM,
     READING,
     GearName,
@@ -41,10 +43,8 @@ class ListedPit(PitSize):
 
     gear: GearName = Field(default="pinion", description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
-    height_mm: Height = Field(default="pitch", description="height of the centre above the base circle")
-    face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(
-        description="centre across the face, from one end of the tooth"
-    )
+    height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
+    face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(description=FACE_CENTRE)
 
 
 class ListedSpall(SpallSize):

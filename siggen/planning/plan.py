@@ -266,8 +266,7 @@ def estimated_bytes(config: Config) -> int:
         for sensor in config.sensors
         for _ in sensor.axes
     ]
-    every = 1 if config.internals is None else config.internals.every_specimen
-    internals = -(-config.specimens // every) * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
+    internals = config.specimens * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
     return plan(config).count * _row_bytes(config) * sum(percents) // 100 + internals
 
 
@@ -284,7 +283,7 @@ def rows_per_group(config: Config) -> int:
 def has_internals(config: Config, record: PlannedRecord) -> bool:
     """Tell whether the set stores the internal quantities of a record; depends on configuration and index alone."""
     chosen = config.internals
-    if chosen is None or record.specimen_id % chosen.every_specimen:
+    if chosen is None:
         return False
     return chosen.records == "all" or (record.operating_point_id, record.repeat) == (0, 0)
 

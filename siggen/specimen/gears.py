@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from siggen.config import Config, Stiffness
+from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.drawing import corners
 from siggen.planning.gear_pair import gear_pair
 
-__all__ = ["gear_pair", "model_notes", "stiffness_options"]
+__all__ = ["gear_pair", "mesh_options", "model_notes", "stiffness_options"]
 
 
 def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
     """Return the options of the stiffness model that a section `stiffness` names."""
     return StiffnessOptions(stiffness.beam, coupling=stiffness.coupled_by)
+
+
+def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
+    """Return the options of one pair of a gearbox: in a ring neighbours do not act on each other."""
+    return options if pair.tips_meet_flanks else replace(options, coupling="none")
 
 
 def model_notes(config: Config) -> tuple[str, ...]:

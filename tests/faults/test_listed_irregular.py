@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
@@ -40,7 +41,7 @@ def test_its_area_is_that_of_the_edges_that_are_written() -> None:
     [
         ({"edges_mm": EDGES[::-1]}, "outlines.0.edges_mm.1: received 6 mm; allowed: beyond 9 mm"),
         ({"edges_mm": [[4.0, 2.0, 1.0], *EDGES[1:]]}, "a lower edge at 2 mm above the upper one at 1 mm"),
-        ({"edges_mm": [[face, low + 20.0, high + 20.0] for face, low, high in EDGES]}, "outlines.0.edges_mm: received"),
+        ({"edges_mm": np.add(EDGES, [0.0, 20.0, 20.0]).tolist()}, "outlines.0.edges_mm: received"),
         ({"depth_mm": 3.0}, "outlines.0.depth_mm: received"),
         ({"tooth": 18}, "outlines.0.tooth: received tooth 18"),
         ({"edge_radius_mm": 2.0}, "outlines.0.edge_radius_mm"),
