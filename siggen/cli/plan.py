@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from siggen.cli.json_output import AsJson, echo_json
-from siggen.cli.life_table import life_summary, life_table
+from siggen.cli.life_table import life_doubts, life_summary, life_table
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -130,6 +130,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
 
     specimens = {split: specimen_count(config, split) for split in SPLITS}
     records = planned(config).count
+    lives, notes = life_summary(config), _notes(config)
     raw_bytes = records * config.samples * 4 * len(config.channels)
     return {
         "name": config.name,
@@ -147,13 +148,14 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "specimens_of_split": specimens,
         "states": _state_counts(config, specimens),
         "severity_share": _severity_shares(config),
-        "life": life_summary(config),
+        "life": lives,
         "shards_of_split": {split: shard_count(config, split) for split in SPLITS},
         "specimens_per_full_shard": specimens_per_shard(config),
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
-        **_notes(config),
+        **notes,
+        "implausible": [*notes["implausible"], *life_doubts(lives)],
     }
 
 

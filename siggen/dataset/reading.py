@@ -112,7 +112,7 @@ class Dataset:
         return self._table(DAMAGE_FOLDER, split, None)
 
     def life(self, table: str, split: str | None = None) -> pa.Table:
-        """Return a table of a set that runs to failure: units, inspections, teeth or pits; as `labels`.
+        """Return a table of a set that runs to failure: units, inspections, teeth, pits or outlook; as `labels`.
 
         Raises
         ------
