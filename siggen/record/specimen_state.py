@@ -30,7 +30,6 @@ from siggen.specimen.lost_mass import MeshPlace
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import MeshBehind, SpecimenMesh
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
-from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +104,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     """
     made = made or MadeGears(config, specimen)
     with refused_as("outside_model"):
-        assembled = structure(config, specimen)
+        assembled = made.structure
     first = _mesh_state(made, state_id, assembled)
     if specimen.planetary is not None:
         mesh = planetary_mesh(config, specimen, made, state_id, first.mesh, first.options)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, cached_property
 
 from siggen.config import Config
+from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.gear_pair import GearPair
@@ -16,6 +17,7 @@ from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_err
 from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.motion import teeth_missing
+from siggen.specimen.structure import structure
 
 
 class MadeGears:
@@ -26,7 +28,7 @@ class MadeGears:
 
     def __init__(self, config: Config, specimen: Specimen) -> None:
         self.pair: GearPair = gear_pair(specimen.gears)
-        self._config, self._specimen = first_mesh(config), specimen
+        self._whole, self._config, self._specimen = config, first_mesh(config), specimen
         self.stages = tuple(
             MadeGears(stage_config(config, specimen, i), stage_specimen(specimen, i))
             for i in range(len(specimen.stages))
@@ -46,6 +48,17 @@ class MadeGears:
     def specimen(self) -> Specimen:
         """The gearbox with this pair as its first one."""
         return self._specimen
+
+    @cached_property
+    def structure(self) -> Structure:
+        """The structure of the whole gearbox, which damage leaves as it is.
+
+        Raises
+        ------
+        ValueError
+            As `structure`.
+        """
+        return structure(self._whole, self._specimen)
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
         """Return the errors; None for perfect gears.
