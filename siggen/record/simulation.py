@@ -15,6 +15,7 @@ from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
+from siggen.dynamics.time.transient import both_settled_s
 from siggen.errors import SolverFailure
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
@@ -32,7 +33,7 @@ from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import FORCE, SHAFT
 from siggen.sensors.sensor import needs
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
-from siggen.specimen.instrument import Instrument, history_s, settle_s
+from siggen.specimen.instrument import Instrument, history_s
 from siggen.specimen.step_choice import stepped_motion
 from siggen.specimen.structure import structure
 
@@ -112,9 +113,8 @@ def _stream(
 
 
 def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
-    """Return the least time before the record; a motion that starts near its end needs its history behind it."""
-    before_s = history_s(config, specimen)
-    return before_s + motion.transient_s if motion.starts_settled else settle_s(config, specimen)
+    """Return the least time before the record, in which motion and filters forget the start."""
+    return both_settled_s(motion.transient_s, history_s(config, specimen))
 
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
