@@ -102,7 +102,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
 def _tolerance_problems(pairs: list[GearPair]) -> Iterator[Problem]:
     for pair in pairs:
         for which in ("pinion", "gear"):
-            for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which):
+            for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which, pair.helix_rad):
                 received = f"tolerances for a {which} with {problem.name} {problem.received}"
                 yield Problem("manufacture", received, f"{problem.allowed}; or null")
 

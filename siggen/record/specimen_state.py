@@ -142,7 +142,7 @@ def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> Specime
         static = with_static_back(static, specimen.dynamics, teeth.options, *loads, teeth.parts)
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
-            sham=config.states[state_id].sham,
+            made.shares(state_id), sham=config.states[state_id].sham,
         )  # fmt: skip
         before = made.missing_before_chips(state_id)
         mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
