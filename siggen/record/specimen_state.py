@@ -157,7 +157,7 @@ def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> Specime
         static = with_static_back(static, specimen.dynamics, teeth.options, *loads, teeth.parts)
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
-            sham=config.states[state_id].sham,
+            made.shares(state_id), sham=config.states[state_id].sham,
         )  # fmt: skip
         if specimen.planetary is None:  # which carries no torque below 0
             before = made.missing_before_chips(state_id)

@@ -11,14 +11,16 @@ from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import NO_TOOTH, Parts
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
 from siggen.planning.stages import first_mesh, stage_config, stage_specimen
+from siggen.specimen.contact import slice_shares
 from siggen.specimen.damage import grown_damage
-from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_errors
+from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, lead_of, specimen_errors
 from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
-from siggen.specimen.gears import gear_pair
+from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.motion import teeth_missing
 from siggen.specimen.structure import structure
 
@@ -77,6 +79,7 @@ class MadeGears:
         # not over instances: what belongs to a gearbox ends with it
         self._errors = cache(self._computed_errors)
         self._waves = cache(self._computed_waves)
+        self._shares = cache(self._computed_shares)
         self._missing = cache(self._computed_missing)
         self._damage = cache(self._drawn_damage)
 
@@ -114,6 +117,10 @@ class MadeGears:
     def waves(self, state_id: int) -> SpecimenWaves | None:
         """Return the waves; None without them."""
         return self._waves(self._drawn_for(state_id))
+
+    def shares(self, state_id: int) -> FaceShares | None:
+        """Return how slices of helical teeth share the load; None for spur teeth."""
+        return self._shares(self._drawn_for(state_id))
 
     def missing(self, state_id: int) -> WavyTeeth:
         """Return the missing material of relief, damage, errors and waves, under any torque."""
@@ -158,5 +165,10 @@ class MadeGears:
     def _computed_missing(self, drawn_for: int, losses: Losses, reach: float) -> WavyTeeth:
         pair = self.pair
         whole = teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS, reach)
-        plain = with_losses(whole, pair, losses)
-        return WavyTeeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), pair, self._waves(drawn_for))
+        plain, shares = with_losses(whole, pair, losses), self._shares(drawn_for)
+        teeth = erroneous_teeth(plain, pair, self._errors(drawn_for), shares)
+        return WavyTeeth(teeth, pair, self._waves(drawn_for), shares)
+
+    def _computed_shares(self, drawn_for: int) -> FaceShares | None:
+        own = self._specimen
+        return slice_shares(own.dynamics, self.pair, stiffness_options(own.stiffness), lead_of(self._errors(drawn_for)))
