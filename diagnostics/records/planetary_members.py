@@ -63,12 +63,12 @@ def planets_of(labels: Mapping[str, Any]) -> Planets | None:
     if not is_planetary(labels):
         return None
     sun, planet, ring = (int(labels[name]) for name in teeth_labels())
-    return evenly_or_at((sun, planet, ring), labels[PLACES])
+    return Planets((sun, planet, ring), tuple(float(place) / 360.0 for place in labels[PLACES]))
 
 
-def evenly_or_at(teeth: tuple[int, int, int], positions_deg: Sequence[float]) -> Planets:
-    """Return the members of a set by teeth of sun, planets and ring, and the planets' places [deg]."""
-    return Planets(teeth, tuple(float(place) / 360.0 for place in positions_deg))
+def planet_labels(planets: Planets) -> dict[str, Any]:
+    """Return the labels that `planets_of` makes members of."""
+    return dict(zip(teeth_labels(), planets.teeth, strict=True)) | {PLACES: [360.0 * turn for turn in planets.places]}
 
 
 def own_columns(columns: Sequence[str]) -> list[str]:

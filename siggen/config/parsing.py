@@ -65,6 +65,8 @@ def parse(raw: Mapping[str, object]) -> ParsedConfig:
 
 def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:
     """Return what a mapping in the short form holds."""
+    if raw.get("life") and not raw.get("states", True):  # no states, as a file says that extends one with some
+        raw = {key: value for key, value in raw.items() if key != "states"}
     sections: dict[str, Any] = {"machine": machine}
     unknown = [(str(key), raw[key]) for key in raw if key not in Config.model_fields]
     problems = unknown_keys(unknown, list(Config.model_fields))
@@ -74,12 +76,16 @@ def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:
         )
         problems += found
         if value is not None:
-            sections[name] = value
+            sections[name] = dict(enumerate(value)) if name in LISTS and isinstance(value, tuple) else value
     problems += consistency_problems(sections, raw)
-    config = (
-        None if problems else Config.model_validate({**sections, **{n: tuple(sections[n].values()) for n in LISTS}})
-    )
+    config = None if problems else Config.model_validate(_listed(sections))
     return ParsedConfig(config, MappingProxyType(sections), tuple(problems))
+
+
+def _listed(sections: Mapping[str, Any]) -> dict[str, Any]:
+    """Return valid sections with lists in place of their numbered entries, and without lists of none."""
+    lists = {name: tuple(sections[name].values()) for name in LISTS}
+    return {name: lists.get(name, value) for name, value in sections.items() if lists.get(name) != ()}
 
 
 def _is_filled_list(raw: Mapping[str, object], name: str) -> bool:
@@ -91,7 +97,7 @@ def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     if isinstance(value := raw.get(name), (list, tuple)) and len(value) > MOST_ENTRIES:
         return None, [Problem(name, f"a list of {len(value)}", f"allowed: at most {MOST_ENTRIES} entries")]
     if name not in raw:
-        if field.is_required():
+        if field.is_required() or (name == "states" and not raw.get("life")):
             return None, [missing_key(name, field)]
         return field.get_default(call_default_factory=True), []
     return _validated(_adapter(name), raw[name], (name,))

@@ -119,7 +119,7 @@ none is a copy or a cut of another one. **The data are synthetic**: they were co
 
 
 def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
-    names = [state.name for state in config.states]
+    names = list(config.state_names)
     lines = ["## Contents", "", f"| split | specimens | records | {' | '.join(names)} | MB |"]
     lines.append("|---" * (len(names) + 4) + "|")
     for split in splits:
@@ -214,7 +214,7 @@ signals = np.stack(frame["{column}"])                   # (rows, samples)
 
 import polars as pl
 labels = pl.read_parquet("metadata/{split}.parquet")
-frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.states[-1].name}").collect()
+frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.state_names[-1]}").collect()
 
 import pyarrow.dataset as ds
 for batch in ds.dataset("data", format="parquet").to_batches(columns=["{column}"], batch_size=32):

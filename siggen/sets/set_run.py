@@ -16,6 +16,7 @@ from siggen.dataset.environment import environment, fingerprint
 from siggen.dataset.extensions import EXTENSIONS
 from siggen.dataset.folder import config_bytes
 from siggen.dataset.label_tables import write_damage, write_metadata
+from siggen.dataset.life_tables import write_life
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
 from siggen.dataset.object_name import sidecar_name
 from siggen.dataset.pieces import Maker, Pieces
@@ -253,6 +254,7 @@ class SetRun:
             if of_split:
                 tables.append(write_metadata(self.storage, self.config, split, of_split))
                 tables.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows))
+                tables += write_life(self.storage, self.config, split, of_split, self.physics.life_rows)
             self.interruption.check()
         self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
         written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]

@@ -9,7 +9,7 @@ from siggen.dynamics.time.linear_motion import RungeKutta
 from siggen.dynamics.time.product_integration import HERMITE_DIP, SHIFTED_LEGENDRE, ProductIntegration, scheme
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.conftest import arched_row, make_tables
-from tests.dynamics.integration_runs import model, reference, relative_error, trajectory
+from tests.dynamics.integration_runs import FIRST_PITCHES, MESH_HZ, model, reference, relative_error, trajectory
 
 PINION_RATE = 8 + 2  # velocity of y_1 in the state of the 8-DOF model
 STEP = 1.0 / (51200 * 4)
@@ -75,6 +75,28 @@ def test_contact_loss_agrees_with_small_runge_kutta_steps(structure: Structure) 
     assert (np.abs(approach) < 2e-6).mean() > 0.05
     # Both meet the flank's edge at first order: the substep of 0.3 µs against the free flight of 0.1 ms.
     assert relative_error(states, fine, 8 + 3) < 2e-2
+
+
+def test_a_force_from_outside_goes_on_while_the_flanks_are_apart(structure: Structure) -> None:
+    equations, law, start = model(structure, make_tables(arched_row(65)[None, :]), torque=0.5, backlash=4e-6)
+    row = np.zeros((1, 8))
+    row[0, 3] = 1.0
+    equations, start = equations._replace(external_input=row), start.copy()
+    start[8 + 3] = -3.0
+    times = STEP * np.arange(STEPS + 1)
+    found = []
+    for integrator, division in ((ProductIntegration, 1), (RungeKutta, 64)):
+        at = STEP / division * np.arange(STEPS * division + 1)
+        # 3e4 rad/s² for the 0.1 ms of a flight are the 3 rad/s of the strike; linear within steps, as both take it
+        push = np.interp(at, times, 3e4 * np.cos(2.0 * np.pi * 900.0 * times))[:, None]
+        states = np.empty((at.size, start.size))
+        states[0] = start
+        integrator(equations, law, STEP / division).advance(FIRST_PITCHES + MESH_HZ * at, push, states)
+        found.append(states[::division])
+    states, fine = found
+    apart = np.array([abs(approach_of(equations, 0, state)[0]) < 2e-6 for state in fine])
+    assert apart.mean() > 0.05
+    assert relative_error(states, fine, 8 + 3) < 2e-2  # the flank's edge at first order, as above
 
 
 def test_response_weights_are_the_integrals_they_stand_for(structure: Structure, sharp_tables: MeshTables) -> None:
