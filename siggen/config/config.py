@@ -172,7 +172,7 @@ class Config(Section):
         """Records of one specimen: all states at all operating points, repeats included; with `life` the most."""
         return self.state_count * len(self.operating_points) * self.repeats
 
-    @cached_property
+    @property
     def names(self) -> Names:
         """The user's own names of gears, shafts and meshes; without a machine those of the short form."""
         return NO_NAMES if self.machine is None else names_of(self.machine)

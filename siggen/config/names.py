@@ -167,4 +167,4 @@ def _prose(text: str, shafts: Sequence[str], driver: str, driven: str) -> str:
         text = re.sub(rf"\b[Tt]he {short} shaft\b", shaft, text)
     text = re.sub(r"\bpinion(,| and| or) (?:the )?gear\b", rf"{driver}\1 {driven}", text)
     text = re.sub(r"\b(?:[Tt]he )?(?:first )?pinion\b", driver, text)
-    return re.sub(r"\b[Tt]he gear(?! (?:pair|body|bodies|in front))\b|'gear'", driven, text)
+    return re.sub(r"\b[Tt]he gear(?! (?:pair|body|bodies|in front))\b|'gear'|^gear(?= [a-z]+$)", driven, text)

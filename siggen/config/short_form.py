@@ -7,6 +7,7 @@ pinion is `dynamics.pinion`, that of the gear `dynamics.gear`, those behind are 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import Any
 
 from siggen.config.dynamics import Rotor
@@ -24,6 +25,7 @@ WITH_KEYS = ("dynamics", "manufacture", "sensors", "background")
 """Sections with keys of their own for driver and driven gear."""
 
 
+@cache
 def names_of(machine: Machine) -> Names:
     """Return the words of a machine without problems."""
     found = train(machine)

@@ -11,6 +11,8 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
+from siggen.planning.specimen import draw_specimen
+from siggen.planning.stages import first_mesh, stage_config
 from tests.config.mill import MACHINE, mill, with_machine
 from tests.config.staged import SLOW, SPALL, staged
 
@@ -43,6 +45,16 @@ def test_states_change_shafts_by_their_place_in_the_machine() -> None:
     config = load_config(mill(states=[{"name": "healthy"}, state]))
     assert [one.path for one in config.states[1].changes] == ["dynamics.pinion.bearing_stiffness_x_n_per_m"]
     assert list(config.canonical()["states"][1]["changes"]) == [key]
+
+
+def test_one_mesh_alone_is_a_machine_of_its_two_gears() -> None:
+    config = parse(mill()).config
+    assert config is not None
+    assert config.names.gear("pinion") == "ida"
+    assert first_mesh(config).names.gears == (("pinion", "ida"), ("gear", "otto"))
+    slow = stage_config(config, draw_specimen(config, 0), 0)
+    assert slow.names.gears == (("pinion", "eva"), ("gear", "karl"))
+    assert slow.names.shafts == (("pinion", "middle"), ("gear", "output"))
 
 
 def loop(teeth: int) -> dict[str, Any]:
