@@ -41,8 +41,8 @@ def schema_text() -> str:
     """Return the JSON Schema as editors read it; a file that extends another one needs no key of its own."""
     schema = schema_with_experts()
     required = [key for key in schema.pop("required") if key != "gears"]
-    drivetrain = [{"required": ["gears"]}, {"required": ["machine"]}]
-    needed = {"if": {"required": [EXTENDS]}, "else": {"required": required, "anyOf": drivetrain}}
+    either = [{"anyOf": [{"required": [key]} for key in pair]} for pair in (("gears", "machine"), ("states", "life"))]
+    needed = {"if": {"required": [EXTENDS]}, "else": {"required": required, "allOf": either}}
     return json.dumps({"$schema": DRAFT, **schema, **needed}, indent=2) + "\n"
 
 

@@ -32,9 +32,12 @@ def test_the_schema_names_every_key_and_what_is_needed(schema):
         "seed",
         "specimens",
         "operating_points",
-        "states",
         "sensors",
     }
+    assert schema["else"]["allOf"] == [
+        {"anyOf": [{"required": ["gears"]}, {"required": ["machine"]}]},
+        {"anyOf": [{"required": ["states"]}, {"required": ["life"]}]},
+    ]
     assert schema["additionalProperties"] is False
 
 

@@ -103,12 +103,16 @@ def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: 
 
 
 @pytest.mark.slow
-def test_indicators_and_report_say_the_users_names_alone(made: Path) -> None:
+def test_indicators_say_the_users_names_alone(made: Path) -> None:
     run("diagnostics", "indicators", made / "set", "--out", made / "indicators")
     assert said(made / "indicators") == {}
     names = pq.read_schema(made / "indicators/indicators.parquet").names
     assert "sideband_ratio_ida_h1_k3__end_vertical" in names
     assert "sideband_ratio_eva_h1_k3_slow__end_vertical" in names
+
+
+@pytest.mark.slow
+def test_a_report_says_the_users_names_alone(made: Path) -> None:
     run("diagnostics", "report", made / "set", "--out", made / "report", "--no-cnn")
     found = {file: lines for file, lines in said(made / "report").items() if not file.startswith("models")}
     assert found == {}, "saved models count by the program's own words"
