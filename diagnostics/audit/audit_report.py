@@ -33,7 +33,9 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.style import png_bytes, styled
+from diagnostics.records.recording import gear_names
 from siggen.dataset.reading import Dataset
+from siggen.errors import UsageError
 
 
 def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
@@ -188,6 +190,8 @@ def audit_set(
     options = options or AuditOptions()
     seed, reference = options.seed, options.reference
     require_packages("the audit", "sklearn", "matplotlib")
+    if options.with_realism and gear_names(dataset).is_planetary:
+        raise UsageError(f"--realism: its ranges were measured on pairs of gears; {dataset.path} holds planetary sets")
     # first, so that a wrong folder is said before minutes have passed
     real = reference_windows(reference, options.reference_fs_hz) if reference else None
     started_s = time.perf_counter()

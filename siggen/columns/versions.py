@@ -5,7 +5,7 @@ A configuration's identity has a version of its own (`siggen.config.config`), wh
 
 from __future__ import annotations
 
-SCHEMA_VERSION = "2"
+SCHEMA_VERSION = "3"
 """Version of the columns and of the files around them that is written."""
 
 READ_VERSIONS = (SCHEMA_VERSION,)

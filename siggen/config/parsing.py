@@ -45,6 +45,8 @@ class ParsedConfig:
 def parse(raw: Mapping[str, object]) -> ParsedConfig:
     """Return the configuration that a mapping stands for, or all its problems; never raises because of its content."""
     sections: dict[str, Any] = {}
+    if raw.get("life") and not raw.get("states", True):  # no states, as a file says that extends one with some
+        raw = {key: value for key, value in raw.items() if key != "states"}
     unknown = [(str(key), raw[key]) for key in raw if key not in Config.model_fields]
     problems = unknown_keys(unknown, list(Config.model_fields))
     for name in Config.model_fields:
@@ -53,12 +55,16 @@ def parse(raw: Mapping[str, object]) -> ParsedConfig:
         )
         problems += found
         if value is not None:
-            sections[name] = value
+            sections[name] = dict(enumerate(value)) if name in LISTS and isinstance(value, tuple) else value
     problems += consistency_problems(sections, raw)
-    config = (
-        None if problems else Config.model_validate({**sections, **{n: tuple(sections[n].values()) for n in LISTS}})
-    )
+    config = None if problems else Config.model_validate(_listed(sections))
     return ParsedConfig(config, MappingProxyType(sections), tuple(problems))
+
+
+def _listed(sections: Mapping[str, Any]) -> dict[str, Any]:
+    """Return valid sections with lists in place of their numbered entries, and without lists of none."""
+    lists = {name: tuple(sections[name].values()) for name in LISTS}
+    return {name: lists.get(name, value) for name, value in sections.items() if lists.get(name) != ()}
 
 
 def _is_filled_list(raw: Mapping[str, object], name: str) -> bool:
@@ -70,7 +76,7 @@ def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     if isinstance(value := raw.get(name), (list, tuple)) and len(value) > MOST_ENTRIES:
         return None, [Problem(name, f"a list of {len(value)}", f"allowed: at most {MOST_ENTRIES} entries")]
     if name not in raw:
-        if field.is_required():
+        if field.is_required() or (name == "states" and not raw.get("life")):
             return None, [missing_key(name, field)]
         return field.get_default(call_default_factory=True), []
     return _validated(_adapter(name), raw[name], (name,))

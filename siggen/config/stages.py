@@ -28,9 +28,11 @@ class Stage(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), STAGE_NAME] = Field(
         description="part of the names of its labels, and of its gears: NAME.pinion and NAME.gear"
     )
-    gears: Pair = Field(description="its pair")
+    gears: Pair = Field(description="its pair, without `pairs`")
     gear: PlainRotor = Field(
-        default=PlainRotor(), description="its gear and that gear's shaft; its pinion is a solid steel disc"
+        default=PlainRotor(),
+        description="its gear and that gear's shaft, without `eccentricity_um` and `bearing`; its pinion is a "
+        "solid steel disc",
     )
     span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
         default=None,

@@ -118,7 +118,7 @@ none is a copy or a cut of another one. **The data are synthetic**: they were co
 
 
 def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
-    names = [state.name for state in config.states]
+    names = list(config.state_names)
     lines = ["## Contents", "", f"| split | specimens | records | {' | '.join(names)} | MB |"]
     lines.append("|---" * (len(names) + 4) + "|")
     for split in splits:
@@ -171,12 +171,11 @@ def _internals(config: Config, quantities: Sequence[Column]) -> str:
     """Say which records have internal quantities, and how to join them."""
     if config.internals is None or not quantities:
         return ""
-    chosen, every = config.internals.records, config.internals.every_specimen
+    chosen = config.internals.records
     which = "every record" if chosen == "all" else "the first operating point and repeat of every state"
-    whose = "" if every == 1 else f" of specimens 0, {every}, {2 * every}, ..."
     table = _columns("Columns of `internals/`", internals_schema(config, quantities))
     return f"""{table}
-What no sensor sees, of {which}{whose}, at the instants of the samples; join by `record_id`. Accelerations and bearing
+What no sensor sees, of {which}, at the instants of the samples; join by `record_id`. Accelerations and bearing
 forces are low-passed like the signals, everything else is taken at the instant.
 """
 
@@ -214,7 +213,7 @@ signals = np.stack(frame["{column}"])                   # (rows, samples)
 
 import polars as pl
 labels = pl.read_parquet("metadata/{split}.parquet")
-frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.states[-1].name}").collect()
+frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.state_names[-1]}").collect()
 
 import pyarrow.dataset as ds
 for batch in ds.dataset("data", format="parquet").to_batches(columns=["{column}"], batch_size=32):

@@ -244,4 +244,4 @@ def background_text(config: Config) -> str:
     if not parts:
         return ""
     listed = " and ".join(part for part in (", ".join(parts[:-1]), parts[-1]) if part)
-    return f"A healthy machine adds {listed} (`background`); the levels belong to the {section.redraw}. "
+    return f"A healthy machine adds {listed} (`background`); the levels belong to the gearbox. "

@@ -162,7 +162,7 @@ def simulated(
         "contact_loss_share": response.contact_loss_share,
         "status": "ok",
         **channel_labels,
-    }, state.static)  # fmt: skip
+    }, state.at_rest)  # fmt: skip
     internals = response.quantities() if isinstance(response, StreamedInternals) else None
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
     return Record(planned, labels, channels, tacho_s, internals)

@@ -19,16 +19,24 @@ from siggen.record.simulation import record_response, simulate
 from siggen.record.specimen_state import specimen_state
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import MOTION
+from siggen.specimen.background_numbers import BaseNumbers, BurstNumbers
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import minimal
+from tests.specimen.fixed_numbers import fix
 
 LID = {"name": "lid", "place": "lid", "bits": None, "range_m_s2": 1e6, "cross_axis": 0.04, "high_pass_hz": 2.0,
        "mounting": {"frequency_hz": 9000.0, "damping_ratio": 0.05}}  # fmt: skip
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
-BASE = {"mount_hz": 40.0}
-LINES: dict[str, Any] = {"base": BASE, "shafts": {}, "second_stage": {"order": 4.13}}
-ALL = {**LINES, "rubbing": {"bursts": {"rate_hz": 20.0}}, "bearings": {}, "machines": {}}
+LINES: dict[str, Any] = {"base": {}, "shafts": {}, "second_stage": {"order": 4.13}}
+ALL = {**LINES, "rubbing": {"bursts": {}}, "bearings": {}, "machines": {}}
 VARYING = {"speed": {"random_rms": 0.005, "ripple_once": 0.001}, "torque": {"random_rms": 0.02}}
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mounts that ring for a short time, and bursts in every record."""
+    fix(monkeypatch, BaseNumbers, horizontal_hz=40.0, vertical_hz=40.0, rocking_hz=40.0)
+    fix(monkeypatch, BurstNumbers, rate_hz=20.0)
 
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
