@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+from siggen.sets.manifest_facts import manifest_facts
 
 import siggen
 from benchmarks.row import Row, duration_text
@@ -22,7 +23,6 @@ from siggen.dataset.seal import sealed
 from siggen.dataset.shard import FileFacts, write_table
 from siggen.dataset.shard_index import CHECKSUM_ROWS, INDEX_ROWS, LISTED, PROMISED
 from siggen.dataset.storage import LocalFolder, sha256
-from siggen.sets.manifest_facts import manifest_facts
 
 SHARDS, RECORDS, BLOCKS = 100_000, 120, 600
 """RECORDS of a shard, and BLOCKS of 64 KiB: a shard of quickstart has about 40 MB."""

@@ -33,8 +33,9 @@ This page is printed by `make reference` from `siggen schema` and the files in `
   replaced. The set's own `config.yaml` holds the result.
 * The default stands last, in brackets. A key without brackets is required wherever its section stands.
 * **expert**: no shipped configuration sets the key.
-* A key of one meaning in several places, or with the unit of each kind of sensor, has one line and is counted once; what
-  differs between them is divided by a slash. Sections are not counted, and one that holds nothing but its keys has no line.
+* A line is one thing to learn. Keys of one meaning share it: in several places, along x and y, of pinion and gear, with
+  the unit of each sensor. What differs between them is divided by a slash.
+* Sections are not counted, and one that holds nothing but its keys has no line.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
   `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
@@ -187,8 +188,12 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
 
 REPEATED = {"stages[].gears": "gears", "stages[].gear": "dynamics.gear"}
 """Section -> the section whose keys it repeats with the same meaning: one line says so."""
-UNIT = re.compile(r"_(m_s2|nm|n|a)$")
-"""Of a reading: a size of a signal ends with the unit of its kind of sensor."""
+TAKEN_OVER = {
+    "machine.shafts[]": ("dynamics.gear", "stages[]"),
+    "machine.gears[]": ("gears.gear",),
+    "machine.meshes[]": ("gears", "stages[]"),
+}
+"""Section with keys of its own -> the sections whose other keys it repeats with the same meaning."""
 
 
 @dataclass(frozen=True)
@@ -236,13 +241,12 @@ BEGINNING = r"^{}(?:\[\])?(?: \(kind: \w+\))?(?:\.\w+ \(kind: \w+\))?\."
 
 def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
     """Return the lists of one top-level key: its own keys, then those of every section with kinds."""
-    found: dict[str, dict[tuple[str, ...], list[Key]]] = {}
+    found: dict[str, dict[str, list[Key]]] = {}
     for key in keys:
         begins = re.match(BEGINNING.format(top), key.path)
         if begins is not None:
             place = re.sub(r" \(kind: \w+\)|\[\]", "", begins[0])
-            name, said = key.path.rsplit(".", 1)[-1], described(schema, key.schema)
-            found.setdefault(place, {}).setdefault((UNIT.sub("", name), said), []).append(key)
+            found.setdefault(place, {}).setdefault(described(schema, key.schema) or key.path, []).append(key)
     return [[Entry(tuple(same), top) for same in place.values()] for place in found.values()]
 
 
@@ -258,6 +262,10 @@ def without_repeated(schema: Schema, keys: list[Key]) -> list[Key]:
     left = []
     for key in keys:
         section = next((one for one in REPEATED if key.path.startswith(f"{one}.")), None)
+        mixed = next((one for one in TAKEN_OVER if key.path.startswith(f"{one}.")), "")
+        others = (meanings.get(of + key.path.removeprefix(mixed)) for of in TAKEN_OVER.get(mixed, ()))
+        if meanings[key.path] in others:
+            continue
         if section is None:
             left.append(key)
         elif meanings[key.path] != meanings.get(REPEATED[section] + key.path.removeprefix(section)):
@@ -279,6 +287,8 @@ def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str 
     names = ", ".join(f"`{name}`" for name in entry.names)
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
+    if (of := TAKEN_OVER.get(f"{first.path}[]")) is not None:
+        values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
     ending = f" ({defaults})" if defaults else ""
     return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
 
@@ -308,7 +318,7 @@ def page() -> str:
     every = [*plain, *(entry for _, tables in tops for rows in tables for entry in rows)]
     count = sum(not entry.is_section(schema) for entry in every)
     places = sum(not Entry((key,), "").is_section(schema) for key in keys_everywhere)
-    lines = [HEAD, f"There are {count} keys in {places} places.", ""]
+    lines = [HEAD, f"There are {count} keys to learn, in {places} places.", ""]
     alone = [Entry((key,), "") for key, tables in tops if not tables]
     lines += ["## Top level", "", *listing_of(schema, alone, users)]
     for top, tables in tops:

@@ -11,6 +11,7 @@ from typing import Any
 
 from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
+from siggen.config.life_problems import life_problems
 from siggen.config.planetary import RING, in_pair
 from siggen.config.planetary_problems import sets_problems
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
@@ -33,6 +34,7 @@ SAMPLES_PER_PERIOD = 2.56
 def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> list[Problem]:
     """Return what is contradictory between the valid sections of a configuration."""
     checks: list[Callable[[Mapping[str, Any], Mapping[str, object]], Iterable[Problem]]] = [
+        life_problems,
         _sample_count,
         _band,
         _twice_named,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from siggen.config.dynamics import Dynamics
-from siggen.config.external_forces import Unbalance
+from siggen.config.dynamics import Dynamics, Unbalance
 from siggen.config.gears import Gears
 from siggen.config.planetary import RING, ROLES, Planetary
 from siggen.errors import Problem

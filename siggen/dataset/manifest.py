@@ -26,6 +26,7 @@ INJECTED = "injected.json"
 """In a set of recordings with injected damage, as `siggen-diagnostics calibrate --inject` writes it."""
 METADATA_FOLDER = "metadata"
 DAMAGE_FOLDER = "damage"
+LIFE_FOLDER = "life"
 SPLITS = ("train", "validation", "test")
 
 
@@ -46,7 +47,7 @@ def build_manifest(
     sidecars : sequence of Sidecar
         All shards, by split and number; their data files were hashed when they were committed or taken over.
     tables : sequence of FileFacts
-        The tables of labels and of damage.
+        The tables of labels, of damage and of lives.
     written : sequence of str
         Names of all other files but those of the shards; hashed here.
     """

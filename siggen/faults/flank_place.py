@@ -55,10 +55,13 @@ READING = (
     "how heights above the base circle, and lengths of spalls along the profile, are measured: along the tooth's axis, "
     "along the radius, along the flank"
 )
-MIDDLE_HEIGHT = "height of the middle above the base circle"
+MIDDLE_HEIGHT = (
+    "height of the middle above the base circle, or pitch; irregular spalls also below_pitch: half way along the flank "
+    "from the lowest point of single contact to the pitch line, where the full load meets negative sliding"
+)
 FACE_CENTRE = "middle across the face; null: of the face"
 PROFILE_LENGTH = "length along the profile; of irregular spalls the mean"
-DEPTH = "depth normal to the tooth's middle plane"
+DEPTH = "depth normal to the tooth's middle plane; of irregular spalls null: 0.05 of the root of both lengths (assumed)"
 FLOOR = "flat floor, or a dish that is deepest in the middle"
 
 MM = 1e-3

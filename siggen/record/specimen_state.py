@@ -31,7 +31,6 @@ from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import MeshBehind, SpecimenMesh
 from siggen.specimen.planetary_meshes import made_meshes, with_planets
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
-from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +113,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     """
     made = made or MadeGears(config, specimen)
     with refused_as("outside_model"):
-        assembled = structure(config, specimen)
+        assembled = made.structure
     if specimen.planetary is not None:
         return _planetary_state(config, made, state_id, assembled)
     first = _mesh_state(made, state_id, assembled)

@@ -22,8 +22,17 @@ from siggen.sensing.sensor_response import high_pass_response, resonance_respons
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
 from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, PLATES, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity
-from siggen.sensors.resonance import Resonance
 from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
+
+
+class Resonance(Section):
+    """A second-order low-pass with a peak: a mass on a spring."""
+
+    frequency_hz: Annotated[Number, Within(above=0)] = Field(description="natural frequency")
+    damping_ratio: Annotated[Number, Within(above=0, most=1)] = Field(
+        default=0.05, description="the peak is 1 / (2 damping_ratio) high"
+    )
+
 
 POSITION = AllowedText(
     "two numbers in mm, from a casing's centre of gravity or the middle of a plate; a distribution is drawn per gearbox"

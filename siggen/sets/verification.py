@@ -17,6 +17,7 @@ from siggen.dataset.manifest import (
     CONFIG,
     DAMAGE_FOLDER,
     INJECTED,
+    LIFE_FOLDER,
     MANIFEST,
     METADATA_FOLDER,
     PHYSICS,
@@ -38,7 +39,7 @@ from siggen.sets.record_comparison import result_difference
 if TYPE_CHECKING:
     from siggen.config import Config
 
-OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, SIDECAR_FOLDER)
+OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, LIFE_FOLDER, SIDECAR_FOLDER)
 
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, cached_property
 from typing import NamedTuple, TypeVar
 
 from siggen.config import Config
+from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.gear_pair import GearPair
@@ -19,6 +20,7 @@ from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_err
 from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.motion import teeth_missing
+from siggen.specimen.structure import structure
 
 Made = TypeVar("Made", SpecimenErrors, SpecimenWaves)
 
@@ -66,7 +68,8 @@ class MadeGears:
         body: SameBody | None = None,
     ) -> None:
         self.pair: GearPair = gear_pair(specimen.gears) if pair is None else pair
-        self._config, self._specimen, self._shared, self._body = first_mesh(config), specimen, shared, body
+        self._whole, self._config, self._specimen = config, first_mesh(config), specimen
+        self._shared, self._body = shared, body
         self.stages = tuple(
             MadeGears(stage_config(config, specimen, i), stage_specimen(specimen, i))
             for i in range(len(specimen.stages))
@@ -86,6 +89,17 @@ class MadeGears:
     def specimen(self) -> Specimen:
         """The gearbox with this pair as its first one."""
         return self._specimen
+
+    @cached_property
+    def structure(self) -> Structure:
+        """The structure of the whole gearbox, which damage leaves as it is.
+
+        Raises
+        ------
+        ValueError
+            As `structure`.
+        """
+        return structure(self._whole, self._specimen)
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
         """Return the errors; None for perfect gears.

@@ -108,8 +108,7 @@ def _ring(section: Planetary, inner: InternalPair, ratio: float) -> PlanetaryBod
 
 def _carrier(section: Planetary, pair: GearPair, ratio: float) -> PlanetaryBody:
     radius = pair.working_centre_distance_m
-    steel_kg = STEEL_DENSITY_KG_M3 * pi * radius**2 * pair.face_width_m
-    mass = steel_kg if section.carrier_mass_kg is None else constant(section.carrier_mass_kg)
+    mass = STEEL_DENSITY_KG_M3 * pi * radius**2 * pair.face_width_m
     return _body(radius, (mass, 0.5 * mass * radius**2), section.carrier_stiffness_n_per_m, ratio)
 
 

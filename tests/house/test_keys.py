@@ -9,7 +9,7 @@ import pytest
 
 from tests.house.source_tree import ROOT
 
-MOST_KEYS = 291
+MOST_KEYS = 221
 """Keys of docs/reference/yaml.md. A new key is worth more than one that can go: lower this with every one that goes."""
 KEY_LINE = re.compile(r"\* `(?P<key>[^`]+)`(?:, `[^`]+`)*(?P<expert> \(expert\))?: ")
 PAGES = [path for path in (ROOT / "docs").rglob("*.md") if path.parent.name != "reference"]
@@ -48,7 +48,7 @@ def test_every_key_stands_in_a_preset_or_together_with_its_section_in_a_guide_or
 
 
 def test_there_are_no_more_keys_than_said(page: str) -> None:
-    found = re.search(r"There are (\d+) keys in (\d+) places", page)
+    found = re.search(r"There are (\d+) keys to learn, in (\d+) places", page)
     assert found is not None
     keys, places = map(int, found.groups())
     lines = re.findall(r"^\* `.*", page.partition("## Top level")[2], re.MULTILINE)

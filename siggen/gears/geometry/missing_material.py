@@ -8,6 +8,7 @@ relief, the corner of the tip outside the path of contact, and one constant per 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,7 @@ class MissingMaterial:
     gear: ToothTables
 
 
+@lru_cache(maxsize=4)  # states of a gearbox share them
 def missing_material(
     pair: GearPair,
     relief: TipRelief | None = None,
@@ -99,4 +101,7 @@ def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: Flo
         share = np.clip(1.0 - np.maximum(to_tip_m, 0.0) / relief.length_m, 0.0, None)
         profile = profile + relief.amount_m * share**2
     teeth = pair.member(which).teeth
-    return ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
+    made = ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
+    for array in (made.profile_m, made.kind_of_tooth, made.offset_m):
+        array.setflags(write=False)
+    return made

@@ -71,6 +71,11 @@ def test_ring_tooth_against_slow_quadrature_of_its_outline():
         area = quad(slenderness, place[0], height[-1], limit=200)[0]
         assert found.axial[0] == pytest.approx(along**2 * area / 206e9, rel=1e-4)
         assert found.shear[0] == pytest.approx(1.2 * across**2 * area * 2.6 / 206e9, rel=1e-4)
+        # Cornell's foot, the load where its line crosses the centre line: turned, both ways coupled, shifted
+        lever = (height[-1] - place[0] - place[1] * along / across) / (2.0 * width[-1])
+        shifted = 1.534 * (1.0 + (along / across) ** 2 / (2.4 * 1.3))
+        foot = 16.67 / pi * lever**2 + 2.0 * 0.7 * lever + shifted
+        assert found.foundation[0] == pytest.approx(across**2 * foot / (206e9 * 20e-3), rel=1e-4)
 
 
 def test_the_foot_turns_on_the_half_plane_as_its_potential_says():
