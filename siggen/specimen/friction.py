@@ -43,13 +43,6 @@ def specimen_friction(
     return composite_friction(table, slip_speed_m_s=slip_speed(mesh, pitch_point(pair, mesh), force_n, healthy_m))
 
 
-@lru_cache(maxsize=8)  # states of a gearbox share them
-def _table(
-    mesh: LubricatedMesh, roughness_m: tuple[float, ...], range_m: tuple[float, float], largest_force_n: float
-) -> AsperityTable:
-    return asperity_table(mesh, roughness_m, range_m, largest_force_n)
-
-
 def _places_m(pair: GearPair) -> tuple[float, float]:
     """Return between which positions flanks may touch [m].
 
@@ -57,6 +50,13 @@ def _places_m(pair: GearPair) -> tuple[float, float]:
     """
     start, end, line = 0.5 * pair.contact_start_m, pair.contact_end_m, pair.line_of_action_m
     return start, 0.5 * (end + line) if line > 0.0 else end + start  # no base circle lies behind a hollow flank
+
+
+@lru_cache(maxsize=8)  # states of a gearbox share them
+def _table(
+    mesh: LubricatedMesh, roughness_m: tuple[float, ...], range_m: tuple[float, float], largest_force_n: float
+) -> AsperityTable:
+    return asperity_table(mesh, roughness_m, range_m, largest_force_n)
 
 
 def mean_force_n(pair: GearPair, point: OperatingPoint) -> float:
