@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from siggen.config.dynamics import Dynamics
-from siggen.config.external_forces import Unbalance
+from siggen.config.dynamics import Dynamics, Unbalance
 from siggen.config.gears import Gears
-from siggen.config.planetary import ROLES, Planetary
+from siggen.config.planetary import RING, ROLES, Planetary
 from siggen.errors import Problem
 from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems, typed_places
 from siggen.keys.number import bounds
@@ -42,7 +41,7 @@ def set_of(gears: Gears, section: Planetary) -> PlanetarySet:
 def _without_one(sections: Mapping[str, Any]) -> Iterator[Problem]:
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
-            if getattr(one, "gear", "") in ROLES:
+            if getattr(one, "gear", "") in {*ROLES, RING}:
                 yield Problem(f"{where}.gear", f"'{one.gear}'", "allowed: pinion, gear, either; or a section planetary")
 
 
@@ -77,9 +76,8 @@ def _of_dynamics(dynamics: Dynamics) -> Iterator[Problem]:
 
 
 def _of_others(sections: Mapping[str, Any]) -> Iterator[Problem]:
-    for key, what in {"stages": "further meshes", "manufacture": "errors of single teeth"}.items():
-        if sections.get(key):
-            yield Problem(key, what, f"allowed: none {BESIDE}")
+    if sections.get("stages"):
+        yield Problem("stages", "further meshes", f"allowed: none {BESIDE}")
     for key in ("background", "internals"):
         if sections.get(key) is not None:
             yield Problem(key, "a section", f"allowed: null {BESIDE}")
@@ -95,4 +93,7 @@ def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
         for where, one in state.placed(f"states.{index}"):
             if one.needs_pairs or one.needs_bearings:
                 allowed = f"allowed {BESIDE}: pits, spalls and cracks of sun and planets"
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
+            elif getattr(one, "gear", "") == RING and not one.nouns:
+                allowed = "allowed: pits and spalls of a ring, whose teeth have no law of cracks"
                 yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import hypot, pi
 
 from siggen.config import Friction
-from siggen.dynamics.friction.asperity_table import asperity_table
+from siggen.dynamics.friction.asperity_table import AsperityTable, asperity_table
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
 from siggen.dynamics.friction.friction import FrictionLaw, composite_friction, constant_friction
 from siggen.dynamics.friction.lubrication import LubricatedMesh
@@ -33,14 +34,21 @@ def specimen_friction(
         return constant_friction(constant(section.coefficient))
     mesh, force_n = lubricated_mesh(section, pair, point), mean_force_n(pair, point)
     healthy_m, pitted_m = composite_roughness_m(section)
-    table = asperity_table(
+    table = _table(
         mesh,
-        [healthy_m, pitted_m] if rough_pits else [healthy_m],
+        (healthy_m, pitted_m) if rough_pits else (healthy_m,),
         # Corners touch a little outside the path of contact; half-way to the base circles the radius is still finite.
         (0.5 * pair.contact_start_m, 0.5 * (pair.contact_end_m + pair.line_of_action_m)),
         LARGEST_FORCE * force_n,
     )
     return composite_friction(table, slip_speed_m_s=slip_speed(mesh, pitch_point(pair, mesh), force_n, healthy_m))
+
+
+@lru_cache(maxsize=8)  # states of a gearbox share them
+def _table(
+    mesh: LubricatedMesh, roughness_m: tuple[float, ...], range_m: tuple[float, float], largest_force_n: float
+) -> AsperityTable:
+    return asperity_table(mesh, roughness_m, range_m, largest_force_n)
 
 
 def mean_force_n(pair: GearPair, point: OperatingPoint) -> float:

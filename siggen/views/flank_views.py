@@ -12,6 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.columns.record import damage_schema
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
 from siggen.gears.geometry.gear_pair import GearPair
@@ -23,7 +24,17 @@ from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
-from siggen.views.damage_outline import outline_mm
+
+
+def outline_mm(outline: Outline, points: int = 181) -> FloatArray:
+    """Return the corners of a closed outline (n, 2): face coordinate and height above the base circle [mm].
+
+    The height is along the tooth's centre line, as in the configuration. Not clipped to the flank. A smooth outline is
+    a polygon on it; the first corner is not repeated.
+
+    Source: paper A, section 2.1 (ellipses); polygons derived.
+    """
+    return 1e3 * outline.drawn_m(points)[:, ::-1]
 
 
 @dataclass(frozen=True, slots=True)

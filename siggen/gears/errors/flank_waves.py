@@ -46,6 +46,7 @@ def missing_m(
 
     gear = pair.member(which)
     radius = position_m if which == "pinion" else pair.line_of_action_m - position_m
+    radius = radius if gear.signed_base_radius_m > 0.0 else -radius
     roll, sense = radius / gear.base_radius_m, 1.0 if which == "pinion" else -1.0
     tooth = sense * 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
     # b over ρ: κb per wave on the revolution. Tables of few teeth may begin below the base circle, where no flank is.
