@@ -17,7 +17,7 @@ from diagnostics.explore.explorer import explorer_page
 from diagnostics.explore.payload import PageSource, packed_indicators, page_payload
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
-from diagnostics.records.gear_train import names_of
+from diagnostics.records.gear_train import names_of, train_labels
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.errors import UsageError
@@ -76,6 +76,7 @@ def recordings_source(shown: Sequence[ShownRecording]) -> PageSource:
         quantities=[],
         internals=lambda _detail, _fine: [{} for _ in shown],
         measured=True,
+        named=names_of(first.train),
     )
 
 
@@ -122,7 +123,8 @@ def nearest_healthy(shown: Sequence[ShownRecording]) -> list[int | None]:
 
 def _records(shown: Sequence[ShownRecording]) -> Iterator[Recording]:
     for number, one in enumerate(shown, start=1):
-        labels = {"record_id": number, "teeth_pinion": one.found.teeth[0], "teeth_gear": one.found.teeth[1]}
+        teeth = dict(zip(("teeth_pinion", "teeth_gear"), one.found.teeth, strict=True))
+        labels = {"record_id": number, **teeth, **train_labels(one.found.train)}
         yield Recording(labels, one.found.recording.channels, one.found.pulses.times_s, one.found.recording.fs_hz)
 
 

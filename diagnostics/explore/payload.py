@@ -45,7 +45,6 @@ SHOWN = (
     *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
     *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
 )
-OF_MEMBERS = teeth_labels()
 OF_PLANETS = {"sun": "pinion", "planet": "gear"}
 """Which section of the configuration describes a member of a planetary set."""
 
@@ -171,6 +170,8 @@ class PageSource:
         Row of the other side that each can be laid over, where there are recordings and simulated records.
     held : mapping
         What channels hold; those of recordings are not named.
+    named : GearNames
+        Shafts whose averages are shown.
     """
 
     labels: dict[str, np.ndarray]
@@ -187,6 +188,7 @@ class PageSource:
     measured: bool = False
     beside: list[int | None] | None = None
     held: Mapping[str, ShownQuantity] = field(default_factory=dict)
+    named: GearNames = PAIR
 
     def holds(self, channel: str) -> ShownQuantity:
         """Return what a channel holds."""
@@ -214,6 +216,7 @@ def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSo
         duration_s=dataset.duration_s,
         indicators=_indicators(table, rows, channel_quantities(dataset)),
         held=channel_quantities(dataset),
+        named=table.named,
         damage=_damage(dataset, labels["record_id"]),
         flanks=[_flanks(dataset, labels, k) for k in range(rows.size)],
         quantities=shown_internals(dataset),
@@ -253,6 +256,7 @@ def page_payload(source: PageSource, stage: Stage, *, full: bool) -> dict[str, A
         "quantities": source.quantities,
         "internals": source.internals(axes.detail, fine),
         "measured": source.measured,
+        "shafts": list(source.named.shafts),
         "beside": source.beside,
     }
 
@@ -263,7 +267,7 @@ def chosen_labels(dataset: Dataset, rows: np.ndarray) -> dict[str, np.ndarray]:
     columns = dict(zip(found.column_names, found.columns, strict=True))
     if gear_names(dataset).is_planetary:
         columns = as_pair(columns)
-    present = [name for name in (*SHOWN, *OF_MEMBERS) if name in columns]
+    present = [name for name in (*SHOWN, *teeth_labels()) if name in columns]
     return {name: np.asarray(columns[name].to_pylist())[rows] for name in present}
 
 
@@ -299,11 +303,8 @@ def _damage(dataset: Dataset, ids: np.ndarray) -> dict[str, list[dict[str, Any]]
 
 
 def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[str, Any]:
-    sections = OF_PLANETS if gear_names(dataset).is_planetary else dict(zip(GEARS, GEARS, strict=True))
-    return {
-        gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear}"][row]))
-        for gear, section in sections.items()
-    }
+    named = OF_PLANETS.items() if gear_names(dataset).is_planetary else zip(GEARS, GEARS, strict=True)
+    return {gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear}"][row])) for gear, section in named}
 
 
 def _indicators(table: RecordTable, rows: np.ndarray, held: Mapping[str, ShownQuantity]) -> list[dict[str, Any]]:

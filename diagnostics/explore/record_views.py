@@ -16,6 +16,9 @@ import numpy as np
 
 from diagnostics.explore.detail import Detail
 from diagnostics.explore.packed import packed_floats, packed_places, packed_steps
+from diagnostics.indicators.mesh_signals import mesh_signals
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.gear_train import gear_train
 from diagnostics.records.recording import Recording
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, AngleGrid, angle_grid, resample_to_angle
 from diagnostics.signal.spectrum import envelope_spectrum
@@ -196,8 +199,25 @@ def _of_angle(
     return {
         "spectrum": packed_steps(spectrum, DECIBEL_STEP),
         "envelope": packed_steps(axes.envelope_orders.largest(envelope, grid.revolutions)),
-        "averages": [_average(steps, teeth[0], wanted, 0), _average(steps, teeth[1], wanted, first)],
+        "averages": _of_members(signal, record, wanted)
+        or [_average(steps, teeth[0], wanted, 0), _average(steps, teeth[1], wanted, first)],
     }
+
+
+def _of_members(signal: np.ndarray, record: Recording, steps_per_tooth: int) -> list[dict[str, Any] | None]:
+    """Return the averages of sun, planet and ring against the carrier; none of a gearbox that is no planetary set."""
+    train = gear_train(record.labels)
+    if train[0].planets is None:
+        return []
+    settings = IndicatorSettings()
+    (set_of_planets,) = mesh_signals({"": signal}, np.asarray(record.tacho_s), record.fs_hz, train, settings)
+    own = set_of_planets.channels[""]
+    return [
+        _packed_average(own.shaft(shaft.name).average, shaft.teeth, shaft.revolutions, steps_per_tooth, None)
+        if shaft.revolutions
+        else None
+        for shaft in set_of_planets.shafts
+    ]
 
 
 def first_gear_tooth(start_rad: float, teeth: tuple[int, int]) -> int:
@@ -210,11 +230,17 @@ def _average(steps: np.ndarray, teeth: int, steps_per_tooth: int, first: int | N
 
     It begins at tooth 0 where `first`, the tooth at the first pulse, is known; `numbered` says so.
     """
-    from scipy.signal import resample
-
     turns = whole_revolutions(steps, teeth, SAMPLES_PER_TOOTH)
     if turns < 1:
         return None
-    average = resample(synchronous_average(steps, teeth, SAMPLES_PER_TOOTH).signal, teeth * steps_per_tooth)
-    turned = np.roll(average, (first or 0) * steps_per_tooth)
+    average = synchronous_average(steps, teeth, SAMPLES_PER_TOOTH).signal
+    return _packed_average(average, teeth, turns, steps_per_tooth, first)
+
+
+def _packed_average(
+    average: np.ndarray, teeth: int, turns: int, steps_per_tooth: int, first: int | None
+) -> dict[str, Any]:
+    from scipy.signal import resample
+
+    turned = np.roll(resample(average, teeth * steps_per_tooth), (first or 0) * steps_per_tooth)
     return {"turns": turns, "numbered": first is not None, **packed_steps(np.asarray(turned))}

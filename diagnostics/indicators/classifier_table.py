@@ -19,6 +19,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import load_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.records.planetary_members import AS_PAIR, MEMBERS
 from diagnostics.records.record_classes import STATE, RecordClasses, record_classes, set_classes
 from diagnostics.records.record_problems import problem_list
 from diagnostics.records.recording import LABEL_NAMES
@@ -30,6 +31,8 @@ from siggen.errors import DatasetError, UsageError
 BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
 SETTINGS_KEY = b"diagnostics.indicators"
 NOTES_KEY = b"diagnostics.notes"
+OWN_NAMES = AS_PAIR | {"revolutions_pinion": "turns_sun", "revolutions_gear": "turns_carrier"}
+"""Column of a pair -> what it holds of a planetary set; turns of the sun are those against the carrier."""
 WRITERS = (".parquet", ".csv")
 
 
@@ -181,6 +184,7 @@ def write_table(table: pa.Table, path: Path) -> None:
         If the suffix is neither.
     """
     check_suffix(path)
+    table = _with_own_names(table)
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".csv":
         siggen.write_csv(table, path)
@@ -188,3 +192,10 @@ def write_table(table: pa.Table, path: Path) -> None:
     from pyarrow import parquet
 
     parquet.write_table(table, path, compression="zstd")
+
+
+def _with_own_names(table: pa.Table) -> pa.Table:
+    """Return a table of planetary sets with the names of sun and ring, which are read as those of a pair."""
+    if not any(name.partition("__")[0].endswith(f"_{MEMBERS[0]}") for name in table.column_names):
+        return table
+    return table.rename_columns([OWN_NAMES.get(name, name) for name in table.column_names])

@@ -14,6 +14,7 @@ from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator, 
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.gear_train import PAIR, GearNames
+from diagnostics.records.planetary_members import MEMBERS
 from siggen.errors import UsageError
 
 WORDS = {
@@ -90,8 +91,8 @@ def _every(
 
 
 def mesh_words(mesh: str) -> str:
-    """Return a further mesh as titles name it."""
-    return f"mesh {mesh}"
+    """Return a further mesh, or a member of a planetary set, as titles name it."""
+    return mesh if mesh in MEMBERS else f"mesh {mesh}"
 
 
 def indicator_definitions(settings: IndicatorSettings, named: GearNames = PAIR) -> dict[str, str]:

@@ -84,7 +84,7 @@ def _section(found: RecordingIndicators) -> list[str]:
     blocks = []
     for channel in found.recording.channels:
         with styled():
-            png = png_bytes(sideband_figure(found.recording, found.teeth, found.pulses, channel))
+            png = png_bytes(sideband_figure(found.recording, found.train[0], found.pulses, channel))
         blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     names, values = indicator_matrix(found)
     rows = [

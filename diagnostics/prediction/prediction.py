@@ -16,7 +16,7 @@ import numpy as np
 
 from diagnostics.prediction.known_reasons import OwnState, check_units, known_reasons, own_state, reference_reasons
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
-from diagnostics.prediction.released_model import ReleasedModel
+from diagnostics.prediction.released_model import ReleasedModel, check_one_mesh
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
@@ -169,6 +169,7 @@ def predict_recording(
         If a channel is in another unit than in training, pulses cannot be found, references were given to a model
         without the variant, or one is the recording itself.
     """
+    check_one_mesh(model)
     for one in (recording, *references):
         check_units(model.facts, one)
     if references:

@@ -25,6 +25,7 @@ from diagnostics.prediction.model_facts import (
 )
 from diagnostics.prediction.release import REFERENCED
 from diagnostics.prediction.training_distance import TrainingDistance
+from diagnostics.records.planetary_members import MEMBERS
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import CIRCULAR, NETWORK
@@ -189,7 +190,6 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     circular = _circular(folder) if CIRCULAR_FILE in loadable else None
     classifiers = {prefix: load_classifier(folder, prefix) for prefix in ("", *([REFERENCED] if referenced else []))}
     _check_folder(folder, facts, classifiers, network, circular)
-    _check_meshes(folder, classifiers)
     return ReleasedModel(
         folder=folder,
         facts=facts,
@@ -206,20 +206,20 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     )
 
 
-def _check_meshes(folder: Path, classifiers: Mapping[str, FeatureClassifier]) -> None:
+def check_one_mesh(model: ReleasedModel) -> None:
     """Check that the classifiers take the features of one mesh alone, whose teeth are all that a recording tells.
 
     Raises
     ------
     UsageError
-        Naming the further meshes.
+        Naming the further meshes, or the members of planetary sets.
     """
-    features = [name for classifier in classifiers.values() for name in classifier.features]
-    if meshes := sorted({mesh for name in features if (mesh := without_mesh(name)[1])}):
+    taken = [one.features for one in (model.classifier, model.referenced_classifier) if one is not None]
+    if meshes := sorted({mesh for names in taken for name in names if (mesh := without_mesh(name)[1])}):
+        what = "planetary sets with" if set(meshes) <= set(MEMBERS) else "gearboxes with the further meshes"
         raise UsageError(
-            f"{folder}: was trained on gearboxes with the further meshes {', '.join(meshes)}; a recording is judged by "
-            "the teeth of one pair. Train on a set without `stages`, or judge sets that have them with "
-            "`siggen-diagnostics report SET --test OTHER`."
+            f"{model.folder}: was trained on {what} {', '.join(meshes)}; a recording is judged by the teeth of one "
+            "pair. Train on a set of pairs, or judge sets like that with `siggen-diagnostics report SET --test OTHER`."
         )
 
 

@@ -17,9 +17,11 @@ from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import mesh_words
 from diagnostics.page.provenance import without_path
-from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, SLANTED, new_figure, state_colours, state_ticks
+from diagnostics.page.sideband_marks import PASSING, draw_marks, mark_handles, order_words, sideband_places, turn_words
+from diagnostics.page.style import SLANTED, new_figure, state_colours, state_ticks
 from diagnostics.page.tables import explorer_link, indicator_links, records_line, state_links
 from diagnostics.records.channel_quantities import channel_quantities
+from diagnostics.records.gear_train import Mesh
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures
 from diagnostics.report.examples import Example, ExampleSet, around_mesh, example_set
@@ -107,17 +109,17 @@ def stiffness_loss_figure(
 
 
 def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
-    """Return the signal over two pinion revolutions, one row per state, all on one scale."""
+    """Return the signal over two revolutions of pinion or sun, one row per state, all on one scale."""
     rows = len(examples.examples)
     figure, axes = new_figure(rows, 1, height_in=_height_in(0.7, 1.1, rows), sharex=True, sharey=True)
     for axis, example in zip(axes[:, 0], examples.examples, strict=True):
         start_s = example.tacho_s[0] if len(example.tacho_s) else 0.0
         first = round(start_s * examples.fs_hz)
-        signal = example.signal[first : first + round(REVOLUTIONS_SHOWN / examples.speed_hz * examples.fs_hz)]
+        signal = example.signal[first : first + round(REVOLUTIONS_SHOWN / examples.turns_hz * examples.fs_hz)]
         axis.plot(1e3 * np.arange(signal.size) / examples.fs_hz, signal, color=colours[example.state], linewidth=0.6)
         axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
         for pulse in range(REVOLUTIONS_SHOWN + 1):
-            axis.axvline(1e3 * pulse / examples.speed_hz, color="#9aa7b2", linewidth=0.7, linestyle=":")
+            axis.axvline(1e3 * pulse / examples.turns_hz, color="#9aa7b2", linewidth=0.7, linestyle=":")
     axes[-1, 0].set_xlabel("Time since a shaft pulse [ms]")
     figure.supylabel(f"{examples.quantity.capitalize()} [{examples.unit}]", fontsize=10)
     return figure
@@ -139,10 +141,11 @@ def spectrum_figure(examples: ExampleSet, colours: dict[str, str], harmonic: int
         axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
     axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
     axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
-    mesh_hz = harmonic * examples.teeth[0] * examples.speed_hz
-    axes[-1, 0].set_xlabel(f"Offset from {mesh_hz:.0f} Hz [pinion orders of {examples.speed_hz:.3g} Hz]")
+    mesh_hz = harmonic * examples.teeth[0] * examples.turns_hz
+    words = f"{order_words(examples.mesh)} of {examples.turns_hz:.3g} Hz"
+    axes[-1, 0].set_xlabel(f"Offset from {mesh_hz:.0f} Hz [{words}]")
     figure.supylabel(f"Amplitude [{examples.unit}]", fontsize=10)
-    _add_legend(axes[0, 0])
+    _add_legend(axes[0, 0], examples.mesh)
     return figure
 
 
@@ -161,31 +164,19 @@ def _draw_spectrum(axis: Any, example: Example, examples: ExampleSet, harmonic: 
         return
     offset, amplitude = _around(example.spectrum, examples, harmonic)
     axis.semilogy(offset, amplitude, color=colour)
-    ratio = examples.teeth[0] / examples.teeth[1]
-    for step, marker, marked in ((ratio, "|", GEAR_COLOUR), (1.0, "v", PINION_COLOUR)):
-        lines = np.array([k * step for k in range(-SIDEBANDS, SIDEBANDS + 1) if k])
-        height = np.array([_peak(offset, amplitude, line, 1.5 / example.spectrum.revolutions) for line in lines])
-        axis.plot(lines, height * 1.9, linestyle="none", marker=marker, markersize=4.5, color=marked)
+    places = sideband_places(examples.mesh, harmonic, SIDEBANDS)
+    draw_marks(axis, (offset, amplitude), places, 1.5 / example.spectrum.revolutions)
 
 
-def _peak(offset: np.ndarray, amplitude: np.ndarray, line: float, reach: float) -> float:
-    """Return the largest amplitude within reach of a line."""
-    return float(amplitude[np.abs(offset - line) <= reach].max(initial=1e-30))
-
-
-def _add_legend(axis: Any) -> None:
+def _add_legend(axis: Any, mesh: Mesh) -> None:
     from matplotlib.lines import Line2D
 
-    handles = [
-        Line2D([], [], linestyle="none", marker="v", markersize=4.5, color=PINION_COLOUR, label="pinion sidebands"),
-        Line2D([], [], linestyle="none", marker="|", markersize=6, color=GEAR_COLOUR, label="gear sidebands"),
-        Line2D([], [], color=BEHIND_COLOUR, linewidth=1.5, label="healthy"),
-    ]
+    handles = [*mark_handles(mesh), Line2D([], [], color=BEHIND_COLOUR, linewidth=1.5, label="healthy")]
     axis.legend(
         handles=handles,
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
-        ncols=3,
+        ncols=4,
         fontsize=8,
         borderpad=0.0,
         columnspacing=1.0,
@@ -262,14 +253,17 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
     shown = {each.state: explorer_link(explorer, record=each.record_id) for each in examples.examples}
     behind = records_line("Records", shown)
     drawing.behind["waveforms"] = behind
-    drawing.vibration["waveforms"] = (figure, f"Waveform in each state: {which}. Dotted: one pinion revolution.")
+    drawing.vibration["waveforms"] = (
+        figure,
+        f"Waveform in each state: {which}. Dotted: one {turn_words(examples.mesh)}.",
+    )
     spectra = [example.spectrum for example in examples.examples if example.spectrum]
     if not spectra:
-        drawing.notes.append("No order spectra: the example records hold no whole pinion revolution.")
+        drawing.notes.append(f"No order spectra: the example records hold no whole {turn_words(examples.mesh)}.")
         return
-    for harmonic in sorted({*FIRST_HARMONICS, strongest_harmonic(spectra[0], examples.teeth[0])}):
+    for harmonic in sorted({*FIRST_HARMONICS, _strongest(spectra[0], examples.mesh)}):
         figure = spectrum_figure(examples, colours, harmonic)
-        window = f"Hann, {spectra[0].revolutions} pinion revolutions"
+        window = f"Hann, {spectra[0].revolutions} x one {turn_words(examples.mesh)}"
         caption = f"Order spectrum ({window}) around mesh harmonic {harmonic}: {which}."
         drawing.vibration[f"spectrum_h{harmonic}"] = (figure, caption)
         drawing.behind[f"spectrum_h{harmonic}"] = behind
@@ -279,6 +273,16 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
         caption = f"Order spectrum ({window}) around mesh harmonic 1 of {mesh_words(mesh.name)}: {which}."
         drawing.vibration[f"spectrum_h1_{mesh.name}"] = (figure, caption)
         drawing.behind[f"spectrum_h1_{mesh.name}"] = behind
+
+
+def _strongest(spectrum: OrderSpectrum, mesh: Mesh) -> int:
+    """Return the mesh harmonic with the largest line, of a planetary set where passing planets move it to."""
+    teeth = mesh.teeth[0]
+    if mesh.planets is None:
+        return strongest_harmonic(spectrum, teeth)
+    harmonics = range(1, int(spectrum.order[-1] / teeth) - 1)
+    orders = np.array([h * teeth + sideband_places(mesh, h, 1)[PASSING][0] for h in harmonics])
+    return 1 + int(np.argmax(spectrum.amplitude_m_s2[np.searchsorted(spectrum.order, orders)]))
 
 
 def _draw_damage(

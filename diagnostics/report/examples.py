@@ -41,6 +41,13 @@ class ExampleSet:
     teeth: tuple[int, int]
     fs_hz: float
     train: tuple[Mesh, ...]
+    mesh: Mesh
+
+    @property
+    def turns_hz(self) -> float:
+        """How often the pinion turns, or the sun against its carrier."""
+        planets = self.mesh.planets
+        return self.speed_hz * (1.0 if planets is None else float(planets.sun_turns))
 
     @property
     def healthy(self) -> Example | None:
@@ -72,7 +79,8 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
         torque_nm=float(first["torque_nm"]),
         teeth=(int(first["teeth_pinion"]), int(first["teeth_gear"])),
         fs_hz=dataset.fs_hz,
-        train=gear_train(first),
+        train=(train := gear_train(first)),
+        mesh=train[0],
     )
 
 
@@ -92,7 +100,7 @@ def around_mesh(examples: ExampleSet, mesh: Mesh) -> ExampleSet:
         )
         for example in examples.examples
     ]
-    return replace(examples, examples=tuple(shown), speed_hz=examples.speed_hz * turns, teeth=mesh.teeth)
+    return replace(examples, examples=tuple(shown), speed_hz=examples.speed_hz * turns, teeth=mesh.teeth, mesh=mesh)
 
 
 def _record(dataset: Dataset, number: int) -> dict[str, Any]:

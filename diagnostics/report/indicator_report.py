@@ -22,6 +22,7 @@ from diagnostics.page.tables import indicator_links, records_line, set_table
 from diagnostics.page.wording import joined, percent
 from diagnostics.records.channel_quantities import ShownQuantity, channel_quantities
 from diagnostics.records.named_set import words_of
+from diagnostics.records.recording import gear_names
 from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
 from diagnostics.report.indicator_figures import column_title
@@ -309,14 +310,14 @@ def _size_text(evaluated: Evaluated) -> str:
 
 def _notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     table = evaluated.table
-    angle = table.settings.speed_range_hz
+    angle, (first, *_, last) = table.settings.speed_range_hz, gear_names(dataset).shafts
     settings = ", ".join(f"{name} {value}" for name, value in asdict(table.settings).items() if value is not None)
     return [
         *(f"Left out: {problem}" for problem in table.problems),
         *_note_counts(table),
         *kind_notes(dataset, evaluated.records.states),
         *clipping_notes(dataset),
-        f"Revolutions averaged: pinion {_range(table.revolutions[:, 0])}, gear {_range(table.revolutions[:, 1])}. "
+        f"Revolutions averaged: {first} {_range(table.revolutions[:, 0])}, {last} {_range(table.revolutions[:, 1])}. "
         "Where noise matters, values from averages depend on the number of revolutions (see noise_share).",
         f"Settings: {settings}; bootstrap seed {evaluated.settings.seed}, "
         f"{evaluated.records.weights.shape[0] - 1} resamples.",

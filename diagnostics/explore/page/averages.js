@@ -9,7 +9,7 @@ Explore.withoutMeanTooth = (average, steps) => {
   return average.map((value, k) => value - mean[k % steps]);
 };
 
-Explore.shaft = "pinion";
+Explore.shaft = "";
 
 Explore.toothMarks = (row, gear, numbered) => (first, last) => {
   const found = [];
@@ -24,7 +24,8 @@ Explore.showAverages = (section, row, channel, healthy) => {
   Explore.clear(body);
   const label = Explore.element("label", "Shaft ");
   const select = Explore.element("select", "", { id: "shaft" });
-  for (const name of ["pinion", "gear"]) select.append(Explore.element("option", name, { value: name }));
+  if (!Explore.data.shafts.includes(Explore.shaft)) Explore.shaft = Explore.data.shafts[0];
+  for (const name of Explore.data.shafts) select.append(Explore.element("option", name, { value: name }));
   select.value = Explore.shaft;
   select.addEventListener("change", () => {
     Explore.shaft = select.value;
@@ -33,11 +34,11 @@ Explore.showAverages = (section, row, channel, healthy) => {
   });
   label.append(select);
   controls.replaceChildren(label);
-  const place = Explore.shaft === "pinion" ? 0 : 1;
+  const place = Explore.data.shafts.indexOf(Explore.shaft);
   const view = Explore.view(row, channel);
   if (!view.averages) return void body.append(Explore.element("p", view.missing, { class: "note" }));
   const average = view.averages[place];
-  if (!average) return void body.append(Explore.element("p", `The record holds no whole revolution of the ${Explore.shaft}.`, { class: "note" }));
+  if (!average) return void body.append(Explore.element("p", `The record holds too few revolutions of the ${Explore.shaft}.`, { class: "note" }));
   Explore.drawAverages(body, row, channel, average, Explore.healthyAverage(healthy, channel, place, average));
 };
 
@@ -56,8 +57,8 @@ Explore.drawAverages = (body, row, channel, packed, base) => {
   const both = (values) => (base ? [x, values(base), values(own)] : [x, values(own)]);
   const series = () => (base ? [Explore.line(Explore.otherName(), "healthy", { alpha: 0.75 }), Explore.line("record", "record")] : [Explore.line("record", "record")]);
   const marks = Explore.toothMarks(row, Explore.shaft, packed.numbered);
-  const shared = { x: packed.numbered ? `tooth of the ${Explore.shaft}` : "teeth since the first pulse", y: Explore.held(channel).unit, range: [0, own.length / steps], marks, group: "teeth" };
-  const mark = packed.numbered ? "Shaded: one pitch from where a damaged tooth enters contact; the structure rings on after it." : "The set does not say which gear tooth the first pulse meets, so that no tooth is marked.";
+  const shared = { x: packed.numbered ? `tooth of the ${Explore.shaft}` : `teeth of the ${Explore.shaft} in a turn`, y: Explore.held(channel).unit, range: [0, own.length / steps], marks, group: "teeth" };
+  const mark = packed.numbered ? "Shaded: one pitch from where a damaged tooth enters contact; the structure rings on after it." : "The set does not say which tooth the first pulse meets, so that no tooth is marked.";
   Explore.chart(body, { ...shared, title: "Synchronous average", data: both((values) => values), series: series(), caption: `Mean over ${packed.turns} revolutions of the ${Explore.shaft}. ${mark}` });
   Explore.chart(body, { ...shared, title: "Without the mean tooth", height: 190, data: both((values) => Explore.withoutMeanTooth(values, steps)), series: series(), caption: "Average minus the mean of all its teeth: all mesh harmonics are gone, what differs from tooth to tooth stays." });
   if (base) Explore.chart(body, { ...shared, title: `Difference from the ${Explore.otherName()} record`, height: 190, data: [x, Explore.minus(own, base)], series: [Explore.line(`record minus ${Explore.otherName()}`, "record")], caption: "Record minus the one laid over, at the same tooth." });

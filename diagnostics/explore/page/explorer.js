@@ -1,12 +1,14 @@
 // Brings the parts together: what is chosen, and what then is drawn.
 Explore.chosen = null;
 
+Explore.teeth = (record) => (record.teeth_planet ? `${record.teeth_sun}, ${record.teeth_planet} and ${record.teeth_ring}` : `${record.teeth_pinion} and ${record.teeth_gear}`);
+
 Explore.facts = (row) => {
   const record = Explore.data.records[row];
   const area = record.damaged_area_mm2 ? `, ${Explore.number(record.damaged_area_mm2)} mm² damaged` : "";
   const load = record.torque_nm === null ? "" : `, load ${Explore.number(record.torque_nm)}`;
-  if (Explore.isRecording(row)) return `${record.name}, ${record.state}, pinion ${Explore.number(record.speed_hz)} Hz${load}, ${record.teeth_pinion} and ${record.teeth_gear} teeth.`;
-  return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}${record.predicted === undefined ? "" : `, ${record.named} named ${record.predicted}`}.`;
+  if (Explore.isRecording(row)) return `${record.name}, ${record.state}, ${Explore.data.shafts[0]} ${Explore.number(record.speed_hz)} Hz${load}, ${Explore.teeth(record)} teeth.`;
+  return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${Explore.teeth(record)} teeth${area}, ${record.split}${record.predicted === undefined ? "" : `, ${record.named} named ${record.predicted}`}.`;
 };
 
 Explore.isRecording = (row) => Explore.data.measured || Explore.data.records[row].kind === "recording";

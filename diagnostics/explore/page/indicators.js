@@ -120,7 +120,7 @@ Explore.buildScatter = (section) => {
   const controls = section.querySelector(".controls");
   const names = Explore.data.indicators.map(Explore.indicatorName);
   const start = (wanted, fallback) => Math.max(Explore.data.indicators.findIndex(({ name }) => name.startsWith(wanted)), fallback);
-  if (names.length > 1) Explore.pair = [start("rms__", 0), start("fm4_pinion__", 1)];
+  if (names.length > 1) Explore.pair = [start("rms__", 0), start(`fm4_${Explore.data.shafts[0]}__`, 1)];
   if (Explore.pair[0] === Explore.pair[1]) Explore.pair = [0, 1];
   ["Across", "Up"].forEach((title, axis) => {
     const label = Explore.element("label", `${title} `);

@@ -1,3 +1,8 @@
+// What the orders of spectra count: of a planetary set turns of the sun against its carrier.
+Explore.planetary = () => Explore.data.shafts.length > 2;
+Explore.orderWords = () => (Explore.planetary() ? `order of the ${Explore.data.shafts[0]} against the carrier` : "pinion order");
+Explore.turnWords = () => (Explore.planetary() ? `turns of the ${Explore.data.shafts[0]} against the carrier` : "pinion revolutions");
+
 // Order spectrum with its difference from the healthy record, and the envelope spectrum.
 Explore.orders = (count, step) => Array.from({ length: count }, (_, k) => k * step);
 
@@ -7,7 +12,7 @@ Explore.spectrumMarks = (row) => (first, last) => {
   const { teeth_pinion: pinion, teeth_gear: gear } = Explore.data.records[row];
   const found = [];
   for (let h = Math.max(1, Math.ceil(first / pinion)); h * pinion <= last; h++) found.push({ at: h * pinion, text: `mesh ${h}` });
-  if (last - first > 1.2 * pinion) return found;
+  if (last - first > 1.2 * pinion || Explore.planetary()) return found;
   for (let h = Math.max(1, Math.floor(first / pinion)); h * pinion <= last + pinion; h++)
     for (let k = 1; k <= 6; k++)
       for (const side of [-1, 1]) {
@@ -30,11 +35,11 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
   const top = own.reduce((found, value, k) => (k && value !== null && value > own[found] ? k : found), 1);
   const series = [Explore.line("record", "record")];
   if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
-  const shared = { x: "pinion order", range, marks: Explore.spectrumMarks(row), group: "orders" };
+  const shared = { x: Explore.orderWords(), range, marks: Explore.spectrumMarks(row), group: "orders" };
   Explore.chart(body, {
     ...shared, title: "Order spectrum", y: `dB over 1 ${Explore.held(channel).unit}`, series, data: base ? [x, own, base] : [x, own],
     summary: `Strongest line at order ${Explore.number(x[top])} with ${Explore.number(own[top])} dB.`,
-    caption: "Hann amplitude over whole pinion revolutions; a point is the largest line near it. Zoom to a mesh line for its sidebands: pinion, and nearer still the gear.",
+    caption: `Hann amplitude over whole ${Explore.turnWords()}; a point is the largest line near it.${Explore.planetary() ? " Planets that pass move lines off the mesh frequency." : " Zoom to a mesh line for its sidebands: pinion, and nearer still the gear."}`,
   });
   if (!base) return;
   Explore.chart(body, {
@@ -46,7 +51,8 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
 Explore.envelopeMarks = (row) => (first, last) => {
   const { teeth_pinion: pinion, teeth_gear: gear } = Explore.data.records[row];
   const found = [];
-  for (let k = 1; k <= 4; k++) found.push({ at: k, text: k < 3 ? `${k}× pinion` : "" }, { at: (k * pinion) / gear, faint: true, colour: "accent", text: last - first < 4 && k < 3 ? `${k}× gear` : "" });
+  const [fast, slow] = Explore.planetary() ? [Explore.data.shafts[0], "carrier"] : ["pinion", "gear"];
+  for (let k = 1; k <= 4; k++) found.push({ at: k, text: k < 3 ? `${k}× ${fast}` : "" }, { at: (k * pinion) / gear, faint: true, colour: "accent", text: last - first < 4 && k < 3 ? `${k}× ${slow}` : "" });
   found.push({ at: pinion, text: "mesh" });
   return found;
 };
@@ -64,7 +70,7 @@ Explore.showEnvelope = (section, row, channel, healthy) => {
   if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   const top = own.reduce((found, value, k) => (value !== null && value > own[found] ? k : found), 1);
   Explore.chart(body, {
-    title: "Envelope spectrum", x: "pinion order", y: `amplitude [${Explore.held(channel).unit}]`, series, data: base ? [x, own, base] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),
+    title: "Envelope spectrum", x: Explore.orderWords(), y: `amplitude [${Explore.held(channel).unit}]`, series, data: base ? [x, own, base] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),
     summary: `Strongest line at order ${Explore.number(x[top])}.`,
     caption: "Envelope of everything above half the mesh order. A local fault repeats once per revolution of its shaft: lines at its order and multiples.",
   });

@@ -16,12 +16,13 @@ Explore.overlaid = (own, other) => {
   return { series, data: uPlot.join([[own.x, own.y], [other.x, other.y]]) };
 };
 
-Explore.angleLabel = (own) => (own.turning ? "pinion revolutions since the first pulse" : "time [s]");
+Explore.angleLabel = (own) => (own.turning ? `${Explore.turnWords()} since the first pulse` : "time [s]");
 
 // Angles (revolutions since the first pulse) at which a damaged tooth enters contact, within first ... last.
 Explore.entries = (row, first, last) => {
   const record = Explore.data.records[row];
   const found = [];
+  if (Explore.planetary()) return found; // which tooth meets which planet follows from the carrier, which has no pulse
   const pairs = record.start_angle_rad === undefined ? 0 : Math.ceil(record.start_angle_rad / (2 * Math.PI)) * record.teeth_pinion;
   for (const [gear, tooth] of Explore.damagedTeeth(row)) {
     if (gear === "gear" && record.start_angle_rad === undefined) continue;
