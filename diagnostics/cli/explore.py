@@ -227,7 +227,7 @@ def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: Set
     from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.explorer import ExplorerOptions, explorer_of, write_explorer
     from diagnostics.indicators.own_indicator import load_indicators
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.records.named_set import open_set
 
     own, dataset = load_indicators(of_set.indicator), open_set(folder)
     options = ExplorerOptions(**asdict(amount), served=of_set.serve, model=of_set.model, own=own)
@@ -261,7 +261,7 @@ def _recordings_page(
         return write_recordings_page(name, shown, path, full=amount.full, stage=terminal_stage)
     from diagnostics.explore.beside_page import write_beside_page
     from diagnostics.explore.explorer import ExplorerOptions
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.records.named_set import open_set
 
     options = ExplorerOptions(**asdict(amount))
     return write_beside_page(name, shown, open_set(compared.beside), path, options, terminal_stage)

@@ -138,11 +138,11 @@ def _ranking_report(
     from diagnostics.indicators.ranking_table import ranking_table
     from diagnostics.indicators.settings import IndicatorSettings
     from diagnostics.indicators.table import record_table
+    from diagnostics.records.named_set import open_set
     from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
     from diagnostics.statistics.assessment import AssessmentSettings
-    from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
     own, states = load_indicators(computing.indicator), ranking.state or ()
@@ -174,16 +174,17 @@ def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: 
     from diagnostics.indicators.classifier_table import check_table, classifier_table, write_table
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.indicators.table import record_table
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.records.named_set import open_set, words_of
 
     own = load_indicators(indicator)
     dataset = open_set(directory)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
         table = record_table(dataset, own=own, workers=workers, advance=advance)
     notes = check_table(table, dataset)
-    write_table(classifier_table(table, notes), out)
+    words = words_of(dataset)
+    write_table(words.table(classifier_table(table, notes)), out)
     for note in notes:
-        typer.echo(f"note: {note}", err=True)
+        typer.echo(f"note: {words(note)}", err=True)
     typer.echo(str(out))
 
 

@@ -188,6 +188,12 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
 
 REPEATED = {"stages[].gears": "gears", "stages[].gear": "dynamics.gear"}
 """Section -> the section whose keys it repeats with the same meaning: one line says so."""
+TAKEN_OVER = {
+    "machine.shafts[]": ("dynamics.gear", "stages[]"),
+    "machine.gears[]": ("gears.gear",),
+    "machine.meshes[]": ("gears", "stages[]"),
+}
+"""Section with keys of its own -> the sections whose other keys it repeats with the same meaning."""
 
 
 @dataclass(frozen=True)
@@ -256,6 +262,10 @@ def without_repeated(schema: Schema, keys: list[Key]) -> list[Key]:
     left = []
     for key in keys:
         section = next((one for one in REPEATED if key.path.startswith(f"{one}.")), None)
+        mixed = next((one for one in TAKEN_OVER if key.path.startswith(f"{one}.")), "")
+        others = (meanings.get(of + key.path.removeprefix(mixed)) for of in TAKEN_OVER.get(mixed, ()))
+        if meanings[key.path] in others:
+            continue
         if section is None:
             left.append(key)
         elif meanings[key.path] != meanings.get(REPEATED[section] + key.path.removeprefix(section)):
@@ -277,6 +287,8 @@ def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str 
     names = ", ".join(f"`{name}`" for name in entry.names)
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
+    if (of := TAKEN_OVER.get(f"{first.path}[]")) is not None:
+        values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
     ending = f" ({defaults})" if defaults else ""
     return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
 

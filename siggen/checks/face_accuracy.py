@@ -48,7 +48,7 @@ def _slopes_um(rig: Rig, grade: int) -> float:
     """Return the largest helix slopes of both gears together [µm]."""
     pair = gear_pair(_gears(rig))
     return sum(
-        1e6 * LARGEST_SHARE * flank_tolerances(gear, pair.face_width_m, grade).helix_slope_m
+        1e6 * LARGEST_SHARE * flank_tolerances(gear, pair.face_width_m, grade, pair.helix_rad).helix_slope_m
         for gear in (pair.pinion, pair.gear)
     )
 

@@ -57,17 +57,13 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     with_modes, unread_modes = with_mode_file(filled, folder)
     parsed = parse(with_modes)
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
-    problems = [
-        *written,
-        *parsed.problems,
+    of_physics = [
         *physical_problems(parsed),
         *state_problems(parsed),
-        *unread,
-        *unread_modes,
-        *unusable,
         *response_problems(parsed.sections),
         *mode_problems(parsed.sections),
     ]
+    problems = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *map(parsed.names.problem, of_physics)]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:

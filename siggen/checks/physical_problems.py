@@ -121,7 +121,7 @@ def _of_ring(sections: Mapping[str, Any]) -> Iterator[Problem]:
 def _outside_tolerances(pairs: Sequence[GearPair], members: Sequence[str], name: str = "") -> Iterator[Problem]:
     for pair in pairs:
         for which in members:
-            for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which):
+            for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which, pair.helix_rad):
                 received = f"tolerances for a {name or which} with {problem.name} {problem.received}"
                 yield Problem("manufacture", received, f"{problem.allowed}; or null")
 

@@ -41,6 +41,17 @@ def life_summary(config: Config) -> dict[str, Any] | None:
     }
 
 
+def life_doubts(summary: dict[str, Any] | None) -> list[str]:
+    """Return what makes a schedule useless."""
+    if summary is None or summary["failed"]:
+        return []
+    lives, last = f"no gearbox of {summary['lives']}", "before its last inspection (life.interval_h, life.most)"
+    pit_h, end_h = (summary["age_h"][name][1] for name in ("first_pit", "functional"))
+    if not summary["pitted_in_schedule"]:
+        return [f"{lives} has a pit {last}: half of them have their first at {pit_h:.4g} h"]
+    return [f"{lives} fails {last}: half of them would at {end_h:.4g} h"]
+
+
 def _slope(ages_h: list[float]) -> float | None:
     """Return the Weibull slope of ages by maximum likelihood; None for fewer than two different ones."""
     from scipy.stats import weibull_min

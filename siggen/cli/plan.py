@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from siggen.cli.json_output import AsJson, echo_json
-from siggen.cli.life_table import life_summary, life_table
+from siggen.cli.life_table import life_doubts, life_summary, life_table
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -130,6 +130,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
 
     specimens = {split: specimen_count(config, split) for split in SPLITS}
     records = planned(config).count
+    lives, notes = life_summary(config), _notes(config)
     raw_bytes = records * config.samples * 4 * len(config.channels)
     return {
         "name": config.name,
@@ -142,17 +143,19 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "duration_s": config.duration_s,
         "signal_hours": records * config.duration_s / 3600,
         "mesh_hz": list(_mesh_range_hz(config)),
+        "mesh": config.names.mesh(""),
         "stages_hz": {name: list(ends) for name, ends in _stage_ranges_hz(config).items()},
         "specimens_of_split": specimens,
         "states": _state_counts(config, specimens),
         "severity_share": _severity_shares(config),
-        "life": life_summary(config),
+        "life": lives,
         "shards_of_split": {split: shard_count(config, split) for split in SPLITS},
         "specimens_per_full_shard": specimens_per_shard(config),
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
-        **_notes(config),
+        **notes,
+        "implausible": [*notes["implausible"], *life_doubts(lives)],
     }
 
 
@@ -166,18 +169,18 @@ def _notes(config: Config) -> dict[str, Any]:
     from siggen.specimen.gears import model_notes
     from siggen.views.table_error import table_error_text
 
-    return {
-        "stiffness_tables": table_error_text(config),
+    notes = {
         "stiffness_notes": _of_every_pair(config, model_notes),
-        "manufacture": _manufacture(config),
-        "variation": list(variation_notes(config)),
-        "lubrication_notes": list(contact_notes(config)),
+        "variation": variation_notes(config),
+        "lubrication_notes": contact_notes(config),
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
         "damage_notes": _of_every_pair(config, damage_notes),
-        "state_notes": list(state_notes(config)),
-        "implausible": list(implausible(config)),
+        "state_notes": state_notes(config),
+        "implausible": implausible(config),
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }
+    own = {kind: [config.names.text(note) for note in found] for kind, found in notes.items()}
+    return {"stiffness_tables": table_error_text(config), "manufacture": _manufacture(config), **own}
 
 
 def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> list[str]:
@@ -213,7 +216,7 @@ def _stage_ranges_hz(config: Config) -> dict[str, tuple[float, float]]:
 
     first, ends = config.gears.pinion.teeth, _mesh_range_hz(config)
     return {
-        stage.name: (float(teeth / first) * ends[0], float(teeth / first) * ends[1])
+        config.names.mesh(stage.name): (float(teeth / first) * ends[0], float(teeth / first) * ends[1])
         for stage, teeth in zip(config.stages, turned_teeth(config.gears, config.stages), strict=True)
     }
 
@@ -271,7 +274,7 @@ def _overview(summary: dict[str, Any]) -> Table:
         "records": f"{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
         "channels": ", ".join(summary["channels"]),
         "hours of signal": f"{summary['signal_hours']:.3g}",
-        "mesh frequency": _hertz(low_hz, high_hz),
+        f"mesh of {summary['mesh']}" if summary["mesh"] else "mesh frequency": _hertz(low_hz, high_hz),
         **{f"mesh of {name}": _hertz(*ends) for name, ends in summary["stages_hz"].items()},
         **_balance(summary),
         "errors of the teeth": summary["manufacture"],

@@ -70,10 +70,22 @@ PIT_COLUMNS = (
     Column("face_mm", F64, MM, "where it began across the face"),
     Column("height_mm", F64, MM, "where it began above the base circle, along the flank"),
 )
+OUTLOOK_COLUMNS = (
+    Column("record_id", pa.int64(), "", "first record of the inspection"),
+    SPECIMEN,
+    SPLIT,
+    Column("inspection", I32, "", "number of the inspection"),
+    Column("rul_q10_h", F64, HOURS, "10 % quantile of the remaining life over continuations of the true state"),
+    Column("rul_q50_h", F64, HOURS, "its median"),
+    Column("rul_q90_h", F64, HOURS, "its 90 % quantile"),
+)
 LIFE_TABLES: dict[str, tuple[Column, ...]] = {
     "units": UNIT_COLUMNS,
     "inspections": INSPECTION_COLUMNS,
     "teeth": TEETH_COLUMNS,
     "pits": PIT_COLUMNS,
+    "outlook": OUTLOOK_COLUMNS,
 }
 """Tables of `life/<table>/<split>.parquet`."""
+NULLABLE = {"rul_rated_h", "rul_h"}
+"""Columns that are null where a gearbox was suspended: nobody knows them."""

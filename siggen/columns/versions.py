@@ -11,5 +11,5 @@ SCHEMA_VERSION = "3"
 READ_VERSIONS = (SCHEMA_VERSION,)
 """Versions that are read; nothing older was ever released."""
 
-SIMULATION_VERSION = 7
+SIMULATION_VERSION = 8
 """Raised, at most once per release, when a configuration of an earlier release comes to give a record other numbers."""

@@ -16,8 +16,11 @@ from siggen.config.gears import Gears
 from siggen.config.housing import Housing, PlateHousing, RigidHousing
 from siggen.config.internals import Internals
 from siggen.config.life import Life
+from siggen.config.machine import Machine
 from siggen.config.manufacture import Manufacture
+from siggen.config.names import NO_NAMES, Names
 from siggen.config.planetary import Planetary
+from siggen.config.short_form import names_of, own_form
 from siggen.config.stages import Stage
 from siggen.config.states import State, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
@@ -94,9 +97,12 @@ class Config(Section):
         default=1, description="records per state and operating point"
     )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
-    gears: Gears = Field(description="the gear pair")
+    gears: Gears = Field(description="the gear pair; needed without `machine`")
     stages: tuple[Stage, ...] = Field(
         default=(), description="further meshes behind `gears`, in the order of power; the last gear drives the load"
+    )
+    machine: Machine | None = Field(
+        default=None, description="shafts, gears and meshes with names of your own, in place of `gears` and `stages`"
     )
     planetary: Planetary | None = Field(
         default=None, description="null: a pair on two shafts; given: `gears` are sun and planets in a ring"
@@ -166,6 +172,11 @@ class Config(Section):
         """Records of one specimen: all states at all operating points, repeats included; with `life` the most."""
         return self.state_count * len(self.operating_points) * self.repeats
 
+    @property
+    def names(self) -> Names:
+        """The user's own names of gears, shafts and meshes; without a machine those of the short form."""
+        return NO_NAMES if self.machine is None else names_of(self.machine)
+
     def grown_from(self, state_id: int) -> int | None:
         """Return the index of the state whose damage a state contains, or None."""
         return grown_from(self.states, state_id)
@@ -179,6 +190,9 @@ class Config(Section):
         found = {name: _plain(value) for name, value in self.model_dump(mode="json").items()}
         if not self.states:  # which no file may give beside a section life
             del found["states"]
+        if self.machine is not None:
+            return own_form(found, self.names)
+        del found["machine"]
         return found
 
     @cached_property

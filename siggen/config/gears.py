@@ -27,8 +27,8 @@ class Wheel(Section):
     )
 
 
-class Pair(Section):
-    """One pair: common tooth form, material, and the two wheels. The pinion drives."""
+class ToothForm(Section):
+    """What both gears of a mesh share: tooth form, face width, material, distance."""
 
     module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module")
     pressure_angle_deg: Annotated[Number, Within(least=10, most=35)] = Field(
@@ -49,6 +49,11 @@ class Pair(Section):
     centre_distance_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: the one at which the profile shifts mesh without backlash"
     )
+
+
+class Pair(ToothForm):
+    """One pair: common tooth form, material, and the two wheels. The pinion drives."""
+
     pinion: Wheel = Field(description="the driving gear")
     gear: Wheel = Field(description="the driven gear")
 

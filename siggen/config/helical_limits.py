@@ -17,8 +17,6 @@ def helical_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> It
         return
     if "dynamics" in sections:
         yield from _of_dynamics(sections["dynamics"])
-    if sections.get("manufacture") is not None:
-        yield Problem("manufacture", "errors of single teeth", f"allowed: null with helical teeth; {SPUR}")
     yield from _of_states(sections)
 
 
@@ -39,9 +37,6 @@ def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def _of_dynamics(dynamics: Any) -> Iterator[Problem]:
-    if dynamics.mesh.law == "pairs" and dynamics.friction.model != "off":
-        allowed = f"allowed: off with helical teeth, whose slices slide at different speeds; {SPUR}"
-        yield Problem("dynamics.friction.model", f"'{dynamics.friction.model}'", allowed)
     if dynamics.mesh.squeeze_film != "off":
         yield Problem("dynamics.mesh.squeeze_film", "'on'", f"allowed: off with helical teeth; {SPUR}")
     if dynamics.shafts is not None:

@@ -62,9 +62,6 @@ def _of_dynamics(dynamics: Dynamics) -> Iterator[Problem]:
         yield Problem("dynamics.model", received, f"allowed: 8dof {BESIDE}, whose bodies stand on the ground")
     if dynamics.mesh.law != "pairs":
         yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {BESIDE}")
-    if dynamics.friction.model != "off":
-        received = f"'{dynamics.friction.model}'{' (by default)' if dynamics.friction.model == 'auto' else ''}"
-        yield Problem("dynamics.friction.model", received, f"allowed: off {BESIDE}, whose flanks do not rub so far")
     if dynamics.shafts is not None:
         yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
     if dynamics.unbalance != Unbalance():
@@ -81,8 +78,6 @@ def _of_others(sections: Mapping[str, Any]) -> Iterator[Problem]:
     for key in ("background", "internals"):
         if sections.get(key) is not None:
             yield Problem(key, "a section", f"allowed: null {BESIDE}")
-    if "variation" in sections and sections["variation"].active:
-        yield Problem("variation", "a section", f"allowed: none {BESIDE}, which turns evenly")
     for index, point in enumerate(sections.get("operating_points", ())):
         if bounds(point.torque_nm)[0] <= 0.0:
             yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")

@@ -18,6 +18,16 @@ from siggen.keys.wording import AllowedText
 STAGE_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
 
 
+SPAN = (
+    "distance of the bearings of a shaft with two gears, in `stages` of the one in front, as thick as the thinner bore "
+    "of both; null: twice both face widths (assumed)"
+)
+DIRECTION = (
+    "of the line from the driving to the driven gear against that of the first mesh, in the sense in which the first "
+    "shaft turns"
+)
+
+
 class Stage(Section):
     """One further mesh: its pinion stands on the shaft of the gear in front, its gear on a shaft of its own.
 
@@ -36,13 +46,11 @@ class Stage(Section):
     )
     span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
         default=None,
-        description="distance of the bearings of the shaft in front, as thick as the thinner bore of its two gears; "
-        "null: twice both face widths (assumed)",
+        description=SPAN,
     )
     direction_deg: Annotated[Number, Within(least=-180, most=180)] = Field(
         default=0.0,
-        description="of the line from its pinion to its gear against that of `gears`, in the sense in which the first "
-        "pinion turns",
+        description=DIRECTION,
     )
 
 

@@ -109,9 +109,10 @@ def _view(name: str, paths: dict[str, str], *, default: bool = False) -> dict[st
 
 def _summary(config: Config, rows: int) -> str:
     records = counted(rows, f"labelled {quantities_text(config)} record")
+    what = "spur gear pair" if config.machine is None else "gearbox"
     return f"""# {config.name}
 
-{records} of a simulated spur gear pair, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
+{records} of a simulated {what}, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
 Channels: {channels_text(config)}. Every record is simulated from its own gearbox, state, speed, load and noise;
 none is a copy or a cut of another one. **The data are synthetic**: they were computed, not measured.
 """

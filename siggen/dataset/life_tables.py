@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.columns.life_columns import LIFE_TABLES
+from siggen.columns.life_columns import LIFE_TABLES, NULLABLE
 from siggen.columns.record import schema_metadata
 from siggen.dataset.manifest import LIFE_FOLDER
 from siggen.dataset.shard import FileFacts, write_table
@@ -43,7 +43,8 @@ def write_life(
 
 def life_schema(config: Config, table: str) -> pa.Schema:
     """Return the schema of a table of `life/`."""
-    return pa.schema([column.field() for column in LIFE_TABLES[table]], metadata=schema_metadata(config))
+    fields = [column.field().with_nullable(column.name in NULLABLE) for column in LIFE_TABLES[table]]
+    return pa.schema(fields, metadata=schema_metadata(config))
 
 
 def _batches(schema: pa.Schema, rows: Sequence[Mapping[str, object]]) -> list[pa.RecordBatch]:

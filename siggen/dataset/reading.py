@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -24,6 +24,9 @@ from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
 from siggen.keys.column import Column
+
+if TYPE_CHECKING:
+    from siggen.config.names import Names
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
@@ -88,6 +91,12 @@ class Dataset:
         channels = counted(len(self.channels), "channel")
         return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
 
+    def names(self) -> tuple[Names, dict[str, str]]:
+        """Return the user's names of gears, shafts and meshes, and the program's name of columns with an own one."""
+        from siggen.dataset.set_names import set_names
+
+        return set_names(self.config)
+
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.
 
@@ -103,7 +112,7 @@ class Dataset:
         return self._table(DAMAGE_FOLDER, split, None)
 
     def life(self, table: str, split: str | None = None) -> pa.Table:
-        """Return a table of a set that runs to failure: units, inspections, teeth or pits; as `labels`.
+        """Return a table of a set that runs to failure: units, inspections, teeth, pits or outlook; as `labels`.
 
         Raises
         ------

@@ -41,12 +41,13 @@ class Seeds:
 class Grown:
     """Logarithms of the shares of pits over the nodes of the grid (n, k), from the node numbered `first` on.
 
-    They are -inf before a pit begins.
+    They are -inf before a pit begins. `rates` (n, k - 1) are those of the steps, on land that is whole.
     """
 
     seeds: Seeds
     first: int
     log_share: FloatArray
+    rates: FloatArray
 
     @property
     def last(self) -> float:
@@ -68,6 +69,11 @@ class Grown:
             found = np.exp(origin + np.minimum(past, 1.0) * (later - origin))
         return np.where(self.seeds.time <= time, found, 0.0)
 
+    def wander(self, time: float, wander_sd: float) -> FloatArray:
+        """Return the wander X of the pits at a damage time (n,)."""
+        step = min(max(int(time / STEP) - self.first, 0), self.rates.shape[1] - 1)
+        return np.asarray(np.log(self.rates[:, step] / self.seeds.rate) + 0.5 * wander_sd**2)
+
 
 def grown(seeds: Seeds, wander_sd: float, steps: int, teeth: int) -> Grown:
     """Return how pits grow over so many steps from the one in which the first begins."""
@@ -82,7 +88,7 @@ def grown(seeds: Seeds, wander_sd: float, steps: int, teeth: int) -> Grown:
         lived = start + STEP - np.maximum(seeds.time, start)
         faster = rates[:, step] * np.maximum(1.0 - gone * gone, 0.0)
         log_share[alive, step + 1] = (old + faster * lived)[alive]
-    return Grown(seeds, first, log_share)
+    return Grown(seeds, first, log_share, rates)
 
 
 def _wandering(seeds: Seeds, wander_sd: float, first: int, steps: int) -> FloatArray:

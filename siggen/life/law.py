@@ -15,6 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
+from siggen.arrays import FloatArray
 from siggen.faults.fault import Fault
 from siggen.keys.section import Section
 from siggen.life.flank import Flank
@@ -80,6 +81,9 @@ class Course(Protocol):
 
     def teeth(self, time: float) -> Sequence[ToothTruth]:
         """Return the damaged teeth at a damage time [turns]."""
+
+    def outlook(self, time: float, runs: int) -> FloatArray:
+        """Return when it would fail if chance went on from its true state so many times (runs,) [turns]."""
 
     def damage(self, time: float) -> Fault | None:
         """Return the section of damage of a state at a damage time [turns]; None before the first."""

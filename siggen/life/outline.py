@@ -163,12 +163,12 @@ def covered_m(outlines: Sequence[Edges], face_m: FloatArray) -> FloatArray:
     return taken
 
 
-def through(outlines: Sequence[Edges], width_m: float) -> bool:
-    """Return whether at some height no land is left across the whole face."""
+def through(outlines: Sequence[Edges], middles_m: Sequence[float], width_m: float) -> bool:
+    """Return whether at some height no land is left across the face; a pit by itself gets there at its middle first."""
     face = np.linspace(0.0, width_m, UNION_PLACES)
     low = np.array([np.interp(face, one.face_m, one.low_m, np.inf, np.inf) for one in outlines])
     high = np.array([np.interp(face, one.face_m, one.high_m, -np.inf, -np.inf) for one in outlines])
-    heights = np.linspace(low.min(), high.max(), 33)[:, np.newaxis, np.newaxis]
+    heights = np.concatenate([middles_m, np.linspace(low.min(), high.max(), 33)])[:, np.newaxis, np.newaxis]
     return bool(np.any(np.all(np.any((low <= heights) & (heights <= high), axis=1), axis=1)))
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Annotated, Literal
 
 import numpy as np
@@ -20,9 +20,10 @@ from siggen.faults.listed_irregular import ListedIrregular
 from siggen.keys.section import Real
 from siggen.life.flank import Flank
 from siggen.life.growth import STEP, Grown, Seeds, grown
-from siggen.life.initiation import Begun, begun
-from siggen.life.law import Ends, Law, PartTruth, ToothTruth, Wearing
+from siggen.life.initiation import Begun, begun, tooth_scale
+from siggen.life.law import Ends, Law, Named, PartTruth, ToothTruth, Wearing
 from siggen.life.outline import Edges, PitShape, drawn_shape, sizes_m, through, union_m2
+from siggen.life.outlook import Chances, Now, failing_times, through_share
 
 FIRST_SHARE_SD = 0.5
 """Of the logarithm of the first share; published as 0.45 % with 0.2 to 0.3 %."""
@@ -32,6 +33,8 @@ LEAST_THROUGH = 0.05
 """Share of a flank below which nobody asks whether land is left."""
 FORESEEN, MORE, MOST_STEPS = 160, 160, 20_000
 """Steps of the grid that are integrated at first and added while no end is reached, and most of all."""
+ANY_PITS = 32
+"""Pits of either gear of which an outlook takes how new ones spread."""
 
 
 class Pitting(Law):
@@ -130,6 +133,52 @@ class PittingCourse:
         )
         return ListedPits(height_reading="arc", outlines=listed) if listed else None
 
+    def outlook(self, time: float, runs: int) -> FloatArray:
+        """Return when the gearbox would fail in so many continuations from its true state (runs,) [turns]."""
+        lived, flanks, law = self._lived[0], self.wearing.flanks, self.law
+        shares = lived.shares(time)
+        own = np.flatnonzero(shares)
+        sizes = [one.teeth for one in flanks]
+        eta = tooth_scale(law.unit_rev, self.wearing.nominal, law.slope)
+        hazards = [
+            (one.turns / eta) ** law.slope * one.area_m2 / nominal.area_m2
+            for one, nominal in zip(flanks, self.wearing.nominal, strict=True)
+        ]
+        now = Now(
+            time,
+            shares[own],
+            lived.seeds.rate[own],
+            lived.wander(time, law.wander_sd)[own],
+            lived.seeds.owner[own],
+            np.array([self._through(self.pits[i]) for i in own]),
+            sum(sizes),
+            np.repeat(hazards, sizes),
+            np.repeat([one.turns for one in flanks], sizes),
+        )
+        chances = Chances(
+            law.slope, law.first_share, FIRST_SHARE_SD, law.rate_per_rev, law.rate_sd, law.wander_sd,
+            self.functional_share, self._through_any,
+        )  # fmt: skip
+        return failing_times(now, chances, runs, self.wearing.named(f"outlook/{time!r}"))
+
+    def _through(self, pit: Pit) -> float:
+        return through_share(pit.shape, self._flank(pit.begun.gear).area_m2)
+
+    @cached_property
+    def _through_any(self) -> FloatArray:
+        """Shares at which pits leave no land, of any pits of either gear."""
+        found = [
+            through_share(
+                drawn_shape(
+                    flank, self.law.torque_exponent, partial(_numbered, self.wearing.named, f"{flank.gear}/{number}")
+                ),
+                flank.area_m2,
+            )
+            for flank in self.wearing.flanks
+            for number in range(ANY_PITS)
+        ]
+        return np.array(found)
+
     def _flank(self, gear: str) -> Flank:
         return self.wearing.flanks[("pinion", "gear").index(gear)]
 
@@ -213,7 +262,8 @@ def _failing(course: PittingCourse, pits: list[Pit], grown_pits: Grown) -> Ends 
         flank, shares = course._flank(pits[own[0]].begun.gear), grown_pits.shares(time)
         shapes = [pits[i].shape for i in own]
         sizes = sizes_m(shapes, [flank.area_m2 * float(shares[i]) for i in own], flank.face_m)
-        return through([shape.edges(size) for shape, size in zip(shapes, sizes, strict=True)], flank.face_m)
+        outlines = [shape.edges(size) for shape, size in zip(shapes, sizes, strict=True)]
+        return through(outlines, [shape.arc_m for shape in shapes], flank.face_m)
 
     def failed(time: float) -> int | None:
         shares = of_teeth(time)
@@ -235,6 +285,10 @@ def _failing(course: PittingCourse, pits: list[Pit], grown_pits: Grown) -> Ends 
         ("pinion", "gear")[gear],
         owner - gear * teeth[0],
     )
+
+
+def _numbered(named: Named, number: str, what: str) -> np.random.Generator:
+    return named(f"outlook/{number}/{what}")
 
 
 def _first(reached: Callable[[float], bool], low: float, high: float) -> float:

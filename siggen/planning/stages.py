@@ -12,7 +12,9 @@ from dataclasses import replace
 from typing import Any
 
 from siggen.config import Config, Gears, OperatingRange, Pair, PlainRotor, Rotor, Stage, State
+from siggen.config.machine import Machine
 from siggen.config.planetary import RING, in_pair
+from siggen.config.short_form import mesh_alone
 from siggen.config.stages import turned
 from siggen.faults.fault import Fault
 from siggen.keys.distributions import Uniform
@@ -27,7 +29,8 @@ def first_mesh(config: Config) -> Config:
     """Return the configuration of the pair of `gears` alone; itself where there is no other mesh."""
     if not config.stages and config.planetary is None:
         return config
-    return config.model_copy(update={"stages": (), "planetary": None, "states": _states_on(config, "")})
+    own = {"stages": (), "planetary": None, "states": _states_on(config, ""), "machine": _machine(config, 0)}
+    return config.model_copy(update=own)
 
 
 def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
@@ -42,6 +45,7 @@ def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
         update={
             "seed": _seed(config.seed, name), "gears": own.gears, "dynamics": own.dynamics, "stages": (),
             "stiffness": own.stiffness, "operating_points": points, "states": _states_on(config, name),
+            "machine": _machine(config, index + 1),
         }
     )  # fmt: skip
 
@@ -119,6 +123,10 @@ def stage_of(damage: Fault) -> str:
     """Return the name of the further stage that a damage is on, or `ring`; empty for the first mesh and no gear."""
     gear = str(getattr(damage, "gear", ""))
     return RING if gear == RING else gear.rpartition(DOT)[0]
+
+
+def _machine(config: Config, number: int) -> Machine | None:
+    return None if config.machine is None else mesh_alone(config.machine, number)
 
 
 def _states_on(config: Config, name: str) -> tuple[State, ...]:

@@ -47,6 +47,8 @@ def class_names(config: Config) -> dict[str, tuple[str, ...]]:
 def _faulty_gears(config: Config) -> tuple[str, ...]:
     """Return what `faulty_gear` may say of the gearboxes of a set."""
     none, *gears = FAULTY_GEARS
+    if config.machine is not None:
+        return (none, *(own for _, own in config.names.gears), "several")
     if config.planetary is not None:
         return (none, *(NAMES.get(gear, gear) for gear in gears), RING, "several")
     behind = tuple(f"{stage.name}.{gear}" for stage in config.stages for gear in gears)

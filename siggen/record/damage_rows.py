@@ -36,7 +36,9 @@ def _row(config: Config, part: Part, stage: str) -> dict[str, object]:
     row = part.table_row()
     if config.planetary is not None:
         return {**row, "gear": stage or NAMES.get(str(row["gear"]), row["gear"])}
-    return {**row, "gear": f"{stage}{DOT}{row['gear']}"} if stage else row
+    gear = f"{stage}{DOT}{row['gear']}" if stage else str(row["gear"])
+    bearing = {"bearing": config.names.place(str(row["bearing"]))} if "bearing" in row else {}
+    return {**row, **bearing, "gear": config.names.gear(gear)}
 
 
 @lru_cache(maxsize=8)  # records of one specimen and state come one after the other

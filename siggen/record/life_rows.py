@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from siggen.config import Config
 from siggen.planning.gearbox import gearbox_life
 from siggen.planning.lived import Lived
 
 Row = dict[str, object]
+RUNS = 200
+"""Continuations of an outlook."""
 
 
 def life_rows(config: Config, specimen_id: int) -> dict[str, list[Row]]:
@@ -28,6 +32,7 @@ def life_rows(config: Config, specimen_id: int) -> dict[str, list[Row]]:
             {**head, **row} for head, age_h in zip(heads, found.ages_h, strict=True) for row in _teeth(found, age_h)
         ],
         "pits": [{"specimen_id": specimen_id, **row} for row in _pits(found)],
+        "outlook": [{**head, **_outlook(found, age_h)} for head, age_h in zip(heads, found.ages_h, strict=True)],
     }
 
 
@@ -78,6 +83,12 @@ def _teeth(found: Lived, age_h: float) -> Iterator[Row]:
             "area_mm2": 1e6 * tooth.area_m2,
             "area_share": tooth.share,
         }
+
+
+def _outlook(found: Lived, age_h: float) -> Row:
+    ends = found.course.outlook(found.clock.time(age_h), RUNS)
+    left_h = [found.clock.age_h(time) - age_h for time in np.quantile(ends, (0.1, 0.5, 0.9)).tolist()]
+    return dict(zip(("rul_q10_h", "rul_q50_h", "rul_q90_h"), left_h, strict=True))
 
 
 def _pits(found: Lived) -> Iterator[Row]:

@@ -31,7 +31,6 @@ from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import MeshBehind, SpecimenMesh
 from siggen.specimen.planetary_meshes import made_meshes, with_planets
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
-from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +113,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     """
     made = made or MadeGears(config, specimen)
     with refused_as("outside_model"):
-        assembled = structure(config, specimen)
+        assembled = made.structure
     if specimen.planetary is not None:
         return _planetary_state(config, made, state_id, assembled)
     first = _mesh_state(made, state_id, assembled)
@@ -158,7 +157,7 @@ def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> Specime
         static = with_static_back(static, specimen.dynamics, teeth.options, *loads, teeth.parts)
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
-            sham=config.states[state_id].sham,
+            made.shares(state_id), sham=config.states[state_id].sham,
         )  # fmt: skip
         if specimen.planetary is None:  # which carries no torque below 0
             before = made.missing_before_chips(state_id)

@@ -25,7 +25,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.specimen.contact import tooth_tables
+from siggen.specimen.contact import slice_shares, tooth_tables
 from siggen.specimen.flank_waves import WavyTeeth
 from siggen.specimen.motion import SpecimenMesh
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
@@ -116,6 +116,7 @@ def with_back_flanks(
             BackTeeth(teeth, pair, from_flanks(parts)),
             found.coupling_m_per_n,
             found.contact,
+            slice_shares(dynamics, driven, options, _seen_from_behind(lead_m)),
         )
 
     return replace(mesh, back=back)

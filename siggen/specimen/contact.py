@@ -11,8 +11,10 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange
 from siggen.gears.contact.contact_table import ContactTable, contact_table
+from siggen.gears.contact.load_shares import load_shares
 from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
 from siggen.gears.damage.tooth_damage import Damage, has_extent
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import TipRelief
 from siggen.gears.stiffness.body_coupling import body_coupling
@@ -22,6 +24,9 @@ from siggen.keys.number import bounds, constant
 
 RELIEF_LENGTH = 0.25
 """Length of the tip relief along the line of action, in base pitches (assumed)."""
+
+LEAST_STIFFNESS = 1e-6
+"""Of the largest stiffness of a pair; spur teeth are far above."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +77,16 @@ def tooth_tables(
     return ToothTables(whole_face(pair, damage, options, points), coupling, table)
 
 
+def slice_shares(
+    dynamics: Dynamics, pair: GearPair, options: StiffnessOptions, lead_m: Callable[[int], FloatArray] | None
+) -> FaceShares | None:
+    """Return how slices of helical teeth share a typical load; None for spur teeth, and where no contact is solved."""
+    if pair.helix_rad == 0.0 or not solves_across_the_face(dynamics):
+        return None
+    face = face_options(dynamics, 0.0, pair)
+    return load_shares(pair, options, face, None if lead_m is None else lead_m(face_slices(pair, face)))
+
+
 def face_options(dynamics: Dynamics, largest_force_n: float, pair: GearPair) -> TableOptions:
     """Return how the contact of a drawn `dynamics` section is tabulated across the face, up to a force [N]."""
     return TableOptions(
@@ -90,7 +105,9 @@ def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points
     """Return the healthy stiffness for every kind of pair: what the equations of motion count deviations from."""
     healthy = _healthy_tables(pair, options, points)
     kinds = pair_kinds(pair, tuple(pit for pit in damage if has_extent(pit)))
-    stiffness = np.repeat(healthy.pair_stiffness_n_per_m, len(kinds), axis=0)
+    # Helical teeth end with no stiffness, but their corners touch beyond: a pair of none would not be in reach there.
+    least = LEAST_STIFFNESS * healthy.pair_stiffness_n_per_m.max()
+    stiffness = np.repeat(np.maximum(healthy.pair_stiffness_n_per_m, least), len(kinds), axis=0)
     return replace(healthy, pair_stiffness_n_per_m=stiffness, table_of_pair=table_of_pair(pair, kinds))
 
 

@@ -15,6 +15,7 @@ from siggen.gears.errors.gear_errors import FlankDeviations, GearErrors, deviati
 from siggen.gears.errors.helix import Helix, drawn_helix, straight_helix
 from siggen.gears.errors.iso_1328 import FlankTolerances, flank_tolerances
 from siggen.gears.errors.tooth_errors import with_errors
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import Uniform
@@ -104,9 +105,11 @@ def specimen_errors(config: Config, pair: GearPair, specimen_id: int, state_id: 
     return SpecimenErrors(pinion, gear, _shafts_m(section, (pinion, gear), draws))
 
 
-def erroneous_teeth(missing: MissingMaterial, pair: GearPair, errors: SpecimenErrors | None) -> MissingMaterial:
-    """Return the missing material of the same teeth with their errors."""
-    return missing if errors is None else with_errors(missing, pair, errors.pinion.errors, errors.gear.errors)
+def erroneous_teeth(
+    missing: MissingMaterial, pair: GearPair, errors: SpecimenErrors | None, shares: FaceShares | None
+) -> MissingMaterial:
+    """Return the missing material of the same teeth with their errors; `shares` of helical teeth alone."""
+    return missing if errors is None else with_errors(missing, pair, errors.pinion.errors, errors.gear.errors, shares)
 
 
 def lead_of(errors: SpecimenErrors | None) -> Callable[[int], FloatArray] | None:
@@ -145,7 +148,7 @@ def _made(section: Manufacture, pair: GearPair, which: str, seat_m: float, draws
 
     number = section.accuracy_class if which == "pinion" else section.gear_class
     accuracy_class, share = round(at(number, uniform("accuracy_class"))), at(section.tolerance_share, uniform("share"))
-    tolerances = flank_tolerances(pair.member(which), pair.face_width_m, accuracy_class)
+    tolerances = flank_tolerances(pair.member(which), pair.face_width_m, accuracy_class, pair.helix_rad)
     of_teeth = draws(f"{which}.waves").random(pair.member(which).teeth)
     waves = np.array([PROFILE_WAVES.at(float(u)) for u in of_teeth])
     shapes = error_shapes(waves, lambda name: draws(f"{which}.{name}"))

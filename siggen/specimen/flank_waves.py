@@ -11,6 +11,7 @@ from siggen.config import Config
 from siggen.gears.errors.error_shapes import Draws
 from siggen.gears.errors.flank_waves import ORDERS, with_waves
 from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import LogUniform, Uniform
@@ -71,8 +72,14 @@ def specimen_waves(config: Config, pair: GearPair, specimen_id: int, state_id: i
 class WavyTeeth:
     """Missing material of teeth with waves, which the Hertz band of a record's own torque smooths."""
 
-    def __init__(self, missing: MissingMaterial, pair: GearPair, waves: SpecimenWaves | None = None) -> None:
-        self._plain, self._pair, self._waves = missing, pair, waves
+    def __init__(
+        self,
+        missing: MissingMaterial,
+        pair: GearPair,
+        waves: SpecimenWaves | None = None,
+        shares: FaceShares | None = None,
+    ) -> None:
+        self._plain, self._pair, self._waves, self._shares = missing, pair, waves, shares
         # not over instances: what belongs to a gearbox ends with it
         self._with_waves = lru_cache(maxsize=KEPT_POINTS)(self._smoothed)
 
@@ -85,7 +92,7 @@ class WavyTeeth:
             return self._plain
         pair = self._pair
         load = max(torque_nm / pair.pinion.base_radius_m / pair.face_width_m, LEAST_LINE_LOAD_N_PER_M)
-        return with_waves(self._plain, pair, self._waves.pinion, self._waves.gear, load)
+        return with_waves(self._plain, pair, self._waves.pinion, self._waves.gear, load, self._shares)
 
 
 def wave_labels(waves: SpecimenWaves | None) -> dict[str, object]:

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, cached_property
 from typing import NamedTuple, TypeVar
 
 from siggen.config import Config
+from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import NO_TOOTH, Parts
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
 from siggen.planning.stages import first_mesh, stage_config, stage_specimen
+from siggen.specimen.contact import slice_shares
 from siggen.specimen.damage import grown_damage
-from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_errors
+from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, lead_of, specimen_errors
 from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
-from siggen.specimen.gears import gear_pair
+from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.motion import teeth_missing
+from siggen.specimen.structure import structure
 
 Made = TypeVar("Made", SpecimenErrors, SpecimenWaves)
 
@@ -66,7 +70,8 @@ class MadeGears:
         body: SameBody | None = None,
     ) -> None:
         self.pair: GearPair = gear_pair(specimen.gears) if pair is None else pair
-        self._config, self._specimen, self._shared, self._body = first_mesh(config), specimen, shared, body
+        self._whole, self._config, self._specimen = config, first_mesh(config), specimen
+        self._shared, self._body = shared, body
         self.stages = tuple(
             MadeGears(stage_config(config, specimen, i), stage_specimen(specimen, i))
             for i in range(len(specimen.stages))
@@ -74,6 +79,7 @@ class MadeGears:
         # not over instances: what belongs to a gearbox ends with it
         self._errors = cache(self._computed_errors)
         self._waves = cache(self._computed_waves)
+        self._shares = cache(self._computed_shares)
         self._missing = cache(self._computed_missing)
         self._damage = cache(self._drawn_damage)
 
@@ -86,6 +92,17 @@ class MadeGears:
     def specimen(self) -> Specimen:
         """The gearbox with this pair as its first one."""
         return self._specimen
+
+    @cached_property
+    def structure(self) -> Structure:
+        """The structure of the whole gearbox, which damage leaves as it is.
+
+        Raises
+        ------
+        ValueError
+            As `structure`.
+        """
+        return structure(self._whole, self._specimen)
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
         """Return the errors; None for perfect gears.
@@ -100,6 +117,10 @@ class MadeGears:
     def waves(self, state_id: int) -> SpecimenWaves | None:
         """Return the waves; None without them."""
         return self._waves(self._drawn_for(state_id))
+
+    def shares(self, state_id: int) -> FaceShares | None:
+        """Return how slices of helical teeth share the load; None for spur teeth."""
+        return self._shares(self._drawn_for(state_id))
 
     def missing(self, state_id: int) -> WavyTeeth:
         """Return the missing material of relief, damage, errors and waves, under any torque."""
@@ -144,5 +165,10 @@ class MadeGears:
     def _computed_missing(self, drawn_for: int, losses: Losses, reach: float) -> WavyTeeth:
         pair = self.pair
         whole = teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS, reach)
-        plain = with_losses(whole, pair, losses)
-        return WavyTeeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), pair, self._waves(drawn_for))
+        plain, shares = with_losses(whole, pair, losses), self._shares(drawn_for)
+        teeth = erroneous_teeth(plain, pair, self._errors(drawn_for), shares)
+        return WavyTeeth(teeth, pair, self._waves(drawn_for), shares)
+
+    def _computed_shares(self, drawn_for: int) -> FaceShares | None:
+        own = self._specimen
+        return slice_shares(own.dynamics, self.pair, stiffness_options(own.stiffness), lead_of(self._errors(drawn_for)))

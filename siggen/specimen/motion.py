@@ -25,6 +25,7 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.back_flanks import pitches_ahead
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import (
     CORNER_REACH_PITCHES,
@@ -75,6 +76,7 @@ class MeshBehind(NamedTuple):
 class SpecimenMesh:
     """What all records of one specimen and state share: structure and tables of its teeth.
 
+    `shares`: of the load of slices of helical teeth.
     `sham`: in what has kinds of pairs of its own nothing is removed, so that no pair is a damaged one.
     `behind` are the further meshes, which carry no torque below 0. `turning`: turns of its first gear against the frame
     of its structure per turn of the first shaft; `torque_share` as of `MeshBehind`.
@@ -87,6 +89,7 @@ class SpecimenMesh:
     missing: TeethUnderTorque
     coupling_m_per_n: NDArray[np.float64] | None = None
     contact: ContactTable | None = None
+    shares: FaceShares | None = None
     sham: bool = False
     back: Callable[[], SpecimenMesh] | None = None
     behind: tuple[MeshBehind, ...] = ()
@@ -194,13 +197,22 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, mass_kg:
     return pair_law(
         mesh.tables,
         mesh.missing.under(point.torque_nm),
-        MeshConstants(mesh.pair.line_of_action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um)),
+        MeshConstants(mesh.pair.line_of_action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um), _spread(mesh)),
         damping_ratio=_damping_ratio(dynamics),
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
         film=film if section.squeeze_film == "on" else None,
         contact=mesh.contact,
         coupling_m_per_n=mesh.coupling_m_per_n,
     )
+
+
+def _spread(mesh: SpecimenMesh) -> NDArray[np.float64] | None:
+    """Return how the load of a helical pair lies about the pitch point; None for spur teeth."""
+    if mesh.shares is None:
+        return None
+    points = mesh.tables.pair_stiffness_n_per_m.shape[1]
+    along = np.linspace(mesh.tables.start_m, mesh.tables.end_m, points)
+    return mesh.shares.about(mesh.pair.pitch_point_m, along)
 
 
 def _damping_ratio(dynamics: Dynamics) -> float | DampingLaw:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pyarrow as pa
@@ -97,7 +97,7 @@ def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) 
     """
     pair = gear_pair(draw_specimen(config, specimen_id).gears)
     return [
-        view
+        replace(view, gear=config.names.gear(view.gear))
         for index in _state_ids(config, state)
         for view in _views(pair, config.states[index].name, on_teeth(state_damage(config, specimen_id, pair, index)))
     ]

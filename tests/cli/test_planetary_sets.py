@@ -71,11 +71,14 @@ def test_a_spall_of_one_planet_is_heard_at_all_orders_of_the_carrier(made: Path)
     assert share_off(power(states(made)["planet"]), PLANETS * TURNS) > 1e-3
 
 
-def test_a_spall_of_the_ring_changes_heights_and_adds_no_line(made: Path) -> None:
+def test_a_spall_of_the_ring_fills_multiples_of_the_planets_and_adds_no_other_line(made: Path) -> None:
     """Equal planets pass its tooth after each other, so nothing is new after a third of a turn."""
     healthy, ring = (power(states(made)[name]) for name in ("healthy", "ring"))
     assert share_off(ring, PLANETS * TURNS) < 1e-4  # -40 dB
-    assert ring.sum() > 1.1 * healthy.sum()
+    order = np.arange(ring.size) / TURNS
+    away = np.abs((order + 38.0) % 77.0 - 38.0) > 1.01  # from harmonics of the mesh, beside which healthy lines are
+    assert ring[away].sum() > 1e-3 * ring.sum()
+    assert healthy[away].sum() < 1e-6 * healthy.sum()
 
 
 def test_labels_name_sun_planet_ring_and_carrier(made: Path) -> None:
@@ -149,7 +152,8 @@ def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:
         ({"planetary": {"ring_teeth": 77, "positions_deg": [0, 90, 180, 270]}}, "planetary.positions_deg", "360/102"),
         ({"planetary": {"ring_teeth": 77, "positions_deg": [0, 180]}}, "planetary.positions_deg", "3 to 5"),
         ({"dynamics": {"friction": {"model": "off"}}}, "dynamics.model", "8dof"),
-        ({"dynamics": {"model": "8dof"}}, "dynamics.friction.model", "off"),
+        ({"stages": [{"name": "slow", "gears": planets()["gears"]}]}, "stages", "none"),
+        ({"background": {"rubbing": {}}}, "background", "null"),
         ({"operating_points": [{"speed_hz": 20.0, "torque_nm": 0.0}]}, "operating_points.0.torque_nm", "above 0"),
         ({"sensors": [{"name": "b", "place": "pinion_bearing"}]}, "sensors.0.place", "ring"),
         ({"planetary": None}, "states.1.damage.gear", "a section planetary"),
@@ -158,7 +162,7 @@ def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:
             "states.0.damage.kind", "pits, spalls and cracks",
         ),
         (
-            {"states": [{"name": "severe", "damage": {"kind": "crack", "gear": "ring", "depth_mm": 1.0}}]},
+            {"states": [{"name": "severe", "damage": {"kind": "crack", "gear": "ring", "depth_share": 0.2}}]},
             "states.0.damage.kind", "pits and spalls of a ring",
         ),
         (

@@ -121,7 +121,8 @@ def test_areas_of_the_unions_are_those_of_growth_and_of_the_very_outlines(unit: 
     for owner, tooth in teeth.items():
         own = tuple(part for part in parts if (part.gear, part.tooth) == (tooth.gear, tooth.tooth))
         exact = union_area_m2(PAIR.member(tooth.gear), own, PAIR.face_width_m)
-        assert tooth.share == pytest.approx(shares[owner], rel=1e-6)
+        # the union is measured at 257 places and at stations, which come and go as outlines spread
+        assert tooth.share == pytest.approx(shares[owner], rel=1e-4)
         # stations are straight in arc here and in height there: 3 %, as is asked of truth
         assert exact == pytest.approx(tooth.area_m2, rel=0.03)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.signal import fftconvolve
 
+import siggen.record.simulation as simulation
 import siggen.sensing.block_filter as block_filter
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record
@@ -83,6 +84,17 @@ def test_a_memory_four_times_as_long_changes_little(monkeypatch: pytest.MonkeyPa
     for path in paths:
         assert short.labels[path] == pytest.approx(long.labels[path], rel=1e-3)
     assert {**short.labels, **dict.fromkeys(paths)} == {**long.labels, **dict.fromkeys(paths)}
+
+
+def test_a_motion_that_began_long_before_gives_the_same_record(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tenth of the integration's tolerance: what is left of the start in motion and filters together."""
+    short = record(loaded(duration_s=0.1))
+    least = simulation.both_settled_s
+    monkeypatch.setattr(simulation, "both_settled_s", lambda *times: 0.5 + least(*times))
+    long = record(loaded(duration_s=0.1))
+    for name, values in long.channels.items():
+        error = short.channels[name].astype(float) - values
+        assert 0.0 < error.std() < 1e-4 * values.astype(float).std()
 
 
 def test_a_record_in_blocks_depends_on_itself_alone() -> None:

@@ -55,6 +55,8 @@ def law_tables(law: PairLaw) -> dict[str, Any]:
         tables |= _contact(law)
     if head[layout.APART]:
         tables["coupling_m_per_n"] = _numbers(law, layout.COUPLING_AT, (head[layout.APART], head[layout.POINTS]))
+    if head[layout.SPREAD_AT]:
+        tables["spread"] = _numbers(law, layout.SPREAD_AT, (3, head[layout.POINTS]))
     tables["rubs"] = bool(head[layout.ROUGHNESSES])
     if tables["rubs"]:
         tables |= _friction(law) | {name: float(scalars[place]) for name, place in FRICTION.items()}

@@ -14,8 +14,10 @@ from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import Spring
+from siggen.dynamics.mesh.load_spread import Part, spread
 from siggen.dynamics.mesh.pair_columns import (
     ALONE,
+    ARM,
     ASPERITY_SHARE,
     CARRYING,
     COEFFICIENT,
@@ -41,6 +43,7 @@ from siggen.dynamics.mesh.pair_columns import (
     NODE_TURN,
     NORMAL,
     PENETRATION,
+    PLACE,
     POSITION,
     ROUGH,
     SLIDING,
@@ -122,10 +125,13 @@ def _load(law: PairLaw, pairs: FloatArray, q: int, slots: int, node: FloatArray)
         _widen(law, pairs, q * slots, slots)
     for i in range(q * slots, (q + 1) * slots):
         total += pairs[i, STIFFNESS]
-        pairs[i, SLIDING] = 0.0
+        pairs[i, SLIDING], pairs[i, PLACE] = 0.0, pairs[i, POSITION]
         if pairs[i, WHOLE] > 0.0:
-            pairs[i, SLIDING] = node[NODE_SLIDING_0, q] + pairs[i, POSITION] * node[NODE_SLIDING_1, q]
-        pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE] = 0.0, 0.0, 0.0
+            if law.places[layout.SPREAD_AT] > 0:
+                before, behind = spread(law, pairs[i, POSITION])
+                pairs[i, PLACE] = before.share * before.place + behind.share * behind.place
+            pairs[i, SLIDING] = node[NODE_SLIDING_0, q] + pairs[i, PLACE] * node[NODE_SLIDING_1, q]
+        pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE], pairs[i, ARM] = 0.0, 0.0, 0.0, 0.0
     shared = 1.0 / sqrt(total) if total > 0.0 else 0.0
     for i in range(q * slots, (q + 1) * slots):
         found = damped(law, pairs[i, DAMPING] * shared, rate, tilt_rate, _spring(pairs, i))
@@ -194,8 +200,26 @@ def _rub(law: PairLaw, pairs: FloatArray, slot: int, slots: int, node: FloatArra
         force, here = pairs[i, NORMAL], pairs[i, POSITION]
         if pairs[i, FLANK] * force <= 0.0:
             continue
-        found = rubbed(law, abs(force), here, (pairs[i, CARRYING], pairs[i, ROUGH]), pairs[i, SLIDING])
-        pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE] = found
-        node[NODE_FRICTION, q] += found.friction
-        node[NODE_ARM, q] += here * found.friction
-        node[NODE_TURN, q] += found.friction * pairs[i, MOMENT] / force
+        if law.places[layout.SPREAD_AT] > 0:
+            for part in spread(law, here):
+                _rub_part(law, pairs, i, node, q, part)
+        else:
+            found = rubbed(law, abs(force), here, (pairs[i, CARRYING], pairs[i, ROUGH]), pairs[i, SLIDING])
+            pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE] = found
+            pairs[i, ARM] = here * found.friction
+        node[NODE_FRICTION, q] += pairs[i, FRICTION]
+        node[NODE_ARM, q] += pairs[i, ARM]
+        node[NODE_TURN, q] += pairs[i, FRICTION] * pairs[i, MOMENT] / force
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _rub_part(law: PairLaw, pairs: FloatArray, i: int, node: FloatArray, q: int, part: Part) -> None:
+    """Add the friction of the slices on one side of the pitch point; all have the pair's line load."""
+    if part.share <= 0.0:
+        return
+    sliding = node[NODE_SLIDING_0, q] + part.place * node[NODE_SLIDING_1, q]
+    found = rubbed(law, abs(pairs[i, NORMAL]), part.place, (pairs[i, CARRYING], pairs[i, ROUGH]), sliding)
+    pairs[i, FRICTION] += part.share * found.friction
+    pairs[i, ARM] += part.share * part.place * found.friction
+    pairs[i, COEFFICIENT] += part.share * found.coefficient
+    pairs[i, ASPERITY_SHARE] += part.share * found.share

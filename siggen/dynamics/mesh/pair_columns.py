@@ -36,6 +36,8 @@ COLUMNS_AT = next(_column)
 MISSED_1_AT = next(_column)
 MISSED_2_AT = next(_column)
 OFFSET = next(_column)
+ARM = next(_column)  # moment of the friction about the pinion's base tangent point [N m]
+PLACE = next(_column)  # mean place of the load [m]; of spur teeth s
 COUPLED = next(_column)  # from here on the coupling to older pairs [m/N]
 MOST_APART = 3
 """Pairs further apart than this do not couple: no gear has more in contact."""

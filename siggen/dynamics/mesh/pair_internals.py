@@ -20,6 +20,7 @@ from siggen.dynamics.friction.contact_kinematics import hertz_pressure, relative
 from siggen.dynamics.friction.lubrication import LubricatedMesh, film_ratio, masjedi_khonsari_central
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, PER_CONTACT, PER_FILM
 from siggen.dynamics.mesh.pair_columns import (
+    ARM,
     ASPERITY_SHARE,
     CARRYING,
     COEFFICIENT,
@@ -27,7 +28,7 @@ from siggen.dynamics.mesh.pair_columns import (
     FLANK,
     FRICTION,
     NORMAL,
-    POSITION,
+    PLACE,
     ROUGH,
     SLIDING,
     STIFFNESS,
@@ -84,10 +85,12 @@ def pair_internals(pairs: FloatArray, line_m: float, contact: PairContact | None
         Length T of the line of action [m].
     contact : PairContact or None
     """
-    normal, friction, position = (pairs[:, :, column] for column in (NORMAL, FRICTION, POSITION))
+    normal, friction, position = (pairs[:, :, column] for column in (NORMAL, FRICTION, PLACE))
     touching = pairs[:, :, FLANK] != 0.0
     total = normal.sum(axis=1)
-    on_pinion, on_gear = position * friction, (line_m - position) * friction
+    on_pinion = pairs[:, :, ARM]
+    # Of slices at two places; the last bracket is 0 where all are at one.
+    on_gear = (line_m - position) * friction + (position * friction - on_pinion)
     sums = [total, np.where(touching, pairs[:, :, STIFFNESS], 0.0).sum(axis=1), pairs[:, :, DAMPING].sum(axis=1)]
     sums += [friction.sum(axis=1), on_pinion.sum(axis=1), on_gear.sum(axis=1)]
     single = [normal, normal / np.where(total == 0.0, 1.0, total)[:, None], friction, pairs[:, :, SLIDING], position]
@@ -136,7 +139,7 @@ def _drives(pairs: FloatArray) -> NDArray[np.bool_]:
 def _contact_values(pairs: FloatArray, line_m: float, contact: PairContact) -> list[FloatArray]:
     touching = _drives(pairs)
     # Where nothing touches any contact will do: its values are replaced.
-    position = np.where(touching, pairs[:, :, POSITION], 0.5 * line_m)
+    position = np.where(touching, pairs[:, :, PLACE], 0.5 * abs(line_m))
     force = np.where(touching, pairs[:, :, NORMAL] / np.where(touching, pairs[:, :, CARRYING], 1.0), 1.0)
     radius = relative_radius(position, line_m)
     values = [hertz_pressure(force / contact.face_width_m, radius, contact.effective_modulus_pa)]

@@ -8,6 +8,10 @@ Luo, Baddour, Liang, MSSP 119 (2019) 155-181): with the approach x along the lin
     c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch, k = f' (Kasuba and Evans 1981: constant ratio)
     F_n = μ_n |N_n| tanh(v_n/v_0), v_n = sliding of the pinion's flank on the gear's (`friction`)
 
+Slices of a helical pair before and behind the pitch point slide against each other: F is the sum of both parts, each
+with its share of the load, at the mean of its places, so that forces and moments of a constant μ are those of all
+slices (derived).
+
 Of the two flanks of a tooth both miss relief and corners, and where one is behind its place the other is ahead: x - e_p
 + (e_n - e_p). The law belongs to the flanks that carry a torque; those behind them are simple: they push along the same
 line, where these touch, and are sound.
@@ -97,6 +101,7 @@ COLUMN_AT = next(_place)
 GAIN_AT = next(_place)
 CURVES_AT = next(_place)
 CONTACT_VALUES = next(_place)  # per node; 4 without tilt, 8 for every ray with
+SPREAD_AT = next(_place)  # of helical pairs, `FaceShares.about`; 0: all slices are at one place
 HEAD = next(_place)
 
 
@@ -156,11 +161,15 @@ class SqueezeFilm:
 
 
 class MeshConstants(NamedTuple):
-    """Length T of the line of action, mass that the mesh feels, and total normal backlash."""
+    """Length T of the line of action, mass that the mesh feels, total normal backlash.
+
+    `spread` (3, points), on the grid of the tables: `FaceShares.about` the pitch point of a helical pair.
+    """
 
     line_of_action_m: float
     equivalent_mass_kg: float
     backlash_m: float
+    spread: FloatArray | None = None
 
 
 def pair_law(
@@ -214,6 +223,10 @@ def pair_law(
         _pack_contact(packed, scalars, contact, tables)
     if coupling_m_per_n is not None:
         _pack_coupling(packed, coupling_m_per_n, points)
+    if mesh.spread is not None:
+        if mesh.spread.shape != (3, points):
+            raise ValueError(f"spread: received shape {mesh.spread.shape}; allowed: (3, {points})")
+        packed.add(SPREAD_AT, mesh.spread)
     if friction is not None:
         _pack_friction(packed, scalars, friction)
     _pack_damping(packed, scalars, damping_ratio, float(np.sqrt(mesh.equivalent_mass_kg)))

@@ -6,8 +6,6 @@ Damage is found by each slice on its own line across the face, at the slice's ow
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from siggen.arrays import FloatArray
@@ -16,7 +14,7 @@ from siggen.gears.contact.pair_rest import PairRest, bending_length_m
 from siggen.gears.contact.uneven_teeth import UnevenTeeth
 from siggen.gears.damage.flank_chords import FlankChords, one_line
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import TipRelief, missing_material
+from siggen.gears.geometry.missing_material import TipRelief, missing_at_m
 from siggen.gears.stiffness.body_coupling import ring_torsion
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
@@ -37,10 +35,17 @@ def helical_gaps(pair: GearPair, place_m: FloatArray, pinion: FlankChords, gear:
 
 def helical_missing_m(pair: GearPair, place_m: FloatArray, relief: TipRelief | None) -> FloatArray:
     """Return what relief and corners leave out at places of slices (k, n) [m]."""
-    one = missing_material(replace(pair, helix_rad=0.0), relief, points=POINTS, reach_pitches=CORNERS)
-    along = np.linspace(one.start_m, one.end_m, POINTS)
-    beyond = np.abs(place_m - np.clip(place_m, one.start_m, one.end_m))
-    return np.asarray(np.interp(place_m, along, one.pinion.profile_m[0] + one.gear.profile_m[0]) + beyond)
+    start, end, reach = pair.contact_start_m, pair.contact_end_m, CORNERS * pair.base_pitch_m
+    # Curves begin and end anew at the ends of the path, where relief stops and corners take over.
+    parts = (
+        np.linspace(start - reach, start, POINTS // 4)[:-1],
+        np.linspace(start, end, POINTS),
+        np.linspace(end, end + reach, POINTS // 4)[1:],
+    )
+    along = np.concatenate(parts)
+    curve = sum(missing_at_m(pair, which, relief, along) for which in ("pinion", "gear"))
+    beyond = np.abs(place_m - np.clip(place_m, along[0], along[-1]))
+    return np.asarray(np.interp(place_m, along, curve) + beyond)
 
 
 def helical_rest(pair: GearPair, place_m: FloatArray, options: StiffnessOptions) -> PairRest:

@@ -161,8 +161,9 @@ def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray) -
 def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
     """Return at which fine points (points,) a kind differs from a healthy pair under the reference force."""
     softer = not np.array_equal(row.rest.tooth_m_per_n, healthy.rest.tooth_m_per_n)
-    everywhere = softer or row.rest.uneven is not None
-    found = np.full(row.position_m.size, everywhere)
+    # Slices of helical teeth differ as they do on healthy ones, which is nothing of the damage.
+    uneven = row.rest.uneven is not None and row.rest.uneven is not healthy.rest.uneven
+    found = np.full(row.position_m.size, softer or uneven)
     window = slice(row.first, row.first + len(row.gaps.left_m))
     left, right = row.gaps.left_m, row.gaps.right_m
     other = (left != row.elsewhere.left_m[window]) | (right != row.elsewhere.right_m[window])

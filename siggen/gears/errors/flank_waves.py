@@ -8,6 +8,10 @@ an amplitude and phase common to all teeth, which adds to mesh lines, and one of
 The contact has a width 2b and does not follow short waves. A gap that varies by w cos(κx) over a plane Hertz contact
 changes the approach by the mean of the gap weighted with the pressure of a flat punch, 1/(π √(b² - x²)): w J_0(κb)
 (derived, by reciprocity; for waves that stay in full contact). On a flank of radius ρ, κ = n/ρ.
+
+On helical teeth a wave of the machine's table lies along the contact lines: the section at w is cut when the table has
+turned on by as much as the teeth are turned there. So the pair meets it at once, as it does eccentricity. The form
+belongs to the tool's profile: every slice meets it at its own place (`face_shares`).
 """
 
 from __future__ import annotations
@@ -17,8 +21,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables, nearest_place_m
 
 ORDERS = np.arange(1, 31)
 """Cycles of the form over the active flank: down to L/30, where the profile filter of ISO 1328-1 ends."""
@@ -42,19 +47,38 @@ def missing_m(
     pair: GearPair, which: str, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
 ) -> FloatArray:
     """Return what waves take from every tooth (z, k) at positions s (k,), seen by a contact of half-width b (k,)."""
+    total = _of_table_m(pair, which, waves, position_m, half_width_m)
+    return _with_form(total, pair, which, waves, position_m, half_width_m)
+
+
+def _of_table_m(
+    pair: GearPair, which: str, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
+) -> FloatArray:
+    """Return what waves over all teeth take (z, k)."""
     from scipy.special import j0
 
-    gear = pair.member(which)
-    radius = position_m if which == "pinion" else pair.line_of_action_m - position_m
-    radius = radius if gear.signed_base_radius_m > 0.0 else -radius
-    roll, sense = radius / gear.base_radius_m, 1.0 if which == "pinion" else -1.0
+    gear, sense = pair.member(which), 1.0 if which == "pinion" else -1.0
+    roll, seen = _rolls(pair, which, position_m, half_width_m)
     tooth = sense * 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
-    # b over ρ: κb per wave on the revolution. Tables of few teeth may begin below the base circle, where no flank is.
-    seen = np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
     total = np.zeros((gear.teeth, position_m.size))
     for n, amplitude, phase in zip(waves.waves, waves.amplitude_m, waves.phase_rad, strict=True):
         total += amplitude * j0(n * seen) * np.cos(n * (roll + tooth[:, None]) + phase)
-    per_cycle = 2.0 * np.pi * gear.base_radius_m / (pair.contact_end_m - pair.contact_start_m)
+    return total
+
+
+def _with_form(
+    total: FloatArray,
+    pair: GearPair,
+    which: str,
+    waves: FlankWaves,
+    position_m: FloatArray,
+    half_width_m: FloatArray | float,
+) -> FloatArray:
+    """Return the form (z, k) of single teeth added to a total."""
+    from scipy.special import j0
+
+    roll, seen = _rolls(pair, which, position_m, half_width_m)
+    per_cycle = 2.0 * np.pi * pair.member(which).base_radius_m / (pair.contact_end_m - pair.contact_start_m)
     together = waves.common_m + waves.own_m
     for h, amplitudes in zip(ORDERS, together.T, strict=True):
         n = h * per_cycle
@@ -62,21 +86,52 @@ def missing_m(
     return total
 
 
+def _rolls(
+    pair: GearPair, which: str, position_m: FloatArray, half_width_m: FloatArray | float
+) -> tuple[FloatArray, FloatArray]:
+    """Return roll angles (k,) [rad], and b over ρ (k,): κb per wave on the revolution.
+
+    Tables of few teeth may begin below the base circle, where no flank is.
+    """
+    gear = pair.member(which)
+    radius = position_m if which == "pinion" else pair.line_of_action_m - position_m
+    radius = radius if gear.signed_base_radius_m > 0.0 else -radius
+    seen = np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
+    return radius / gear.base_radius_m, seen
+
+
 def with_waves(
-    missing: MissingMaterial, pair: GearPair, pinion: FlankWaves, gear: FlankWaves, line_load_n_per_m: float
+    missing: MissingMaterial,
+    pair: GearPair,
+    pinion: FlankWaves,
+    gear: FlankWaves,
+    line_load_n_per_m: float,
+    shares: FaceShares | None = None,
 ) -> MissingMaterial:
     """Return the missing material of the same teeth with waves, as a contact under a line load [N/m] sees them.
 
     Parameters
     ----------
     missing : MissingMaterial; tables of 2049 points have 70 for each of the shortest waves that gears show (15 z)
+    shares : FaceShares or None, of helical teeth alone
     """
     position = np.linspace(missing.start_m, missing.end_m, missing.pinion.profile_m.shape[1])
-    width = half_width_m(pair, position, line_load_n_per_m)
+
+    def seen(which: str, waves: FlankWaves) -> FloatArray:
+        def along(place: FloatArray) -> FloatArray:
+            return half_width_m(pair, place, line_load_n_per_m)
+
+        if shares is None:
+            return missing_m(pair, which, waves, position, along(position))
+        width, teeth = along(nearest_place_m(pair, position)), pair.member(which).teeth
+
+        def form(place: FloatArray) -> FloatArray:
+            return _with_form(np.zeros((teeth, place.size)), pair, which, waves, place, along(place))
+
+        return _of_table_m(pair, which, waves, position, width) + shares.mean(position, form)
+
     return replace(
-        missing,
-        pinion=_added(missing.pinion, missing_m(pair, "pinion", pinion, position, width)),
-        gear=_added(missing.gear, missing_m(pair, "gear", gear, position, width)),
+        missing, pinion=_added(missing.pinion, seen("pinion", pinion)), gear=_added(missing.gear, seen("gear", gear))
     )
 
 

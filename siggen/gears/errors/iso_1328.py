@@ -13,7 +13,7 @@ and the face width b in mm, for class 5 in µm:
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import hypot, sqrt
+from math import cos, hypot, sqrt
 
 from siggen.gears.geometry.gear_pair import GeometryProblem
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -54,8 +54,10 @@ class FlankTolerances:
         return FlankTolerances(**{field.name: share * getattr(self, field.name) for field in fields(self)})
 
 
-def flank_tolerances(gear: SpurGear, face_width_m: float, accuracy_class: int) -> FlankTolerances:
-    """Return the tolerances of a gear.
+def flank_tolerances(
+    gear: SpurGear, face_width_m: float, accuracy_class: int, helix_rad: float = 0.0
+) -> FlankTolerances:
+    """Return the tolerances of a gear; of a helical one `gear` is the transverse section, m the normal module.
 
     Raises
     ------
@@ -64,9 +66,9 @@ def flank_tolerances(gear: SpurGear, face_width_m: float, accuracy_class: int) -
     """
     if accuracy_class not in CLASSES:
         raise ValueError(f"flank tolerance class: received {accuracy_class}; allowed: 1 to 11, whole")
-    if problems := outside_iso_1328(gear, face_width_m):
+    if problems := outside_iso_1328(gear, face_width_m, helix_rad=helix_rad):
         raise ValueError("; ".join(map(str, problems)))
-    module, diameter, width = 1e3 * gear.module_m, 2e3 * gear.pitch_radius_m, 1e3 * face_width_m
+    module, diameter, width = 1e3 * gear.module_m * cos(helix_rad), 2e3 * gear.pitch_radius_m, 1e3 * face_width_m
     slope, form = 0.4 * module + 0.001 * diameter + 4.0, 0.55 * module + 5.0
     helix_slope = 0.05 * sqrt(diameter) + 0.35 * sqrt(width) + 4.0
     helix_form = 0.07 * sqrt(diameter) + 0.45 * sqrt(width) + 4.0
@@ -85,11 +87,13 @@ def flank_tolerances(gear: SpurGear, face_width_m: float, accuracy_class: int) -
     return of_class_5.times(1e-6 * sqrt(2.0) ** (accuracy_class - 5))
 
 
-def outside_iso_1328(gear: SpurGear, face_width_m: float, where: str = "gear") -> tuple[GeometryProblem, ...]:
+def outside_iso_1328(
+    gear: SpurGear, face_width_m: float, where: str = "gear", helix_rad: float = 0.0
+) -> tuple[GeometryProblem, ...]:
     """Return what of a gear, named by `where`, lies outside the range of the standard; empty for one within it."""
     found = {
         "teeth": (float(gear.teeth), ""),
-        "module": (1e3 * gear.module_m, " mm"),
+        "module": (1e3 * gear.module_m * cos(helix_rad), " mm"),
         "reference diameter": (2e3 * gear.pitch_radius_m, " mm"),
         "face width": (1e3 * face_width_m, " mm"),
     }

@@ -5,6 +5,10 @@ active flank, and the way that eccentricity moves it while it is in mesh; the of
 is touched in that middle: pitch deviations times cos α, since they are arcs, and eccentricity. Beyond root end and tip
 of a flank its last deviation holds; eccentricity goes on. Offsets shift the back flank too, as teeth that stand in a
 wrong place do; for the radial part of an eccentricity (its share sin α) this is an approximation.
+
+Slices of helical teeth meet slope and form each at its own place, and the pair sees their mean over the load
+(`face_shares`). Eccentricity and place are those of the whole gear. All counts along the transverse line of action, as
+the standard measures it.
 """
 
 from __future__ import annotations
@@ -12,34 +16,51 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from siggen.arrays import FloatArray
 from siggen.gears.errors.error_shapes import FLANK_POINTS
 from siggen.gears.errors.gear_errors import GearErrors, eccentric_m
+from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
 
 
-def with_errors(missing: MissingMaterial, pair: GearPair, pinion: GearErrors, gear: GearErrors) -> MissingMaterial:
-    """Return the missing material of the same teeth with errors.
+def with_errors(
+    missing: MissingMaterial,
+    pair: GearPair,
+    pinion: GearErrors,
+    gear: GearErrors,
+    shares: FaceShares | None = None,
+) -> MissingMaterial:
+    """Return the missing material of the same teeth with errors; `shares` of helical teeth alone.
 
     Errors of size zero change no bit of any force. Tables may have rows per kind already; then every tooth keeps that
     of its kind.
     """
     return replace(
         missing,
-        pinion=_with_errors(missing, missing.pinion, pair, "pinion", pinion),
-        gear=_with_errors(missing, missing.gear, pair, "gear", gear),
+        pinion=_with_errors(missing, missing.pinion, pair, "pinion", pinion, shares),
+        gear=_with_errors(missing, missing.gear, pair, "gear", gear, shares),
     )
 
 
 def _with_errors(
-    missing: MissingMaterial, teeth: ToothTables, pair: GearPair, which: str, errors: GearErrors
+    missing: MissingMaterial,
+    teeth: ToothTables,
+    pair: GearPair,
+    which: str,
+    errors: GearErrors,
+    shares: FaceShares | None,
 ) -> ToothTables:
     position = np.linspace(missing.start_m, missing.end_m, teeth.profile_m.shape[1])
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
     standing = eccentric_m(pair, which, errors, middle)
-    profile = _profiles(pair, which, errors, position) - _profiles(pair, which, errors, middle)
+    if shares is None:
+        profile = _profiles(pair, which, errors, position)
+    else:
+        profile = shares.mean(position, lambda place: _profiles(pair, which, errors, place))
+    profile = profile - _profiles(pair, which, errors, middle)
     profile += eccentric_m(pair, which, errors, position) - standing
     cosine = float(np.cos(pair.member(which).pressure_angle_rad))
     return ToothTables(
@@ -54,5 +75,5 @@ def _profiles(pair: GearPair, which: str, errors: GearErrors, position_m: FloatA
     place = (position_m - pair.contact_start_m) / (pair.contact_end_m - pair.contact_start_m)
     place = np.clip(place if which == "pinion" else 1.0 - place, 0.0, 1.0)
     points = np.linspace(0.0, 1.0, FLANK_POINTS)
-    form = np.stack([np.interp(place, points, row) for row in errors.form_m])
+    form = CubicSpline(points, errors.form_m, axis=1)(place)
     return np.asarray(errors.slope_m[:, None] * place[None, :] + form)

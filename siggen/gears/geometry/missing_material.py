@@ -8,6 +8,7 @@ relief, the corner of the tip outside the path of contact, and one constant per 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,7 @@ class MissingMaterial:
     gear: ToothTables
 
 
+@lru_cache(maxsize=4)  # states of a gearbox share them
 def missing_material(
     pair: GearPair,
     relief: TipRelief | None = None,
@@ -80,23 +82,31 @@ def missing_material(
     start_m, end_m = pair.engagement_start_m - reach_m, pair.engagement_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)
     if pair.helix_rad != 0.0:
-        relief, position_m = None, _of_nearest_end(pair, position_m)
+        relief, position_m = None, nearest_place_m(pair, position_m)
     pinion, gear = (_teeth(pair, which, relief, position_m) for which in ("pinion", "gear"))
     return MissingMaterial(start_m, end_m, pinion, gear)
 
 
-def _of_nearest_end(pair: GearPair, position_m: FloatArray) -> FloatArray:
+def nearest_place_m(pair: GearPair, position_m: FloatArray) -> FloatArray:
     """Return where that part of the face is which is nearest to the path of contact; slices miss what they do alone."""
     half = 0.5 * pair.face_travel_m
     middle = np.clip(position_m, pair.contact_start_m, pair.contact_end_m)
     return position_m + np.clip(middle - position_m, -half, half)
 
 
-def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:
+def missing_at_m(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> FloatArray:
+    """Return what relief and corner of one gear leave out (k,) at positions (k,) of a contact [m]."""
     to_tip_m = pair.contact_end_m - position_m if which == "pinion" else position_m - pair.contact_start_m
     profile = touching_gap_m(pair, which, position_m)
-    if relief is not None:
-        share = np.clip(1.0 - np.maximum(to_tip_m, 0.0) / relief.length_m, 0.0, None)
-        profile = profile + relief.amount_m * share**2
-    teeth = pair.member(which).teeth
-    return ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
+    if relief is None:
+        return profile
+    share = np.clip(1.0 - np.maximum(to_tip_m, 0.0) / relief.length_m, 0.0, None)
+    return np.asarray(profile + relief.amount_m * share**2)
+
+
+def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:
+    profile, teeth = missing_at_m(pair, which, relief, position_m), pair.member(which).teeth
+    made = ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
+    for array in (made.profile_m, made.kind_of_tooth, made.offset_m):
+        array.setflags(write=False)
+    return made

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.kind_row import kind_row
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
@@ -64,3 +65,17 @@ def test_slices_beside_a_spall_are_those_of_the_healthy_pair():
     for near, far in zip(row.gaps, healthy.gaps, strict=True):
         assert np.array_equal(near[:, beside], far[:, beside])
     assert (row.gaps.covered[:, (middle > 4.3e-3) & (middle < 9.7e-3)] == 1.0).all()
+
+
+def test_a_spall_of_no_helix_differs_from_healthy_where_it_does_on_spur_teeth():
+    near, spur = helical_pair(1e-6), helical_pair(0.0)
+    kinds = []
+    for pair in (near, spur):
+        table = contact_table(pair, (spall(pair, (5e-3, 15e-3)),), STIFFNESS, OPTIONS, POINTS)
+        kinds.append(
+            (table.touch_m[1] - table.touch_m[0], table.column[1] >= OPTIONS.healthy_columns, len(table.curves))
+        )
+    # 1e-6 of a degree moves slices by 0.2 nm of the path; columns of their own elsewhere would hide the spall's effect.
+    assert kinds[0][0] == pytest.approx(kinds[1][0], abs=1e-11)
+    assert np.array_equal(kinds[0][1], kinds[1][1])
+    assert kinds[0][2] == kinds[1][2]
