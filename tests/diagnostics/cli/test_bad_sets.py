@@ -157,7 +157,7 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     ),
     "too few teeth": (column("teeth_pinion", 2, ("data", "metadata")), ("received 2, 47", "from 3 on"), ONE),
     "no rate": (at_no_rate, ("fs_hz: received None", "a valid number"), ONE),
-    "truncated shard": (truncated, ("data/test-00000.parquet is not the file", "siggen verify"), ONE),
+    "truncated shard": (truncated, ("data/test-00000.parquet has ", "bytes instead of", "siggen verify"), ONE),
     "missing shard": (lambda folder: first_shard(folder).unlink(), ("test-00000.parquet is missing",), ALL),
     "no manifest": (lambda folder: (folder / "manifest.json").unlink(), ("not finished", "siggen generate"), ONE),
     "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ONE),
