@@ -31,9 +31,10 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-# Files go whole to one of two processes, since their fixtures are sets that all their tests read.
+# Files go whole to one of two processes, since their fixtures are sets that all their tests read. Bytecode is written
+# whatever the environment says: tests start hundreds of processes, each of which would compile the sources anew.
 test: lint
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+	OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist loadfile
 
 test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow

@@ -7,6 +7,7 @@ solve the same equations with the same compiled mesh law; what they cost beyond 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -27,25 +28,24 @@ Rate = Callable[[float, FloatArray], FloatArray]
 
 def driven_rate(motion: Motion, speed_input: int, pitches: FloatArray, inputs: FloatArray, rate_hz: float) -> Rate:
     """Return ż (2n,) of time [s] and state (2n,); `pitches` (k,) and `inputs` (k, m) at `rate_hz` from time 0 on."""
-    if isinstance(motion, PairMotion):
-        equations, laws = motion.pair_equations, motion.laws
-        pairs = tuple(pair_table(law) for law in laws)
+    function, model = compiled_rate(motion, speed_input, pitches, inputs)
 
-        def of_pairs(t: float, state: FloatArray) -> FloatArray:
-            found = np.empty_like(state)
-            _pair_rate(equations, laws, pairs, speed_input, pitches, inputs, t * rate_hz, state, found)
-            return found
-
-        return of_pairs
-    assert isinstance(motion, LinearMotion)
-    linear, mesh = motion.equations, motion.law
-
-    def of_linear(t: float, state: FloatArray) -> FloatArray:
+    def of_state(t: float, state: FloatArray) -> FloatArray:
         found = np.empty_like(state)
-        _linear_rate(linear, mesh, pitches, t * rate_hz, state, found)
+        function(model, t * rate_hz, state, found)
         return found
 
-    return of_linear
+    return of_state
+
+
+def compiled_rate(motion: Motion, speed_input: int, pitches: FloatArray, inputs: FloatArray) -> tuple[Any, Any]:
+    """Return a compiled function of (model, place on the grid, state, found), and the model; see `driven_rate`."""
+    if isinstance(motion, PairMotion):
+        laws = motion.laws
+        pairs = tuple(pair_table(law) for law in laws)
+        return _pair_rate, (motion.pair_equations, laws, pairs, speed_input, pitches, inputs)
+    assert isinstance(motion, LinearMotion)
+    return _linear_rate, (motion.equations, motion.law, pitches, inputs)
 
 
 @njit(cache=True)
@@ -59,16 +59,12 @@ def stiffness_along(law: MeshLaw, pitches: FloatArray) -> FloatArray:
 
 @njit(cache=True)
 def _pair_rate(
-    equations: PairEquations,
-    laws: tuple[PairLaw, ...],
-    pairs: tuple[FloatArray, ...],
-    speed_input: int,
-    pitches: FloatArray,
-    inputs: FloatArray,
+    model: tuple[PairEquations, tuple[PairLaw, ...], tuple[FloatArray, ...], int, FloatArray, FloatArray],
     place: float,
     state: FloatArray,
     rate: FloatArray,
 ) -> None:
+    equations, laws, pairs, speed_input, pitches, inputs = model
     first = min(max(int(place), 0), pitches.size - 2)
     share, half = place - first, state.size // 2
     deviation = 0.0
@@ -88,8 +84,9 @@ def _pair_rate(
 
 @njit(cache=True)
 def _linear_rate(
-    equations: Equations, law: MeshLaw, pitches: FloatArray, place: float, state: FloatArray, rate: FloatArray
+    model: tuple[Equations, MeshLaw, FloatArray, FloatArray], place: float, state: FloatArray, rate: FloatArray
 ) -> None:
+    equations, law, pitches, _ = model
     first = min(max(int(place), 0), pitches.size - 2)
     share = place - first
     state_rate(equations, law, state, pitches[first] * (1.0 - share) + pitches[first + 1] * share, rate)

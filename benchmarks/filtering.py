@@ -99,7 +99,7 @@ def _outputs(name: str) -> Outputs:
     steps, _ = rule_grid(config, specimen.dynamics, state.mesh, point)
     forces = [np.concatenate(pair) for pair in built.bearing_forces.values()] if needs(config.sensors, FORCE) else []
     return Outputs(
-        np.array([row for motion, row in built.motions.items() if motion in seen]),
+        np.array([row for motion, row in built.motions.items() if motion in seen]).reshape(-1, len(built.coordinates)),
         np.array(forces).reshape(len(forces), 2 * len(built.coordinates)),
         steps,
     )

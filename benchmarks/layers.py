@@ -17,6 +17,7 @@ class _Standstill:
 
     motions: tuple[str, ...] = ()
     places: tuple[str, ...] = ()
+    readings: tuple[str, ...] = ()
     before = 0
 
     def pieces(self) -> Iterator[Piece]:

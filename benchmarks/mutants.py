@@ -2,7 +2,8 @@
 
 Operators and numbers of physics and data code are drawn by a seed and changed one at a time in a copy of the working
 tree; the test files that import the changed module run there, in a process of their own. A mutant that survives is a
-missing check or an equivalent change; someone has to look at each.
+missing check or an equivalent change; someone has to look at each. Compiled code that a change cannot reach, since its
+module imports the changed one at no remove, is kept.
 """
 
 from __future__ import annotations
@@ -16,13 +17,28 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+
+from siggen.compiled import WITH_COMPILED_CODE
+from siggen.sources import sources_digest
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("gears", "dynamics", "sensing", "specimen", "planning", "record", "columns", "dataset", "sets")
 SWAPPED = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*", ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">="}
 SWAPPED |= {ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "==", ast.And: "or", ast.Or: "and"}
+ONE_DIGEST = """
+
+_of_these_sources = sources_digest
+
+
+def sources_digest(patterns):
+    return {digest!r} if patterns == {patterns!r} else _of_these_sources(patterns)
+"""
+"""What the copy's `sources.py` ends with: functions stay in the cache whatever becomes of the sources of others."""
+GOLDEN = ROOT / "tests" / "record" / "test_golden.py"
 LIMIT_S = 600
 """Of one mutant; a change that hangs a test is noticed."""
 
@@ -95,28 +111,85 @@ def drawn(count: int, seed: int) -> list[Mutant]:
 
 
 def nearest_tests(file: Path) -> list[str]:
-    """Return the test files that import a module, else those of its folder; small ones first."""
+    """Return the test files that import a module, those of its folder, small ones first, and the golden records."""
     module = ".".join(file.with_suffix("").parts)
     tests = sorted((ROOT / "tests").rglob("test_*.py"), key=lambda path: path.stat().st_size)
     direct = [path for path in tests if module in path.read_text(encoding="utf-8")]
     beside = [path for path in tests if path.parent == ROOT / "tests" / file.parent.relative_to("siggen")]
-    return [str(path.relative_to(ROOT)) for path in dict.fromkeys([*direct, *beside])]
+    return [str(path.relative_to(ROOT)) for path in dict.fromkeys([*direct, *beside, GOLDEN])]
+
+
+def copied_tree(folder: Path) -> Path:
+    """Return a copy of the working tree with what is compiled of it."""
+    copy = folder / "tree"
+    shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv", "runs", "site", "*.pyc"))
+    told = ONE_DIGEST.format(digest=sources_digest(WITH_COMPILED_CODE), patterns=WITH_COMPILED_CODE)
+    with (copy / "siggen" / "sources.py").open("a", encoding="utf-8") as file:
+        file.write(told)
+    return copy
+
+
+@contextmanager
+def changed(mutant: Mutant, copy: Path) -> Iterator[None]:
+    """Change the copy; what was compiled of what the change reaches lies aside until the end."""
+    target = copy / mutant.file
+    source, before = target.read_bytes(), target.stat()
+    with tempfile.TemporaryDirectory(dir=copy.parent) as aside:
+        kept = [(path, Path(aside) / str(number)) for number, path in enumerate(compiled_of(mutant.file, copy))]
+        for path, away in kept:
+            path.rename(away)
+        target.write_bytes(source[: mutant.start] + mutant.after.encode() + source[mutant.stop :])
+        try:
+            yield
+        finally:
+            target.write_bytes(source)
+            os.utime(target, ns=(before.st_atime_ns, before.st_mtime_ns))
+            for path in compiled_of(mutant.file, copy):
+                path.unlink()
+            for path, away in kept:
+                away.rename(path)
+
+
+def compiled_of(file: Path, copy: Path) -> list[Path]:
+    """Return what the cache of numba holds of the modules that a change reaches."""
+    return [
+        path
+        for reached in reached_from(file)
+        for path in sorted((copy / reached).parent.glob(f"__pycache__/{reached.stem}.*.nb[ic]"))
+    ]
+
+
+@cache
+def reached_from(file: Path) -> tuple[Path, ...]:
+    """Return a module of siggen and those that import it, at any remove."""
+    found = [file]
+    for reached in found:
+        name = ".".join(reached.with_suffix("").parts)
+        found += [path for path, names in _imported().items() if name in names and path not in found]
+    return tuple(found)
+
+
+@cache
+def _imported() -> dict[Path, set[str]]:
+    """Return what each file of siggen imports: modules, and names of modules, which may be modules."""
+    found = {}
+    for path in (ROOT / "siggen").rglob("*.py"):
+        nodes = [node for node in ast.walk(ast.parse(path.read_bytes())) if isinstance(node, ast.ImportFrom)]
+        names = {f"{node.module}.{alias.name}" for node in nodes for alias in node.names}
+        found[path.relative_to(ROOT)] = names | {str(node.module) for node in nodes}
+    return found
 
 
 def survives(mutant: Mutant, copy: Path) -> bool:
     """Tell whether the nearest tests pass with the change."""
-    target = copy / mutant.file
-    source = target.read_bytes()
-    target.write_bytes(source[: mutant.start] + mutant.after.encode() + source[mutant.stop :])
-    try:
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *nearest_tests(mutant.file)]
-        environment = {**os.environ, "PYTHONPATH": str(copy), "OMP_NUM_THREADS": "1"}
-        run = subprocess.run(command, cwd=copy, env=environment, capture_output=True, timeout=LIMIT_S, check=False)
-        return run.returncode == 0
-    except subprocess.TimeoutExpired:
-        return False
-    finally:
-        target.write_bytes(source)
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *nearest_tests(mutant.file)]
+    environment = {**os.environ, "PYTHONPATH": str(copy), "OMP_NUM_THREADS": "1"}
+    with changed(mutant, copy):
+        try:
+            run = subprocess.run(command, cwd=copy, env=environment, capture_output=True, timeout=LIMIT_S, check=False)
+        except subprocess.TimeoutExpired:
+            return False
+    return run.returncode == 0
 
 
 def main() -> int:
@@ -128,8 +201,7 @@ def main() -> int:
     arguments = parser.parse_args()
     survivors, tried = 0, 0
     with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder) / "tree"
-        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv", "runs", "site", "__pycache__"))
+        copy = copied_tree(Path(folder))
         for number, mutant in enumerate(drawn(arguments.count, arguments.seed)):
             if arguments.only is not None and number not in arguments.only:
                 continue

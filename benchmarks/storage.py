@@ -53,7 +53,7 @@ class _Files:
     def read_checked(self, crc32_per_64_kib: str) -> None:
         """Read siggen's file with every byte checked, as `siggen.open(...).records()` does."""
         with parquet_file(LocalFolder(self.folder), OWN, crc32_per_64_kib) as file:
-            self._read_groups(file)
+            self._read_groups(file.parquet)
 
     def _read_groups(self, file: pq.ParquetFile) -> None:
         for group in range(file.num_row_groups):

@@ -1,4 +1,4 @@
-"""Work against precision of one record: siggen, Runge-Kutta, Newmark, scipy and ROSS on the same equations.
+"""Work against precision of one record: siggen, Runge-Kutta, DOP853, Newmark, scipy and ROSS on the same equations.
 
 All start from the same state and see the same angle and inputs. An error is the median over the motions of the relative
 rms difference of the acceleration between samples (second difference of the displacement), behind the first STARTING_S,
@@ -16,7 +16,8 @@ from typing import Literal
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from benchmarks.driven_rate import driven_rate, stiffness_along
+from benchmarks.compiled_dop853 import dop853
+from benchmarks.driven_rate import compiled_rate, driven_rate, stiffness_along
 from benchmarks.newmark import newmark
 from benchmarks.precision_case import Case, state_grid
 from siggen.arrays import FloatArray
@@ -32,6 +33,8 @@ TOLERANCES, ABSOLUTE_SHARE = (1e-3, 1e-5, 1e-7), 1e-6
 GRID_STEPS = 4
 """Per sample: points between which other solvers find angle and inputs straight, an error of 1e-8 rad at most."""
 PLAIN, NEWMARK, ROSS = "Runge-Kutta, numba", "Newmark, numpy", "Newmark of ROSS"
+COMPILED = "DOP853, numba"
+"""Adaptive and compiled as a whole; those of scipy call a compiled rate from Python."""
 Scipy = Literal["DOP853", "LSODA"]
 SCIPY: tuple[Scipy, ...] = ("DOP853", "LSODA")
 
@@ -56,6 +59,7 @@ def work_points(case: Case, *, quick: bool) -> Iterator[Point]:
     tolerances = TOLERANCES[1:2] if quick else TOLERANCES
     wanted = _accelerations(case, _reference(case)(WINDOW_S)())
     compiled = {(case.method, steps_text(k)): own_solver(case, case.method, k) for k in OWN_STEPS}
+    compiled |= {(COMPILED, _rtol(rtol)): _compiled_solver(case, rtol) for rtol in tolerances}
     plain = (*PLAIN_STEPS, FINEST_PLAIN_STEPS) if case.method == "product" else PLAIN_STEPS
     compiled |= {(PLAIN, steps_text(k)): own_solver(case, "runge_kutta", k) for k in plain}
     errors = {key: _error(_accelerations(case, solver(WINDOW_S)()), wanted) for key, solver in compiled.items()}
@@ -63,7 +67,7 @@ def work_points(case: Case, *, quick: bool) -> Iterator[Point]:
     for key, error in errors.items():
         yield Point(*key, float(np.median([one[key] for one in rounds])), error)
     slow = {(NEWMARK, steps_text(k)): _newmark_solver(case, k) for k in NEWMARK_STEPS}
-    slow |= {(method, f"rtol {rtol:g}"): _scipy_solver(case, method, rtol) for method in SCIPY for rtol in tolerances}
+    slow |= {(method, _rtol(rtol)): _scipy_solver(case, method, rtol) for method in SCIPY for rtol in tolerances}
     slow |= {(ROSS, steps_text(k)): solver for k, solver in _ross_solvers(case)}
     for key, solver in slow.items():
         solver(0.002)()  # compiles
@@ -159,6 +163,22 @@ def _scipy_solver(case: Case, method: Scipy, rtol: float) -> Solver:
         return run
 
     return prepared
+
+
+def _compiled_solver(case: Case, rtol: float) -> Solver:
+    motion, start, fs_hz = case.motion("runge_kutta", 1), _start(case), case.config.fs_hz
+
+    def prepared(duration_s: float) -> Run:
+        pitches, inputs = case.driven_steps(motion, GRID_STEPS, duration_s)
+        function, model = compiled_rate(motion, case.driven.speed_input, pitches, inputs)
+        tolerance = (rtol, ABSOLUTE_SHARE * rtol)
+        return lambda: dop853(function, model, start, fs_hz * GRID_STEPS, 1.0 / fs_hz, tolerance)
+
+    return prepared
+
+
+def _rtol(rtol: float) -> str:
+    return f"rtol {rtol:g}"
 
 
 def _ross_solvers(case: Case) -> Iterator[tuple[int, Solver]]:

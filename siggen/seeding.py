@@ -31,6 +31,7 @@ class Stage(IntEnum):
     BACKGROUND_NOISE = 16
     PAIRS = 17
     PAIR_ORDER = 18
+    LIFE = 19
 
 
 OWNER_KEYS: dict[Stage, int] = {
@@ -52,6 +53,7 @@ OWNER_KEYS: dict[Stage, int] = {
     Stage.BACKGROUND_NOISE: 4,
     Stage.PAIRS: 1,
     Stage.PAIR_ORDER: 1,
+    Stage.LIFE: 1,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

@@ -73,6 +73,7 @@ def test_integers_of_stages_are_part_of_every_identity():
         "BACKGROUND_NOISE": 16,
         "PAIRS": 17,
         "PAIR_ORDER": 18,
+        "LIFE": 19,
     }
 
 

@@ -11,6 +11,9 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from benchmarks.faults.mutated_configurations import VALUES
 from siggen.dataset.checked_file import checksums
 from siggen.dataset.seal import sealed, unsealed
@@ -37,8 +40,10 @@ def change(folder: Path, chance: Random) -> None:
     manifest = unsealed("manifest.json", (folder / "manifest.json").read_bytes())
     for _ in range(chance.randint(1, 3)):
         kind = chance.random()
-        if kind < 0.55:
+        if kind < 0.45:
             _other_value(manifest, chance)
+        elif kind < 0.65:
+            _other_index(folder, chance)
         elif kind < 0.75:
             _other_sidecar(folder, chance)
         elif kind < 0.88:
@@ -85,16 +90,37 @@ def _other_sidecar(folder: Path, chance: Random) -> None:
         file.write_bytes(_sealed(content))
 
 
+def _other_index(folder: Path, chance: Random) -> None:
+    """Change a cell of a table of shards, or leave a column or a row out."""
+    file = folder / chance.choice(("index.parquet", "checksums.parquet"))
+    if file.is_symlink() or not file.is_file():
+        return
+    table = pq.read_table(file)
+    if not table.num_rows or not table.num_columns:
+        return
+    kind, name, number = chance.randrange(4), chance.choice(table.column_names), chance.randrange(table.num_rows)
+    rows, schema = table.to_pylist(), table.schema
+    if kind == 0:
+        table = table.drop_columns([name])
+    elif kind == 1:
+        table = pa.Table.from_pylist([*rows[:number], *rows[number + chance.randrange(2) :], rows[number]], schema)
+    else:
+        old = rows[number][name]
+        others: list[Any] = (
+            [None, [], [5, 2], [-1, 2**62], *NAMES] if isinstance(old, (list, str)) else [None, -1, 2**40]
+        )
+        rows[number][name] = os.urandom(len(old)) if isinstance(old, bytes) else chance.choice(others)
+        with contextlib.suppress(pa.ArrowException, ValueError, TypeError, UnicodeEncodeError):
+            table = pa.Table.from_pylist(rows, schema)
+    with contextlib.suppress(pa.ArrowException):  # null where none may be
+        pq.write_table(table, file)
+
+
 def _other_name(manifest: dict[str, Any], chance: Random) -> None:
-    """Add a file, or give a shard another one, with the hash of the canary where that is meant."""
+    """Add a file with the hash of the canary."""
     name = chance.choice(NAMES)
     if isinstance(manifest.get("files"), dict):
         manifest["files"][name] = {"bytes": len(SECRET), "sha256": hashlib.sha256(SECRET).hexdigest()}
-    shards = manifest.get("shards")
-    if isinstance(shards, list) and shards and chance.random() < 0.5:
-        shard = chance.choice(shards)
-        if isinstance(shard, dict):
-            shard[chance.choice(("file", "internals", "shard"))] = name
 
 
 def _other_file(folder: Path, chance: Random) -> None:

@@ -33,7 +33,10 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.style import png_bytes, styled
+from diagnostics.records.named_set import words_of
+from diagnostics.records.recording import gear_names
 from siggen.dataset.reading import Dataset
+from siggen.errors import UsageError
 
 
 def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
@@ -188,6 +191,8 @@ def audit_set(
     options = options or AuditOptions()
     seed, reference = options.seed, options.reference
     require_packages("the audit", "sklearn", "matplotlib")
+    if options.with_realism and gear_names(dataset).is_planetary:
+        raise UsageError(f"--realism: its ranges were measured on pairs of gears; {dataset.path} holds planetary sets")
     # first, so that a wrong folder is said before minutes have passed
     real = reference_windows(reference, options.reference_fs_hz) if reference else None
     started_s = time.perf_counter()
@@ -268,18 +273,19 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realis
 
 def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     """Write page, JSON and figures; return the page's path."""
+    words = words_of(dataset)
     folder.mkdir(parents=True, exist_ok=True)
     with styled():
         drawn = {}
         if audit.realism:
-            drawn["realism"] = png_bytes(realism_figure(audit.realism))
+            drawn["realism"] = png_bytes(words.figure(realism_figure(audit.realism)))
         if any(math.isfinite(entry.auc.value) for entries in audit.detections.values() for entry in entries):
-            drawn["detectability"] = png_bytes(detectability_figure(shown_ladders(audit)))
+            drawn["detectability"] = png_bytes(words.figure(detectability_figure(shown_ladders(audit))))
     (folder / "figures").mkdir(exist_ok=True)
     for name, png in drawn.items():
         (folder / "figures" / f"{name}.png").write_bytes(png)
     text = json.dumps(audit_numbers(audit, dataset), indent=1, allow_nan=False)
-    (folder / "audit.json").write_text(text + "\n", encoding="utf-8")
+    (folder / "audit.json").write_text(words(text) + "\n", encoding="utf-8")
     path = folder / "audit.html"
-    path.write_text(audit_page(audit, dataset, drawn), encoding="utf-8")
+    path.write_text(words(audit_page(audit, dataset, drawn)), encoding="utf-8")
     return path

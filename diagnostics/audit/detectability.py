@@ -10,6 +10,7 @@ same operating point, energy ratio and sideband energy ratio added. Source: stan
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -17,6 +18,7 @@ import numpy as np
 
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.seeding import Purpose, generator
+from diagnostics.indicators.indicator import or_members
 from diagnostics.records.state_classes import damage_kind
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
 from diagnostics.statistics.scores import area_interval
@@ -46,15 +48,24 @@ class Detection:
 
 
 def features(measured: MeasuredSet, *, paired: bool = False) -> np.ndarray:
-    """Return the features averaged over channels, (records, 4), or differences from the reference, (records, 6)."""
-    columns = [*(_log(measured.values[name]) for name in LEVELS), *(measured.values[name] for name in PLAIN)]
+    """Return the features averaged over channels, (records, 4), or differences from the reference, (records, 6).
+
+    Of planetary sets every member has them; those that no record defines are left out.
+    """
+    columns = [*(_log(values) for values in _taken(measured, LEVELS)), *_taken(measured, PLAIN)]
     if paired:
-        columns += [measured.values[name] for name in ADDED]
+        columns += _taken(measured, ADDED)
     found = np.stack([_channel_mean(column) for column in columns], axis=1)
     if not paired:
         return found
     reference = reference_records(measured)
     return np.where((reference >= 0)[:, None], found - found[reference], np.nan)
+
+
+def _taken(measured: MeasuredSet, names: Sequence[str]) -> list[np.ndarray]:
+    values = measured.values
+    found = [(name, column) for name in names for column in or_members(name, values)]
+    return [values[column] for name, column in found if name == column or np.isfinite(values[column]).any()]
 
 
 def waveform_change(measured: MeasuredSet) -> np.ndarray:

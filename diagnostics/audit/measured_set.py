@@ -20,7 +20,8 @@ from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.table import PULSE_CONDITIONS, RecordTable, record_table
 from diagnostics.records.channel_quantities import RECORDED
-from diagnostics.records.recording import TACHO_NAME
+from diagnostics.records.planetary_members import as_pair
+from diagnostics.records.recording import TACHO_NAME, gear_names
 from diagnostics.records.sample_bytes import BYTES
 from diagnostics.records.state_classes import HEALTHY, ordered_states
 from siggen.dataset.reading import Dataset
@@ -213,7 +214,8 @@ def _scalar_labels(dataset: Dataset) -> dict[str, Any]:
     signals = {channel.column for channel in dataset.channels} | {TACHO_NAME}
     names = [field.name for field in dataset.labels().schema if field.name not in signals]
     table = dataset.labels(columns=names)
-    return {name: table.column(name) for name in names}
+    found = {name: table.column(name) for name in names}
+    return as_pair(found) if gear_names(dataset).is_planetary else found
 
 
 def _array(column: Any) -> np.ndarray:

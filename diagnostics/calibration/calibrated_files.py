@@ -18,8 +18,6 @@ from diagnostics.calibration.source_library import PLACES
 from siggen.errors import UsageError
 
 FACTS = "calibration.json"
-MEMORY_MS = (1.0, 8.0)
-"""Correlation time of the noise's level as measured machines have it; three recordings do not tell it."""
 
 
 def data_folder(out: Path) -> Path:
@@ -130,7 +128,7 @@ def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[
     yield f"      factor: {_range(1.0 / ratio, ratio, 'loguniform')}"
     depths = {"pinion_depth": noise.pinion_depth, "gear_depth": noise.gear_depth, "level_std": noise.level_std}
     inner = ", ".join(f"{key}: {_depth(value)}" for key, value in depths.items())
-    yield f"      modulation: {{{inner}, level_time_ms: {_range(*MEMORY_MS)}}}"
+    yield f"      modulation: {{{inner}}}"
     if table := _lines(channel):
         widest = max(line.spread for line in table)
         usual = float(np.median([line.spread for line in table]))

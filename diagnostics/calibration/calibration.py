@@ -115,6 +115,11 @@ def rig_teeth(rig: Path) -> tuple[dict[str, Any], tuple[int, int]]:
             f"{rig}: stages: received {', '.join(stage['name'] for stage in stages)}; a calibration is of the pair of "
             "`gears` alone. Leave `stages` out: lines of another stage are then found in the recordings."
         )
+    if config.get("planetary") is not None:
+        raise UsageError(
+            f"{rig}: planetary: received a planetary set; a calibration is of a pair of gears alone. "
+            "`siggen-diagnostics baseline --config` takes such machines"
+        )
     if config["dynamics"]["model"] == "torsional":
         raise UsageError(f"{rig}: dynamics.model torsional has no bearing forces; allowed: 6dof, 8dof or casing")
     gears = config["gears"]

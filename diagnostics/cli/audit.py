@@ -85,7 +85,7 @@ def audit(
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.page.wording import counted
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.records.named_set import open_set
     from siggen.errors import VerificationError
 
     own = load_indicators(indicator)

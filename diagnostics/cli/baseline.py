@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -25,7 +25,7 @@ def baseline(
     ],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="MACHINE", help="New folder of the machine.")],
     *,
-    teeth: Teeth = None,
+    gears: GearOptions,
     recording: RecordingOptions,
     load: Annotated[
         str, typer.Option("--load", metavar="L[,L...]", help="Load in any unit: of all recordings, or one for each.")
@@ -43,18 +43,19 @@ def baseline(
     from diagnostics.machine.healthy_state import healthy_state
     from diagnostics.machine.machine import save_machine
     from diagnostics.recordings.file_channels import file_channels
+    from diagnostics.records.gear_train import names_of
 
-    if teeth is None:
-        raise UsageError("--teeth: received nothing; give the teeth of pinion and gear, such as --teeth 25,56")
+    train = gears.train("--teeth")
     sources = [source for said in healthy for source in file_rows(said)]
     columns = recording.columns()
     names = tuple(columns) or file_channels(sources[0][0], recording.tacho, sources[0][1])
     facts, span = recording.facts(), recording.speed_range_hz()
     with terminal_stage("healthy recordings", len(sources)) as advance:
-        machine = healthy_state(sources, names, facts, two_gears(teeth), span, _loads(load), false_alarms, advance)
+        machine = healthy_state(sources, names, facts, train, span, _loads(load), false_alarms, advance)
     save_machine(machine, out)
+    shaft = names_of(train).shafts[0]
     speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
-    typer.echo(f"{len(sources)} recordings, {len(machine.channels)} channels, pinion at {speeds}", err=True)
+    typer.echo(f"{len(sources)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
     typer.echo(rate_sentence(len(sources), false_alarms), err=True)
     typer.echo(str(out))
 

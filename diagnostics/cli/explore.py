@@ -11,7 +11,7 @@ import typer
 
 from diagnostics.base.beside import beside as path_beside
 from diagnostics.base.progress import Stage
-from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
 from diagnostics.cli.set_options import Open, OwnIndicators, opened
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from diagnostics.explore.measured_page import ShownRecording
     from diagnostics.machine.recording_indicators import RecordingIndicators
     from diagnostics.recordings.measured_recording import RecordingFacts
+    from diagnostics.records.gear_train import Mesh
 
 MACHINE_FILE = "machine.json"
 """What the folder of a machine holds; its reader is slow to import."""
@@ -48,14 +49,14 @@ def of_machine(folder: Path, said: Sequence[str], stage: Stage) -> list[ShownRec
         known.references, REFERENCE
     )
     facts = replace(known.facts, columns=known.facts.columns or {name: name for name in known.channels})
-    found = _read(said, known.teeth, facts, known.speed_range_hz, stage)
+    found = _read(said, known.train, facts, known.speed_range_hz, stage)
     return [_shown(one, verdicts.get(one.name, UNKNOWN), loads.get(one.name)) for one in found]
 
 
 def of_files(
     said: Sequence[str],
     healthy: Sequence[str],
-    teeth: tuple[int, int],
+    train: tuple[Mesh, ...],
     facts: RecordingFacts,
     speed_range_hz: tuple[float, float] | None,
     stage: Stage,
@@ -63,8 +64,8 @@ def of_files(
     """Return recordings that the user describes; those of `healthy` are the references."""
     from diagnostics.explore.measured_page import REFERENCE, UNKNOWN
 
-    references = _read(healthy, teeth, facts, speed_range_hz, stage)
-    others = _read(said, teeth, facts, speed_range_hz, stage)
+    references = _read(healthy, train, facts, speed_range_hz, stage)
+    others = _read(said, train, facts, speed_range_hz, stage)
     return [*(_shown(one, REFERENCE, None) for one in references), *(_shown(one, UNKNOWN, None) for one in others)]
 
 
@@ -76,7 +77,7 @@ def _shown(found: RecordingIndicators, verdict: str, load: float | None) -> Show
 
 def _read(
     said: Sequence[str],
-    teeth: tuple[int, int],
+    train: tuple[Mesh, ...],
     facts: RecordingFacts,
     speed_range_hz: tuple[float, float] | None,
     stage: Stage,
@@ -87,7 +88,8 @@ def _read(
     found: list[RecordingIndicators] = []
     with stage("indicators of recordings", len(sources)) as advance:
         for path, row in sources:
-            found.append(recording_indicators(path, teeth, replace(facts, row=row), speed_range_hz))
+            said_of = replace(facts, row=row)
+            found.append(recording_indicators(path, train[0].teeth, said_of, speed_range_hz, train))
             advance()
     return found
 
@@ -175,7 +177,7 @@ def explore(
     amount: AmountOptions,
     of_set: SetOptions,
     compared: BesideOptions,
-    teeth: Teeth = None,
+    gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
     """Write one HTML page to look at the records of a set, or at recordings; it opens from disk, without a network.
@@ -194,11 +196,11 @@ def explore(
     first, path = Path(targets[0]), out
     if out and out.is_dir():
         raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
-    if (first / MACHINE_FILE).is_file() or teeth or file_rows(targets[0])[0][0].is_file():
+    if (first / MACHINE_FILE).is_file() or gears.given or file_rows(targets[0])[0][0].is_file():
         _refuse_set_options(of_set)
         place = first.with_suffix("") if first.is_file() else first
         page = out or path_beside(place, "_explore.html")
-        path = _recordings_page(targets, (teeth, recording), page, compared, amount)
+        path = _recordings_page(targets, (gears, recording), page, compared, amount)
     elif compared.beside is not None:
         raise UsageError(f"--beside {compared.beside}: for recordings only; name them before it, or leave it out")
     elif len(targets) > 1:
@@ -225,7 +227,7 @@ def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: Set
     from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.explorer import ExplorerOptions, explorer_of, write_explorer
     from diagnostics.indicators.own_indicator import load_indicators
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.records.named_set import open_set
 
     own, dataset = load_indicators(of_set.indicator), open_set(folder)
     options = ExplorerOptions(**asdict(amount), served=of_set.serve, model=of_set.model, own=own)
@@ -237,7 +239,7 @@ def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: Set
 
 def _recordings_page(
     targets: list[str],
-    described: tuple[str | None, RecordingOptions],
+    described: tuple[GearOptions, RecordingOptions],
     path: Path,
     compared: BesideOptions,
     amount: AmountOptions,
@@ -251,16 +253,15 @@ def _recordings_page(
         shown = of_machine(folder, [*targets[1:], *healthy], terminal_stage)
         name = folder.resolve().name
     else:
-        teeth, said = described
-        if teeth is None:
-            raise UsageError(f"{targets[0]}: teeth unknown; give those of pinion and gear, such as --teeth 25,56")
-        shown = of_files(targets, healthy, two_gears(teeth), said.facts(), said.speed_range_hz(), terminal_stage)
+        gears, said = described
+        train = gears.train(f"{targets[0]}: teeth unknown")
+        shown = of_files(targets, healthy, train, said.facts(), said.speed_range_hz(), terminal_stage)
         name = ", ".join(Path(target).name for target in targets[:3])
     if compared.beside is None:
         return write_recordings_page(name, shown, path, full=amount.full, stage=terminal_stage)
     from diagnostics.explore.beside_page import write_beside_page
     from diagnostics.explore.explorer import ExplorerOptions
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.records.named_set import open_set
 
     options = ExplorerOptions(**asdict(amount))
     return write_beside_page(name, shown, open_set(compared.beside), path, options, terminal_stage)

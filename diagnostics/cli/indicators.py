@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
 from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, opened
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
@@ -77,7 +77,7 @@ def indicators(
     computing: ComputingOptions,
     ranking: RankingOptions,
     page: PageOptions,
-    teeth: Teeth = None,
+    gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
     """Compute all indicators: of a set, ranked by how well they separate damage; or of measured recordings.
@@ -91,9 +91,9 @@ def indicators(
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
     """
     span = recording.speed_range_hz()
-    if teeth is not None or file_rows(targets[0])[0][0].is_file():
+    if gears.given or file_rows(targets[0])[0][0].is_file():
         _refuse_options_of_sets(computing, ranking, page)
-        _of_recordings(targets, teeth, recording.facts(), span, out, computing.as_json)
+        _of_recordings(targets, gears, recording.facts(), span, out, computing.as_json)
         return
     directory = _one_set(targets, computing)
     if out is not None and out.suffix in (".parquet", ".csv"):
@@ -138,11 +138,11 @@ def _ranking_report(
     from diagnostics.indicators.ranking_table import ranking_table
     from diagnostics.indicators.settings import IndicatorSettings
     from diagnostics.indicators.table import record_table
+    from diagnostics.records.named_set import open_set
     from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
     from diagnostics.statistics.assessment import AssessmentSettings
-    from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
     own, states = load_indicators(computing.indicator), ranking.state or ()
@@ -174,22 +174,23 @@ def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: 
     from diagnostics.indicators.classifier_table import check_table, classifier_table, write_table
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.indicators.table import record_table
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.records.named_set import open_set, words_of
 
     own = load_indicators(indicator)
     dataset = open_set(directory)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
         table = record_table(dataset, own=own, workers=workers, advance=advance)
     notes = check_table(table, dataset)
-    write_table(classifier_table(table, notes), out)
+    words = words_of(dataset)
+    write_table(words.table(classifier_table(table, notes)), out)
     for note in notes:
-        typer.echo(f"note: {note}", err=True)
+        typer.echo(f"note: {words(note)}", err=True)
     typer.echo(str(out))
 
 
 def _of_recordings(
     targets: list[str],
-    teeth: str | None,
+    gears: GearOptions,
     facts: RecordingFacts,
     speed_range_hz: tuple[float, float] | None,
     out: Path | None,
@@ -199,21 +200,23 @@ def _of_recordings(
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
     from diagnostics.machine.recording_indicators import recording_indicators, recording_rows, write_recordings
+    from diagnostics.records.gear_train import names_of
 
     require_packages("the page of indicators", "matplotlib")
-    if teeth is None:
-        raise UsageError(f"{targets[0]}: teeth unknown; give those of pinion and gear, such as --teeth 25,56")
+    train = gears.train(f"{targets[0]}: teeth unknown")
     sources = [source for said in targets for source in file_rows(said)]
     found = []
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:
-            found.append(recording_indicators(path, two_gears(teeth), replace(facts, row=row), speed_range_hz))
+            said = replace(facts, row=row)
+            found.append(recording_indicators(path, train[0].teeth, said, speed_range_hz, train))
             advance()
     if as_json:
         echo_json({"recordings": recording_rows(found)})
     for one in found:
         levels = ", ".join(f"{name} {one.values[f'rms__{name}']:.3g} m/s2" for name in one.recording.channels)
-        speed = f"pinion {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
+        shaft = names_of(one.train).shafts[0]
+        speed = f"{shaft} {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
         if not as_json:
             typer.echo(f"{one.name}: {speed}; rms {levels}")
         for doubt in one.doubts:

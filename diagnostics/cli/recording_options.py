@@ -14,11 +14,54 @@ from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.recordings.measured_recording import RecordingFacts
+    from diagnostics.records.gear_train import Mesh
 
 ROWS = re.compile(r"\d+(,\d+)*")
 
 Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed where the file states it.")]
 Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")]
+
+
+@dataclass(frozen=True, slots=True)
+class GearOptions:
+    """Which gears a machine has."""
+
+    teeth: Teeth = None
+    config: Annotated[
+        Path | None,
+        typer.Option(
+            "--config",
+            metavar="YAML",
+            help="Configuration with the gears, in the place of --teeth: further `stages` and `planetary` sets too.",
+            show_default=False,
+        ),
+    ] = None
+
+    @property
+    def given(self) -> bool:
+        """Whether the user named gears at all."""
+        return self.teeth is not None or self.config is not None
+
+    def train(self, where: str) -> tuple[Mesh, ...]:
+        """Return the meshes of the machine.
+
+        Raises
+        ------
+        UsageError
+            If neither option came, or both; `where` begins the message.
+        """
+        from diagnostics.recordings.configured_train import configured_train
+        from diagnostics.records.gear_train import Mesh
+
+        if (self.teeth is None) == (self.config is None):
+            came = "nothing" if self.teeth is None else "--teeth and --config"
+            raise UsageError(
+                f"{where}: received {came}; give the teeth of pinion and gear, such as --teeth 25,56, or those of all "
+                "meshes by --config gearbox.yaml"
+            )
+        if self.config is not None:
+            return configured_train(self.config)
+        return (Mesh("", two_gears(str(self.teeth))),)
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,8 +43,8 @@ def score(
     Example: siggen-diagnostics score data/quickstart mine.parquet --baselines data/quickstart_report
     """
     from diagnostics.indicators.classifier_table import check_suffix, write_table
+    from diagnostics.records.named_set import open_set
     from diagnostics.scoring.score import score as scored
-    from siggen.dataset.reading import open as open_set
 
     if out:
         check_suffix(out)

@@ -17,6 +17,7 @@ from diagnostics.explore.explorer import explorer_page
 from diagnostics.explore.payload import PageSource, packed_indicators, page_payload
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
+from diagnostics.records.gear_train import names_of
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.errors import UsageError
@@ -69,7 +70,7 @@ def recordings_source(shown: Sequence[ShownRecording]) -> PageSource:
         channels=tuple(first.recording.channels),
         fs_hz=first.recording.fs_hz,
         duration_s=max(one.found.recording.duration_s for one in shown),
-        indicators=packed_indicators(names, values, IndicatorSettings()),
+        indicators=packed_indicators(names, values, IndicatorSettings(), named=names_of(first.train)),
         damage={},
         flanks=[{} for _ in shown],
         quantities=[],

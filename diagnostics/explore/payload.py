@@ -26,7 +26,9 @@ from diagnostics.indicators.registry import indicator_definitions, indicator_tit
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.channel_quantities import RECORDED, ShownQuantity, channel_quantities
-from diagnostics.records.recording import Recording, recordings
+from diagnostics.records.gear_train import GEARS, PAIR, GearNames
+from diagnostics.records.planetary_members import as_pair, teeth_labels
+from diagnostics.records.recording import Recording, gear_names, recordings
 from siggen.dataset.reading import Dataset
 
 WAVES_SHOWN = {
@@ -43,7 +45,9 @@ SHOWN = (
     *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
     *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
 )
-GEARS = ("pinion", "gear")
+OF_MEMBERS = teeth_labels()
+OF_PLANETS = {"sun": "pinion", "planet": "gear"}
+"""Which section of the configuration describes a member of a planetary set."""
 
 
 def shown_internals(dataset: Dataset) -> list[dict[str, str]]:
@@ -256,8 +260,11 @@ def page_payload(source: PageSource, stage: Stage, *, full: bool) -> dict[str, A
 def chosen_labels(dataset: Dataset, rows: np.ndarray) -> dict[str, np.ndarray]:
     """Return the labels that the page uses, (rows,) each; those that the set lacks are left out."""
     found = dataset.labels()
-    present = [name for name in SHOWN if name in found.column_names]
-    return {name: np.asarray(found.column(name).to_pylist())[rows] for name in present}
+    columns = dict(zip(found.column_names, found.columns, strict=True))
+    if gear_names(dataset).is_planetary:
+        columns = as_pair(columns)
+    present = [name for name in (*SHOWN, *OF_MEMBERS) if name in columns]
+    return {name: np.asarray(columns[name].to_pylist())[rows] for name in present}
 
 
 def _plain(value: Any) -> Any:
@@ -292,12 +299,16 @@ def _damage(dataset: Dataset, ids: np.ndarray) -> dict[str, list[dict[str, Any]]
 
 
 def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[str, Any]:
-    return {gear: flank_size(dataset.config, gear, int(labels[f"teeth_{gear}"][row])) for gear in GEARS}
+    sections = OF_PLANETS if gear_names(dataset).is_planetary else dict(zip(GEARS, GEARS, strict=True))
+    return {
+        gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear}"][row]))
+        for gear, section in sections.items()
+    }
 
 
 def _indicators(table: RecordTable, rows: np.ndarray, held: Mapping[str, ShownQuantity]) -> list[dict[str, Any]]:
     names = table.names()
-    return packed_indicators(names, table.values(names)[rows], table.settings, table.own, held, table.meshes)
+    return packed_indicators(names, table.values(names)[rows], table.settings, table.own, held, table.named)
 
 
 def packed_indicators(
@@ -306,12 +317,12 @@ def packed_indicators(
     settings: IndicatorSettings,
     own: Collection[str] = (),
     held: Mapping[str, ShownQuantity] = MappingProxyType({}),
-    meshes: Sequence[str] = (),
+    named: GearNames = PAIR,
 ) -> list[dict[str, Any]]:
     """Return name, title, definition and packed values (records, names) of every indicator that some record defines."""
     units = {RECORDED.unit, *(one.unit for one in held.values())}
-    titles = {unit: indicator_titles(settings, unit, meshes) for unit in units}
-    definitions, found = indicator_definitions(settings, meshes), []
+    titles = {unit: indicator_titles(settings, unit, named) for unit in units}
+    definitions, found = indicator_definitions(settings, named), []
     for name, column in zip(names, values.T, strict=True):
         base, _, channel = name.rpartition("__") if name not in own else (name, "", "")
         if np.isfinite(column).any():

@@ -3,14 +3,14 @@
 Names that a formula may take: of the record `signal`, `spectral_kurtosis`; of a shaft `average`, `regular`, `residual`,
 `difference`, `lines`, `sideband_lines`, `revolutions`, `modulation`, `residual_band`, `teeth`, `log_spectrum`,
 `period_steps`, `shaft_lines`; of the record over angle `angle_signal`, `ripple_bins`; and the fields of its columns
-(`harmonic`, `sideband` ...). A column that belongs to no shaft is the record's or the pinion's.
+(`harmonic`, `sideband` ...). A column that belongs to no shaft is the record's or the
+first shaft's.
 """
 
 from __future__ import annotations
 
 import math
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from diagnostics.indicators.cepstrum import BAND_SHARE, shaft_log_spectrum
 from diagnostics.indicators.history import central_moments, dominant_harmonic
 from diagnostics.indicators.indicator import Indicator
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.signal.member_average import Carrier, member_signals, passing_lines
 from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_baseband
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signal
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
@@ -46,10 +47,12 @@ class ChannelSignals:
         Sampling frequency [Hz].
     grid : AngleGrid, optional
         Steps of pinion angle; without them everything over angle is undefined.
-    shafts : (Shaft, Shaft)
-        Pinion and gear.
+    shafts : tuple of Shaft
+        Pinion and gear, or the members of a planetary set.
     settings : IndicatorSettings
         Harmonics, sidebands, frames.
+    carrier : Carrier, optional
+        Of a planetary set.
     """
 
     def __init__(
@@ -57,10 +60,12 @@ class ChannelSignals:
         signal: np.ndarray,
         fs_hz: float,
         grid: AngleGrid | None,
-        shafts: tuple[Shaft, Shaft],
+        shafts: tuple[Shaft, ...],
         settings: IndicatorSettings,
+        carrier: Carrier | None = None,
     ) -> None:
         self.signal, self.fs_hz, self.grid, self.shafts, self.settings = signal, fs_hz, grid, shafts, settings
+        self._carrier = carrier
         self._of_shaft: dict[str, ShaftSignals] = {}
         self._without_front = np.empty(0)
         self._modulations: dict[tuple[str, int], Modulation] = {}
@@ -98,10 +103,20 @@ class ChannelSignals:
             if shaft.revolutions < 1:
                 raise UndefinedSignalError
             own = self.settings
-            self._of_shaft[name] = shaft_signals(
-                self._steps_of(shaft), shaft, own.samples_per_tooth, own.shaft_orders, own.difference_sidebands
-            )
+            if self._carrier is not None:
+                self._of_shaft[name] = member_signals(
+                    self.steps, shaft, self._carrier, self._passing_lines, own.shaft_orders, own.difference_sidebands
+                )
+            else:
+                self._of_shaft[name] = shaft_signals(
+                    self._steps_of(shaft), shaft, own.samples_per_tooth, own.shaft_orders, own.difference_sidebands
+                )
         return self._of_shaft[name]
+
+    @cached_property
+    def _passing_lines(self) -> np.ndarray:
+        assert self._carrier is not None
+        return passing_lines(self.steps, self._carrier)
 
     def _steps_of(self, shaft: Shaft) -> np.ndarray:
         """Return what a shaft's average is taken of: the record, for a gear without the lines of meshes in front.
@@ -122,16 +137,15 @@ class ChannelSignals:
 
     def values(self, indicators: tuple[Indicator, ...]) -> dict[str, float]:
         """Return the columns of all indicators that need this record alone, NaN where undefined."""
-        found = {}
+        found, names = {}, tuple(shaft.name for shaft in self.shafts)
         for entry in indicators:
             if not entry.history:
-                for chosen in product(*(self.settings.choices(field) for field in entry.fields)):
-                    field = dict(zip(entry.fields, chosen, strict=True))
-                    found[entry.column.format(**field)] = self._value(entry, field)
+                for column, field in entry.columns(self.settings, names):
+                    found[column] = self._value(entry, field)
         return found
 
     def _value(self, entry: Indicator, field: dict[str, Any]) -> float:
-        shaft = str(field.get("shaft", "pinion"))
+        shaft = str(field.get("shaft", self.shafts[0].name))
         try:
             taken = {
                 name: field[name] if name in field else self._named(name, shaft, field) for name in entry.parameters
@@ -196,7 +210,8 @@ class ChannelSignals:
 
     def _period_steps(self, shaft: str, field: dict[str, Any]) -> float:  # noqa: ARG002
         """Return one revolution of a shaft in steps of the cepstrum: the gear takes z2/z1 pinion revolutions."""
-        return 2.0 * self._highest_order * self._shaft(shaft).teeth / self.shafts[0].teeth
+        own = self._shaft(shaft)
+        return 2.0 * self._highest_order * (own.period or own.teeth) / self.shafts[0].teeth
 
     @property
     def _angle_signal(self) -> np.ndarray:
@@ -211,7 +226,7 @@ class ChannelSignals:
         return shaft_lines(self.steps, mine.teeth, other.teeth, self.settings.samples_per_tooth)
 
     def _ripple_bins(self, shaft: str, field: dict[str, Any]) -> tuple[int, int]:  # noqa: ARG002
-        teeth = (self.shafts[0].teeth, self.shafts[1].teeth)
+        teeth = (self.shafts[0].teeth, self.shafts[-1].teeth)
         return ripple_bins(self.steps.size / (teeth[0] * self.settings.samples_per_tooth), teeth)
 
     def _half_width(self, teeth: int) -> int:
@@ -228,6 +243,7 @@ class ChannelSignals:
             found[f"residual_fourth_{name}"], found[f"residual_second_{name}"] = central_moments(signals.parts.residual)
             found[f"dominant_{name}"] = float(dominant_harmonic(signals.lines, teeth, self.settings.mesh_harmonics))
             for h in range(1, self.settings.mesh_harmonics + 1):
-                envelope = np.abs(mesh_baseband(signals.average, teeth, h, self._half_width(teeth)))
+                lines_of = signals.average if self._carrier is None else signals.sideband_average
+                envelope = np.abs(mesh_baseband(lines_of, teeth, h, self._half_width(teeth)))
                 found[f"envelope_fourth_{name}_h{h}"], found[f"envelope_second_{name}_h{h}"] = central_moments(envelope)
         return found

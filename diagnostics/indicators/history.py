@@ -14,9 +14,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diagnostics.indicators.indicator import CONDITION_METRICS, INDICATORS, indicator
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.gear_train import GEARS
 from diagnostics.records.state_classes import HEALTHY
 
-SHAFTS = ("pinion", "gear")
 NO_HISTORY = "no record of the history varies, or one of them is unusable"
 
 
@@ -124,8 +125,10 @@ def histories(labels: Mapping[str, np.ndarray]) -> list[np.ndarray]:
     return [order[group == number] for number in range(int(group.max()) + 1)]
 
 
-def history_indicators(labels: Mapping[str, np.ndarray], moments: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the indicators with a history of both shafts in one channel, (n,) each by column without the channel.
+def history_indicators(
+    labels: Mapping[str, np.ndarray], moments: Mapping[str, np.ndarray], shafts: Sequence[str] = GEARS
+) -> dict[str, np.ndarray]:
+    """Return the indicators with a history of all shafts in one channel, (n,) each by column without the channel.
 
     Parameters
     ----------
@@ -133,17 +136,20 @@ def history_indicators(labels: Mapping[str, np.ndarray], moments: Mapping[str, n
         As of `histories`, and `fault`.
     moments : mapping of str to (n,)
         Moments of every record of the channel by name, see `ChannelSignals.moments`; NaN where unusable.
+    shafts : sequence of str
+        Names of the shafts.
     """
     known = [entry for entry in INDICATORS if entry.history]
-    count = len(labels["state_id"])
-    columns = {entry.column.format(shaft=shaft): np.full(count, np.nan) for entry in known for shaft in SHAFTS}
+    count, settings = len(labels["state_id"]), IndicatorSettings()
+    named = {(entry, chosen["shaft"]): column for entry in known for column, chosen in entry.columns(settings, shafts)}
+    columns = {column: np.full(count, np.nan) for column in named.values()}
     for rows in histories(labels):
         healthy = labels["fault"][rows] == HEALTHY
-        for shaft in SHAFTS:
+        for shaft in shafts:
             for last, row in enumerate(rows.tolist()):
                 told = _moments_of(moments, shaft, rows[: last + 1], healthy[: last + 1])
                 for entry in known:
-                    columns[entry.column.format(shaft=shaft)][row] = entry.function(
+                    columns[named[entry, shaft]][row] = entry.function(
                         **{name: told[name] for name in entry.parameters}
                     )
     return columns

@@ -9,10 +9,15 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import product
 from string import Formatter
+from typing import Any
+
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.planetary_members import MEMBERS
 
 SUFFIX = re.compile(r"(_(pinion|gear))?(_h\d+)?(_(k|lower|upper)\d+|_o\d+_\d+)?$")
 
@@ -22,6 +27,8 @@ BOOK = "standard literature"
 CONDITION_METRICS = "MATLAB gearConditionMetrics"
 OF_CHANNEL = "that of the channel"
 """Unit of an indicator that grows with the signal."""
+OF_WHOLE_TURNS = frozenset({"revolutions", "shaft_lines"})
+"""What members of a planetary set lack: turns of theirs differ by where the planets stand."""
 OF_A_HISTORY = "_variances"
 """How names end that hold one value per record of a history."""
 
@@ -92,24 +99,53 @@ class Indicator:
         """Whether every mesh has its columns: they differ by shaft or mesh line, which a record as a whole lacks."""
         return bool(self.fields)
 
+    def columns(self, settings: IndicatorSettings, shafts: Sequence[str]) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Yield the columns of a mesh with these shafts, and the fields by which they differ.
+
+        Members of a planetary set stand at the end of their columns, as further meshes do.
+        """
+        if OF_WHOLE_TURNS.intersection(self.parameters) and not set(shafts).isdisjoint(MEMBERS):
+            return
+        for values in product(*(shafts if field == "shaft" else settings.choices(field) for field in self.fields)):
+            chosen = dict(zip(self.fields, values, strict=True))
+            yield _column(self.column, chosen), chosen
+
     @property
     def parameters(self) -> tuple[str, ...]:
         """What its formula takes; a parameter with a default only where its columns differ by it."""
         return _parameters(self.function, self.fields)
 
 
+OF_SHAFT, PINION = "_{shaft}", "_pinion"
 FIELD_PATTERNS = {"shaft": "(pinion|gear)", "side": "(lower|upper)", "band": r"o\d+_\d+"}
 """What the fields of columns look like; all others are numbers."""
 
 
+def _column(template: str, chosen: Mapping[str, Any]) -> str:
+    member = str(chosen.get("shaft", ""))
+    return (
+        of_mesh(template.replace(OF_SHAFT, "").format(**chosen), member)
+        if member in MEMBERS
+        else template.format(**chosen)
+    )
+
+
 @cache
-def _with_mesh(column: str) -> re.Pattern[str]:
-    """Return the pattern of the columns of a further mesh, by an indicator's template."""
-    parts = [
+def _pattern(column: str) -> str:
+    """Return the pattern of the columns of the first mesh, by an indicator's template."""
+    return "".join(
         re.escape(text) + (FIELD_PATTERNS.get(name, r"\d+") if name else "")
         for text, name, _, _ in Formatter().parse(column)
-    ]
-    return re.compile("".join(parts) + "_(?P<mesh>[a-z][a-z0-9_]*)")
+    )
+
+
+@cache
+def _with_mesh(column: str) -> tuple[re.Pattern[str], ...]:
+    """Return the patterns of columns of a further mesh, and of members of a planetary set."""
+    further = re.compile(f"{_pattern(column)}_(?P<mesh>[a-z][a-z0-9_]*)")
+    if OF_SHAFT not in column:
+        return (further,)
+    return further, re.compile(f"{_pattern(column.replace(OF_SHAFT, ''))}_(?P<mesh>{'|'.join(MEMBERS)})")
 
 
 @cache  # asked for at every value of every record
@@ -169,9 +205,12 @@ def base_name(column: str) -> str:
 
 @cache
 def without_mesh(column: str) -> tuple[str, str]:
-    """Return a column as the first mesh has it, without channel, and the name of its mesh, empty for the first one."""
+    """Return a column as the first mesh has it, without channel, and the name of its mesh, empty for the first one.
+
+    Members of a planetary set count as meshes.
+    """
     name = column.split("__", maxsplit=1)[0]
-    patterns = (_with_mesh(entry.column) for entry in INDICATORS if entry.is_of_mesh)
+    patterns = (pattern for entry in INDICATORS if entry.is_of_mesh for pattern in _with_mesh(entry.column))
     mesh = next((match["mesh"] for pattern in patterns if (match := pattern.fullmatch(name))), "")
     return name.removesuffix(of_mesh("", mesh)), mesh
 
@@ -179,3 +218,18 @@ def without_mesh(column: str) -> tuple[str, str]:
 def of_mesh(column: str, mesh: str) -> str:
     """Return the column of a mesh by that of the first one, whose name is empty."""
     return f"{column}_{mesh}" if mesh else column
+
+
+def or_members(column: str, known: Container[str]) -> tuple[str, ...]:
+    """Return a column of the pinion, or those that members of a planetary set have in its place where it is not known.
+
+    Parameters
+    ----------
+    column : str
+        Such as `sideband_index_pinion_h1`, without channel.
+    known : container of str
+        Columns that there are.
+    """
+    if column in known:
+        return (column,)
+    return tuple(name for member in MEMBERS if (name := of_mesh(column.replace(PINION, "", 1), member)) in known)

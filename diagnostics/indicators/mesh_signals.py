@@ -15,6 +15,8 @@ from diagnostics.indicators.channel_signals import ChannelSignals
 from diagnostics.indicators.indicator import Indicator, of_mesh
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.gear_train import Mesh
+from diagnostics.records.planetary_members import MEMBERS, Planets
+from diagnostics.signal.member_average import PLANET, RING, SUN, Carrier, carrier_turns_needed
 from diagnostics.signal.order_domain import AngleGrid, angle_grid, shaft_grid
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
 
@@ -24,10 +26,13 @@ FEWEST_TURNS = 8
 
 @dataclass(frozen=True, slots=True)
 class MeshSignals:
-    """One mesh of a record: its shafts, and the signals of every channel over its angle."""
+    """One mesh of a record: its shafts, and the signals of every channel over its angle.
+
+    A planetary set counts as one mesh with its members as shafts.
+    """
 
     mesh: Mesh
-    shafts: tuple[Shaft, Shaft]
+    shafts: tuple[Shaft, ...]
     channels: Mapping[str, ChannelSignals]
 
     def values(self, channel: str, taken: tuple[Indicator, ...]) -> dict[str, float]:
@@ -72,8 +77,11 @@ def mesh_signals(
     found = []
     for mesh in train:
         grid = _grid(tacho_s, mesh, settings.samples_per_tooth)
-        shafts = _shafts(grid, mesh, settings)
-        signals = {name: ChannelSignals(signal, fs_hz, grid, shafts, settings) for name, signal in channels.items()}
+        carrier = _carrier(mesh.planets, settings)
+        shafts = _shafts(grid, mesh, settings) if carrier is None else _members(grid, mesh, carrier, settings)
+        signals = {
+            name: ChannelSignals(signal, fs_hz, grid, shafts, settings, carrier) for name, signal in channels.items()
+        }
         found.append(MeshSignals(mesh, shafts, signals))
     return tuple(found)
 
@@ -98,3 +106,38 @@ def _behind(shaft: Shaft, mesh: str) -> Shaft:
         return replace(shaft, note=f"mesh {mesh}: {shaft.note}" if shaft.note else "")
     note = f"mesh {mesh}: all {shaft.name} averages undefined, since they need {FEWEST_TURNS} {shaft.name} revolutions"
     return replace(shaft, revolutions=0, note=note)
+
+
+def _carrier(planets: Planets | None, settings: IndicatorSettings) -> Carrier | None:
+    if planets is None:
+        return None
+    return Carrier(planets.ring, planets.places, planets.passing, settings.samples_per_tooth)
+
+
+def _members(grid: AngleGrid | None, mesh: Mesh, carrier: Carrier, settings: IndicatorSettings) -> tuple[Shaft, ...]:
+    """Return sun, planets and ring as shafts, without revolutions where those against the carrier are too few."""
+    assert mesh.planets is not None
+    sun, planet, ring = mesh.planets.teeth
+    periods = grid.time_s.size / settings.samples_per_tooth if grid else 0.0
+    both = np.ones(settings.sidebands) / settings.sidebands  # the ring's sidebands are those of passing planets
+    needed = (
+        carrier_turns_needed(settings.sidebands, sun, planet, carrier),
+        carrier_turns_needed(settings.sidebands, planet, sun, carrier),
+        both,
+    )
+    period = (sun * float(mesh.planets.sun_turns), 0.0, 0.0)  # one turn of the sun's shaft
+    rows = zip(MEMBERS, mesh.planets.teeth, needed, (SUN, PLANET, RING), period, strict=True)
+    return tuple(
+        _member(Shaft(name, teeth, int(periods // teeth), turns <= periods / ring, "", 0, meets, after), turns)
+        for name, teeth, turns, meets, after in rows
+    )
+
+
+def _member(shaft: Shaft, needed: np.ndarray) -> Shaft:
+    """Return a member with what is not defined of it, and why."""
+    if shaft.revolutions < FEWEST_TURNS:
+        note = f"all {shaft.name} averages undefined, since they need {FEWEST_TURNS} turns against the carrier"
+        return replace(shaft, revolutions=0, note=note)
+    missing = [f"{k + 1} (needs {np.ceil(needed[k]):.0f})" for k in np.flatnonzero(~shaft.resolved)]
+    told = f"{shaft.name} sidebands not resolved, by turns of the carrier: {', '.join(missing)}" if missing else ""
+    return replace(shaft, note=told)

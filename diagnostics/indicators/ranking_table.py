@@ -22,6 +22,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.record_problems import FEWEST_REVOLUTIONS, RecordProblem, is_rate, problem_list
+from diagnostics.records.recording import gear_names, pair_teeth
 from diagnostics.records.state_classes import chosen_states
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 from siggen.dataset.reading import Dataset
@@ -43,13 +44,14 @@ def needed_duration(dataset: Dataset, frame_samples: int) -> tuple[float, float]
     frame_samples : int
         Samples per frame of the spectral kurtosis.
     """
-    labels = dataset.labels(columns=["speed_hz", "teeth_pinion", "teeth_gear"])
+    labels = dataset.labels(columns=["speed_hz", *pair_teeth(dataset)])
     columns = np.array([labels.column(name).to_pylist() for name in labels.column_names], dtype=np.float64)
     speed_hz, pinion, gear = columns[:, (np.isfinite(columns) & (columns > 0.0)).all(axis=0)]
     if not speed_hz.size:
         return math.nan, math.nan
     turns = np.ceil(FEWEST_REVOLUTIONS * np.maximum(1.0, gear / pinion)) + 1.0
-    needed_s = turns / speed_hz
+    against_carrier = gear / (pinion + gear) if gear_names(dataset).is_planetary else 1.0
+    needed_s = turns / (speed_hz * against_carrier)
     longest = int(np.argmax(needed_s))
     frames_s = (FEWEST_FRAMES + 1) * (frame_samples // 2) / dataset.fs_hz
     return max(float(needed_s[longest]), frames_s), float(speed_hz[longest])
@@ -188,10 +190,11 @@ def _histories(
     found = {name: values[rows] for name, values in table.moments(channel).items()}
     moments = {name: np.where(unusable, np.nan, values) for name, values in found.items()}
     columns: dict[str, np.ndarray] = {}
-    for mesh in ("", *table.meshes):
+    shafts = table.named.shafts
+    for mesh in ("", *table.named.meshes):
         ending = of_mesh("", mesh)
         own = {name.removesuffix(ending): values for name, values in moments.items() if name.endswith(ending)}
-        columns |= {of_mesh(name, mesh): values for name, values in history_indicators(labels, own).items()}
+        columns |= {of_mesh(name, mesh): values for name, values in history_indicators(labels, own, shafts).items()}
     return {f"{name}__{channel}": values for name, values in columns.items()}
 
 

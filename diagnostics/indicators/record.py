@@ -146,14 +146,13 @@ def record_values(
     turns, waveforms = revolutions(meshes[0]), {}
     if turns[0] >= FEWEST_AUDIT_TURNS:
         first = meshes[0].channels
-        waveforms = {name: _waveform(own.shaft("pinion").average, teeth[0]) for name, own in first.items()}
+        waveforms = {name: _waveform(own.shaft(own.shafts[0].name).average, teeth[0]) for name, own in first.items()}
     return RecordValues(values, turns, shaft_notes(meshes), waveforms)
 
 
 def revolutions(mesh: MeshSignals) -> tuple[int, int]:
-    """Return the whole revolutions of pinion and gear."""
-    pinion, gear = mesh.shafts
-    return pinion.revolutions, gear.revolutions
+    """Return the whole revolutions of pinion and gear, of a planetary set those of sun and ring against its carrier."""
+    return mesh.shafts[0].revolutions, mesh.shafts[-1].revolutions
 
 
 def shaft_notes(meshes: tuple[MeshSignals, ...]) -> str:
@@ -207,11 +206,13 @@ def _channel_result(
     if grid is None or grid.revolutions < FEWEST_AUDIT_TURNS:
         return ChannelResult(values | dict.fromkeys(LEVELS, math.nan), moments, conditions=conditions)
     values |= _levels(signals, grid, pulses)
-    teeth = (signals.shafts[0].teeth, signals.shafts[1].teeth)
+    teeth = (signals.shafts[0].teeth, signals.shafts[-1].teeth)
+    if signals.shafts[0].revolutions < 1:  # a sun that turns too seldom against its carrier
+        return ChannelResult(values, moments, conditions=conditions)
     return ChannelResult(
         values,
         moments,
-        _waveform(signals.shaft("pinion").average, teeth[0]),
+        _waveform(signals.shaft(signals.shafts[0].name).average, teeth[0]),
         noise_sketch(signals.signal, signals.fs_hz, signals.steps, teeth, grid),
         conditions,
     )
@@ -219,7 +220,7 @@ def _channel_result(
 
 def _levels(signals: ChannelSignals, grid: AngleGrid, pulses: np.ndarray) -> dict[str, float]:
     turns = signals.steps.reshape(grid.revolutions, grid.samples_per_revolution)
-    teeth = (signals.shafts[0].teeth, signals.shafts[1].teeth)
+    teeth = (signals.shafts[0].teeth, signals.shafts[-1].teeth)
     return record_levels(turns, float(pulses[-1] - pulses[0]), teeth, signals.fs_hz)
 
 

@@ -5,15 +5,15 @@ What people call the columns of indicators: `sideband_pinion_h2_upper1` is a sid
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from itertools import product
 from typing import Any
 
 from diagnostics.indicators import angle, average, cepstrum, history, level, sidebands
 from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator, base_name, of_mesh
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
+from diagnostics.records.gear_train import PAIR, GearNames
 from siggen.errors import UsageError
 
 WORDS = {
@@ -66,21 +66,27 @@ def check_quantity(column: str, quantities: Mapping[str, str]) -> None:
 
 
 def indicator_titles(
-    settings: IndicatorSettings, channel_unit: str = RECORDED.unit, meshes: Sequence[str] = ()
+    settings: IndicatorSettings, channel_unit: str = RECORDED.unit, named: GearNames = PAIR
 ) -> dict[str, str]:
-    """Return the title of every column of a channel of this unit, with its unit, without the channel's name.
-
-    `meshes` are the names of the further ones.
-    """
+    """Return the title of every column of a channel of this unit, with its unit, without the channel's name."""
     found: dict[str, str] = {}
-    for mesh in ("", *meshes):
-        for entry in (entry for entry in ALL if entry.is_of_mesh or not mesh):
-            for values in product(*(settings.choices(field) for field in entry.fields)):
-                chosen: dict[str, Any] = dict(zip(entry.fields, values, strict=True))
-                title = ", ".join([entry.title, *_words(chosen), *([mesh_words(mesh)] if mesh else [])])
-                unit = channel_unit if entry.unit == OF_CHANNEL else entry.unit
-                found[of_mesh(entry.column.format(**chosen), mesh)] = f"{title} [{unit}]" if unit else title
+    for mesh, entry, column, chosen in _every(settings, ALL, named):
+        title = ", ".join([entry.title, *_words(chosen), *([mesh_words(mesh)] if mesh else [])])
+        unit = channel_unit if entry.unit == OF_CHANNEL else entry.unit
+        found[of_mesh(column, mesh)] = f"{title} [{unit}]" if unit else title
     return found
+
+
+def _every(
+    settings: IndicatorSettings, entries: Iterable[Indicator], named: GearNames
+) -> Iterator[tuple[str, Indicator, str, dict[str, Any]]]:
+    """Yield mesh, indicator, column as the first mesh has it, and the fields by which it differs."""
+    known = tuple(entries)
+    for mesh in ("", *named.meshes):
+        for entry in known:
+            if entry.is_of_mesh or not mesh:
+                for column, chosen in entry.columns(settings, named.shafts):
+                    yield mesh, entry, column, chosen
 
 
 def mesh_words(mesh: str) -> str:
@@ -88,16 +94,11 @@ def mesh_words(mesh: str) -> str:
     return f"mesh {mesh}"
 
 
-def indicator_definitions(settings: IndicatorSettings, meshes: Sequence[str] = ()) -> dict[str, str]:
-    """Return by column how the value is taken; `meshes` are the names of the further ones."""
+def indicator_definitions(settings: IndicatorSettings, named: GearNames = PAIR) -> dict[str, str]:
+    """Return by column how the value is taken."""
     return {
-        of_mesh(entry.column.format(**dict(zip(entry.fields, values, strict=True))), mesh): (
-            f"{entry.formula}; from {entry.signal}"
-        )
-        for mesh in ("", *meshes)
-        for entry in ALL
-        if entry.is_of_mesh or not mesh
-        for values in product(*(settings.choices(field) for field in entry.fields))
+        of_mesh(column, mesh): f"{entry.formula}; from {entry.signal}"
+        for mesh, entry, column, _ in _every(settings, ALL, named)
     }
 
 
@@ -127,15 +128,7 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def columns(settings: IndicatorSettings, quantity: str = RECORDED.word, meshes: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the columns of one channel that a record alone gives, without the channel's name.
-
-    `meshes` are the names of the further ones.
-    """
-    return tuple(
-        of_mesh(entry.column.format(**dict(zip(entry.fields, chosen, strict=True))), mesh)
-        for mesh in ("", *meshes)
-        for entry in taken_of(quantity)
-        if not entry.history and (entry.is_of_mesh or not mesh)
-        for chosen in product(*(settings.choices(field) for field in entry.fields))
-    )
+def columns(settings: IndicatorSettings, quantity: str = RECORDED.word, named: GearNames = PAIR) -> tuple[str, ...]:
+    """Return the columns of one channel that a record alone gives, without the channel's name."""
+    taken = (entry for entry in taken_of(quantity) if not entry.history)
+    return tuple(of_mesh(column, mesh) for mesh, _, column, _ in _every(settings, taken, named))

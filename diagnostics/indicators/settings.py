@@ -46,9 +46,8 @@ class IndicatorSettings:
     speed_range_hz: tuple[float, float] | None = None
 
     def choices(self, field: str) -> tuple[int | str, ...]:
-        """Return the values that a field of a column's template takes."""
+        """Return the values that a field of a column's template takes; shafts are those of the gearbox."""
         return {
-            "shaft": ("pinion", "gear"),
             "harmonic": tuple(range(1, self.mesh_harmonics + 1)),
             "harmonics": (self.mesh_harmonics,),
             "demodulated_harmonic": tuple(range(1, self.modulation_harmonics + 1)),

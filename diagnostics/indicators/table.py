@@ -32,8 +32,9 @@ from diagnostics.indicators.registry import check_quantity, columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.channel_quantities import RECORDED
+from diagnostics.records.gear_train import PAIR, GearNames
 from diagnostics.records.record_problems import RecordProblem
-from diagnostics.records.recording import LABEL_NAMES, Recording, meshes_behind, recordings
+from diagnostics.records.recording import LABEL_NAMES, Recording, gear_names, recordings
 from diagnostics.records.sample_bytes import BYTES
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
@@ -63,7 +64,7 @@ def table_file(dataset: Dataset, settings: IndicatorSettings, channels: Sequence
     if not (folder / "manifest.json").is_file():
         return None
     folder = folder.resolve()
-    files = sorted(name for name in dataset.manifest.get("files", {}) if name.startswith(("data/", "metadata/")))
+    files = sorted(name for name in dataset.files if name.startswith(("data/", "metadata/")))
     facts = [(name, *_stat(folder / name)) for name in files]
     state = _digest([dataset.manifest, facts, _code_digest()])
     chosen = _digest([asdict(settings), list(channels)])
@@ -143,8 +144,8 @@ class RecordTable:
         Why the table could not be kept on disk, or empty.
     quantities : dict of str to str
         What channels hold.
-    meshes : tuple of str
-        Names of the meshes behind the first one.
+    named : GearNames
+        What columns are called after.
     """
 
     source: pa.Table | Path
@@ -154,7 +155,7 @@ class RecordTable:
     own_problems: tuple[RecordProblem, ...] = ()
     note: str = ""
     quantities: dict[str, str] = field(default_factory=dict)
-    meshes: tuple[str, ...] = ()
+    named: GearNames = PAIR
 
     def select(self, names: Sequence[str]) -> pa.Table:
         """Return the named columns."""
@@ -209,7 +210,7 @@ class RecordTable:
         per_channel = [
             f"{name}__{channel}"
             for channel in self.channels
-            for name in columns(self.settings, self.quantities.get(channel, RECORDED.word), self.meshes)
+            for name in columns(self.settings, self.quantities.get(channel, RECORDED.word), self.named)
         ]
         return (*per_channel, *self.own)
 
@@ -262,7 +263,7 @@ def record_table(
         source = _computed(dataset, chosen, channels, workers, advance)
         note = keep_table(source, files[-1]) if files and files[-1] is not None else ""
     held = {channel.name: channel.quantity for channel in dataset.channels}
-    table = RecordTable(source, chosen, channels, note=note, quantities=held, meshes=meshes_behind(dataset))
+    table = RecordTable(source, chosen, channels, note=note, quantities=held, named=gear_names(dataset))
     pulses = [np.asarray(row.values, np.float64) for row in table.select(["pulses_s"]).column("pulses_s")]
     refused = table.texts("refused")
     found, problems = own_columns(dataset, mine, pulses, refused, workers=workers, advance=advance if kept else None)
@@ -276,7 +277,7 @@ def _computed(
     if not results:
         raise DatasetError(f"{dataset.path}: no records to take indicators of; received splits {list(dataset.splits)}")
     held = {channel.name: channel.quantity for channel in dataset.channels}
-    return _as_table(results, settings, {name: held[name] for name in channels}, meshes_behind(dataset))
+    return _as_table(results, settings, {name: held[name] for name in channels}, gear_names(dataset))
 
 
 def _results(
@@ -294,7 +295,7 @@ def _record_result(settings: IndicatorSettings, record: Recording) -> RecordResu
 
 
 def _as_table(
-    results: list[RecordResult], settings: IndicatorSettings, held: Mapping[str, str], meshes: tuple[str, ...]
+    results: list[RecordResult], settings: IndicatorSettings, held: Mapping[str, str], named: GearNames
 ) -> pa.Table:
     found: dict[str, Any] = {name: [result.labels[name] for result in results] for name in LABEL_NAMES}
     found |= {
@@ -308,7 +309,7 @@ def _as_table(
         **{name: [float(result.conditions[name]) for result in results] for name in PULSE_CONDITIONS},
     }
     for channel, quantity in held.items():
-        names = columns(settings, quantity, meshes)
+        names = columns(settings, quantity, named)
         found |= _channel_columns([result.channels[channel] for result in results], names, channel)
     return pa.table(found)
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.records.recording import Recording, recordings
+from diagnostics.records.recording import Recording, pair_teeth, recordings
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
@@ -108,7 +108,8 @@ def order_records(
 
 
 def _most_teeth(dataset: Dataset) -> int:
-    return int(max(dataset.labels(columns=["teeth_pinion"]).column("teeth_pinion").to_pylist()))
+    first, _ = pair_teeth(dataset)
+    return int(max(dataset.labels(columns=[first]).column(first).to_pylist()))
 
 
 def _order_signal(record: Recording, settings: WindowSettings) -> np.ndarray:

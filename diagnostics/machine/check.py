@@ -130,7 +130,7 @@ def check_recording(machine: Machine, recording: MeasuredRecording, name: str, l
         if recording.duration_s < 0.9 * machine.duration_s:
             told = f"{recording.duration_s:.3g} s; pieces of the references are {machine.duration_s:.3g} s long"
             raise UsageError(f"{recording.path}: is too short: {told}")
-        pieces, pulses = pieces_of(recording, machine.fs_hz, machine.teeth, machine.speed_range_hz, machine.duration_s)
+        pieces, pulses = pieces_of(recording, machine.fs_hz, machine.train, machine.speed_range_hz, machine.duration_s)
     except UsageError as error:
         return Check(name, CANNOT_TELL, str(error), float("nan"))
     logs = log_values(pieces.medians(machine.names)[None])[0]

@@ -16,6 +16,7 @@ from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_p
 from diagnostics.recordings.level_alike import check_levels_alike
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.records.gear_train import Mesh
 from diagnostics.statistics.change_score import FEWEST
 from siggen.errors import UsageError
 
@@ -31,7 +32,7 @@ def healthy_state(
     sources: Sequence[Source],
     channels: tuple[str, ...],
     facts: RecordingFacts,
-    teeth: tuple[int, int],
+    train: tuple[Mesh, ...],
     speed_range_hz: tuple[float, float] | None,
     loads: Sequence[float],
     false_alarms: float,
@@ -43,7 +44,7 @@ def healthy_state(
     ----------
     sources : sequence of (Path, int or None)
         Files and rows, three at least.
-    channels, facts, teeth, speed_range_hz, false_alarms : see `Machine`
+    channels, facts, train, speed_range_hz, false_alarms : see `Machine`
     loads : sequence of float
         One per recording, one for all, or none.
     advance : callable
@@ -67,8 +68,8 @@ def healthy_state(
     duration_s = min(LONGEST_PIECE_S, *(recording.duration_s for recording in read))
     rows, speeds = [], []
     for recording in read:
-        pieces, pulses = pieces_of(recording, fs_hz, teeth, speed_range_hz, duration_s)
-        check_mesh_lines(recording, pulses, teeth)
+        pieces, pulses = pieces_of(recording, fs_hz, train, speed_range_hz, duration_s)
+        check_mesh_lines(recording, pulses, train[0])
         rows.append(pieces)
         speeds.append(pulses.speed_hz)
         advance()
@@ -77,7 +78,7 @@ def healthy_state(
     load = np.full(len(read), np.nan) if not loads else np.broadcast_to(np.asarray(loads, dtype=np.float64), len(read))
     called = tuple(f"{path.name}:{row}" if row is not None else path.name for path, row in sources)
     return Machine(
-        teeth, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, called,
+        train, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, called,
         np.array(speeds), np.array(load),
     )  # fmt: skip
 
@@ -85,7 +86,7 @@ def healthy_state(
 def pieces_of(
     recording: MeasuredRecording,
     fs_hz: float,
-    teeth: tuple[int, int],
+    train: tuple[Mesh, ...],
     speed_range_hz: tuple[float, float] | None,
     duration_s: float,
 ) -> tuple[RecordPieces, ShaftPulses]:
@@ -101,14 +102,15 @@ def pieces_of(
             f"{recording.path}: sampled at {recording.fs_hz:g} Hz, the references at {fs_hz:g} Hz; allowed: no less"
         )
     slow = at_rate(recording, fs_hz)
-    pulses = shaft_pulses(slow, teeth, speed_range_hz)
+    first = train[0]
+    pulses = shaft_pulses(slow, first.teeth, speed_range_hz, first.planets)
     if duration_s * pulses.speed_hz < FEWEST_TURNS:
         raise UsageError(
             f"{recording.path}: pieces of {duration_s:.3g} s, as long as the shortest recording, hold "
             f"{duration_s * pulses.speed_hz:.1f} turns of the pinion; allowed: at least {FEWEST_TURNS}. Use longer "
             "recordings, or leave the shortest out"
         )
-    return record_pieces(slow, pulses, teeth, duration_s, IndicatorSettings()), pulses
+    return record_pieces(slow, pulses, first.teeth, duration_s, IndicatorSettings(), train=train), pulses
 
 
 def _row(facts: RecordingFacts, row: int | None) -> RecordingFacts:

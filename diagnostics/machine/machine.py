@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.records.gear_train import Mesh, gear_train, train_labels
 from siggen.errors import UsageError
 
 FACTS, TABLE, CHECKS = "machine.json", "references.parquet", "checks.jsonl"
-VERSION = 1
+VERSION = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,8 +23,8 @@ class Machine:
 
     Attributes
     ----------
-    teeth : (int, int)
-        Pinion and gear.
+    train : tuple of Mesh
+        Its meshes, the first one first.
     channels : tuple of str
     facts : RecordingFacts
         How its files are read.
@@ -43,7 +44,7 @@ class Machine:
         Pinion speed, and load as the user gave it (NaN where he did not).
     """
 
-    teeth: tuple[int, int]
+    train: tuple[Mesh, ...]
     channels: tuple[str, ...]
     facts: RecordingFacts
     speed_range_hz: tuple[float, float] | None
@@ -77,7 +78,7 @@ def save_machine(machine: Machine, folder: Path) -> None:
     facts = asdict(machine.facts) | {"columns": dict(machine.facts.columns)}
     content = {
         "version": VERSION,
-        "teeth": machine.teeth,
+        "gears": train_labels(machine.train),
         "channels": machine.channels,
         "facts": facts,
         "speed_range_hz": machine.speed_range_hz,
@@ -113,7 +114,7 @@ def load_machine(folder: Path) -> Machine:
     names = tuple(name for name in table.column_names if name not in {"recording", "speed_hz", "load"})
     span = content["speed_range_hz"]
     return Machine(
-        (content["teeth"][0], content["teeth"][1]),
+        gear_train(content["gears"]),
         tuple(content["channels"]),
         RecordingFacts(**content["facts"]),
         None if span is None else (span[0], span[1]),

@@ -26,6 +26,7 @@ from diagnostics.recordings.file_channels import file_channels
 from diagnostics.recordings.level_alike import level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.records.gear_train import Mesh, names_of
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resample_to_angle
 from diagnostics.signal.spectrum import OrderLines, noise_density, order_lines
 from siggen.errors import UsageError
@@ -104,32 +105,42 @@ def _cell(value: float) -> html.Cell:
     return html.Cell("undefined" if np.isnan(value) else f"{value:.4g}", value=value)
 
 
-def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, teeth: tuple[int, int]) -> None:
-    """Check that one of the first five mesh lines stands 10 dB over the noise on a channel.
+def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, mesh: Mesh) -> None:
+    """Check that one of the first five lines of a mesh stands 10 dB over the noise on a channel.
 
     Raises
     ------
     UsageError
         If none does; names the file.
     """
+    teeth, orders = mesh.teeth, _mesh_orders(mesh)
     grid = angle_grid(pulses.times_s, SAMPLES_PER_TOOTH * teeth[0])
     duration_s = float(pulses.times_s[-1] - pulses.times_s[0])
     for signal in recording.channels.values():
         turns = resample_to_angle(signal, recording.fs_hz, grid).reshape(grid.revolutions, -1)
-        if strongest_mesh_line(order_lines(turns, duration_s), teeth) > OVER_NOISE:
+        if strongest_mesh_line(order_lines(turns, duration_s), teeth, orders) > OVER_NOISE:
             return
+    shaft = names_of([mesh]).shafts[0]
     raise UsageError(
-        f"{recording.path}: no mesh line of {teeth[0]} teeth stands out at {pulses.speed_hz:.4g} Hz of the pinion; are "
-        "these the teeth (--teeth PINION,GEAR), is the tacho on the pinion, and was the machine loaded?"
+        f"{recording.path}: no mesh line of {teeth[0]} teeth stands out at {pulses.speed_hz:.4g} Hz of the {shaft}; "
+        f"are these the teeth (--teeth, --config), is the tacho on the {shaft}, and was the machine loaded?"
     )
 
 
-def strongest_mesh_line(lines: OrderLines, teeth: tuple[int, int]) -> float:
-    """Return the largest ratio of power between a mesh line's bin and the noise beside it."""
+def _mesh_orders(mesh: Mesh) -> list[float]:
+    """Return the orders of the first harmonics; planets that pass move them to multiples of their number."""
+    if mesh.planets is None:
+        return [float(h * mesh.teeth[0]) for h in range(1, HARMONICS + 1)]
+    ring, step = mesh.planets.ring, mesh.planets.passing
+    return [round(h * ring / step) * step * mesh.teeth[0] / ring for h in range(1, HARMONICS + 1)]
+
+
+def strongest_mesh_line(lines: OrderLines, teeth: tuple[int, int], orders: Sequence[float]) -> float:
+    """Return the largest ratio of power between a mesh line's bin and the noise beside it, of harmonics 1 ..."""
     found = [0.0]
-    for h in range(1, HARMONICS + 1):
+    for h, order in enumerate(orders, start=1):
         noise = noise_density(lines, teeth, h) * 1.5 * lines.bin_hz
-        line = lines.line(float(h * teeth[0]))
+        line = lines.line(order)
         if math.isfinite(line) and noise > 0.0:
             found.append(0.5 * line**2 / noise)
     return float(np.max(found))
@@ -156,6 +167,8 @@ class RecordingIndicators:
         What is undefined, and why.
     doubts : tuple of str
         What speaks against unit, teeth or tacho.
+    train : tuple of Mesh
+        All meshes of the gearbox.
     """
 
     name: str
@@ -166,11 +179,12 @@ class RecordingIndicators:
     revolutions: tuple[int, int]
     note: str
     doubts: tuple[str, ...] = ()
+    train: tuple[Mesh, ...] = ()
 
     @property
     def mesh_hz(self) -> float:
         """Mean mesh frequency."""
-        return self.pulses.speed_hz * self.teeth[0]
+        return self.pulses.pulses_hz * self.teeth[0]
 
     def channel(self, name: str) -> dict[str, float]:
         """Return the indicators of one channel by their own names."""
@@ -183,6 +197,7 @@ def recording_indicators(
     teeth: tuple[int, int],
     facts: RecordingFacts | None = None,
     speed_range_hz: tuple[float, float] | None = None,
+    train: tuple[Mesh, ...] = (),
 ) -> RecordingIndicators:
     """Return all indicators of a recording that is no record of a set.
 
@@ -196,6 +211,8 @@ def recording_indicators(
         Rate, columns, unit, tacho. Channels are its columns, or else all columns of numbers but time and tacho.
     speed_range_hz : (float, float), optional
         Where to look for the pinion's speed; needed without a tacho.
+    train : tuple of Mesh
+        All meshes of the gearbox; empty: one, of these teeth.
 
     Raises
     ------
@@ -205,16 +222,20 @@ def recording_indicators(
     facts = facts or RecordingFacts()
     names = tuple(facts.columns) or file_channels(path, facts.tacho, facts.row)
     recording = read_recording(path, names, facts)
-    pulses = shaft_pulses(recording, teeth, speed_range_hz)
-    found = record_values(recording.channels, pulses.times_s, recording.fs_hz, teeth, IndicatorSettings())
+    meshes = train or (Mesh("", teeth),)
+    pulses = shaft_pulses(recording, teeth, speed_range_hz, meshes[0].planets)
+    settings = IndicatorSettings()
+    found = record_values(recording.channels, pulses.times_s, recording.fs_hz, teeth, settings, train=meshes)
     name = path.name if facts.row is None else f"{path.name}:{facts.row}"
-    doubts = _doubts(recording, pulses, teeth)
-    return RecordingIndicators(name, recording, teeth, pulses, found.values, found.revolutions, found.notes, doubts)
+    doubts = _doubts(recording, pulses, meshes[0])
+    return RecordingIndicators(
+        name, recording, teeth, pulses, found.values, found.revolutions, found.notes, doubts, meshes
+    )
 
 
-def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, teeth: tuple[int, int]) -> tuple[str, ...]:
+def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, mesh: Mesh) -> tuple[str, ...]:
     try:
-        check_mesh_lines(recording, pulses, teeth)
+        check_mesh_lines(recording, pulses, mesh)
     except UsageError as error:
         return tuple(text for text in (level_note(recording), str(error)) if text)
     return tuple(text for text in (level_note(recording),) if text)

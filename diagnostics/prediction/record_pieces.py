@@ -20,6 +20,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
+from diagnostics.records.gear_train import Mesh
 from diagnostics.records.recording import Recording
 from siggen.errors import UsageError
 
@@ -87,6 +88,7 @@ def record_pieces(
     duration_s: float,
     settings: IndicatorSettings,
     own: Sequence[OwnIndicator] = (),
+    train: tuple[Mesh, ...] = (),
 ) -> RecordPieces:
     """Return features of consecutive pieces, between lines too; a rest shorter than a piece counts if there is no more.
 
@@ -104,6 +106,8 @@ def record_pieces(
         How features are taken.
     own : sequence of OwnIndicator
         The user's indicators.
+    train : tuple of Mesh
+        All meshes of the gearbox; empty: one, of these teeth.
 
     Raises
     ------
@@ -119,7 +123,7 @@ def record_pieces(
         begin_s, end_s = start / recording.fs_hz, (start + length - 1) / recording.fs_hz
         times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
         piece = {name: signal[start : start + length] for name, signal in recording.channels.items()}
-        found.append(record_values(piece, times_s, recording.fs_hz, teeth, settings))
+        found.append(record_values(piece, times_s, recording.fs_hz, teeth, settings, train=train))
         mine = _own_values(own, Recording(labels, piece, times_s, recording.fs_hz))
         values.append(found[-1].values | mine | floor_features(piece, recording.fs_hz))
     names = tuple(values[0])

@@ -33,6 +33,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.indicators.indicator import or_members
 from diagnostics.prediction.noise_floor import DIFFERENCE, FLOOR, ROUGHNESS
 from diagnostics.training.splits import SpecimenSplit
 
@@ -240,7 +241,9 @@ class TrainingDistance:
 
 def distance_features(names: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
     """Return the columns that each part of the distance takes, of all channels."""
-    lines = tuple(name for name in names if name.split("__")[0] in LINES)
+    known = {name.split("__")[0] for name in names}
+    of_lines = {column for line in LINES for column in or_members(line, known)}
+    lines = tuple(name for name in names if name.split("__")[0] in of_lines)
     floor = tuple(name for name in names if name.startswith(FLOOR))
     roughness = tuple(name for name in names if name in (ROUGHNESS, DIFFERENCE))
     return tuple(part for part in (lines, floor, roughness) if part)

@@ -84,8 +84,10 @@ def clocks(values: Mapping[str, np.ndarray], units: Mapping[str, str], leave: st
         Column that is no time of samples, though it rises: pulse times.
     """
     found: dict[str, float | None] = {}
+    samples = max((column.size for name, column in values.items() if name != leave), default=0)
     for name, column in values.items():
-        if name != leave and (step := _step(column)) is not None:
+        # a time has one value per sample: a record's list of angles or teeth may rise evenly too
+        if name != leave and column.size == samples and (step := _step(column)) is not None:
             counted = step == 1.0 and bool((column == np.rint(column)).all())
             found[name] = None if counted else _rate(column, step, f"{name} {units.get(name, '')}".lower())
     return found

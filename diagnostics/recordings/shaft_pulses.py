@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.records.planetary_members import Planets
 from diagnostics.signal.mesh_pulses import mesh_pulses
+from diagnostics.signal.order_domain import geared_pulses
 from siggen.errors import UsageError
 
 FEWEST_REVOLUTIONS = 2
@@ -17,17 +19,24 @@ FEWEST_REVOLUTIONS = 2
 class ShaftPulses:
     """Pulse times (k,) [s] of the pinion, and where they come from: `tacho` or the channel whose mesh lines led.
 
-    `certainty` (0 to 1) is that of the speed; 1 with a tacho.
+    `certainty` (0 to 1) is that of the speed; 1 with a tacho. Of a planetary set pulses are those of the sun against
+    its carrier, `turns` per turn of its shaft.
     """
 
     times_s: np.ndarray
     source: str
     certainty: float = 1.0
+    turns: float = 1.0
+
+    @property
+    def pulses_hz(self) -> float:
+        """Mean rate of the pulses."""
+        return float((self.times_s.size - 1) / (self.times_s[-1] - self.times_s[0]))
 
     @property
     def speed_hz(self) -> float:
-        """Mean speed of the pinion."""
-        return float((self.times_s.size - 1) / (self.times_s[-1] - self.times_s[0]))
+        """Mean speed of the shaft of the pinion or of the sun."""
+        return self.pulses_hz / self.turns
 
     @property
     def origin(self) -> str:
@@ -38,7 +47,10 @@ class ShaftPulses:
 
 
 def shaft_pulses(
-    recording: MeasuredRecording, teeth: tuple[int, int], speed_range_hz: tuple[float, float] | None
+    recording: MeasuredRecording,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None,
+    planets: Planets | None = None,
 ) -> ShaftPulses:
     """Return the pulses of the pinion.
 
@@ -50,13 +62,17 @@ def shaft_pulses(
         Teeth of pinion and gear.
     speed_range_hz : (float, float), optional
         Slowest and fastest pinion speed; needed without a tacho, and not left.
+    planets : Planets, optional
+        Of a planetary set, whose tacho is on the shaft of the sun.
 
     Raises
     ------
     UsageError
         Naming the file: no tacho and no range, no speed that is certain, or fewer than two revolutions of either shaft.
     """
-    if recording.tacho_s is not None:
+    if planets is not None:
+        found = _against_carrier(recording, planets)
+    elif recording.tacho_s is not None:
         found = ShaftPulses(recording.tacho_s, "tacho")
     elif speed_range_hz is None:
         raise UsageError(
@@ -76,3 +92,15 @@ def shaft_pulses(
             f"{recording.path}: {turns} whole pinion revolutions; averages of both shafts need {needed}. Record longer."
         )
     return found
+
+
+def _against_carrier(recording: MeasuredRecording, planets: Planets) -> ShaftPulses:
+    if recording.tacho_s is None:
+        raise UsageError(
+            f"{recording.path}: no tacho; the speed of planetary sets is not searched in lines, since passing planets "
+            "move them. Name the column of a tacho on the sun's shaft with --tacho"
+        )
+    pulses = geared_pulses(recording.tacho_s, planets.sun_turns)
+    if pulses.size < 2:
+        raise UsageError(f"{recording.path}: no whole turn of the sun against the carrier. Record longer.")
+    return ShaftPulses(pulses, "tacho", turns=float(planets.sun_turns))

@@ -7,10 +7,12 @@ and `teeth_NAME_gear`. Its pinion stands on the shaft of the gear in front. The 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
+
+from diagnostics.records.planetary_members import MEMBERS, Planets, planet_labels, planets_of
 
 TEETH = re.compile(r"teeth_(?P<mesh>[a-z][a-z0-9_]*)_pinion")
 GEARS = ("pinion", "gear")
@@ -30,6 +32,8 @@ class Mesh:
         Of its pinion per turn of the first pinion.
     before, behind : int
         Teeth of the other gear on its pinion's and on its gear's shaft; 0 where there is none.
+    planets : Planets, optional
+        Of a planetary set, whose sun and ring are pinion and gear here.
     """
 
     name: str
@@ -37,6 +41,23 @@ class Mesh:
     turns: Fraction = Fraction(1)
     before: int = 0
     behind: int = 0
+    planets: Planets | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GearNames:
+    """What columns of indicators are called after: shafts of the first mesh, and further meshes."""
+
+    shafts: tuple[str, ...] = GEARS
+    meshes: tuple[str, ...] = ()
+
+    @property
+    def is_planetary(self) -> bool:
+        """Whether the shafts are members of a planetary set, which turn against its carrier."""
+        return self.shafts == MEMBERS
+
+
+PAIR = GearNames()
 
 
 def further_meshes(columns: Iterable[str]) -> tuple[str, ...]:
@@ -59,6 +80,8 @@ def gear_train(labels: Mapping[str, Any]) -> tuple[Mesh, ...]:
     labels : mapping of str
         Of the record, in the order of the set's columns.
     """
+    if (planets := planets_of(labels)) is not None:
+        return (Mesh("", (planets.teeth[0], planets.ring), planets=planets),)
     names = ("", *further_meshes(labels))
     pairs = [_teeth(labels, name) for name in names]
     turns, found = Fraction(1), []
@@ -70,6 +93,27 @@ def gear_train(labels: Mapping[str, Any]) -> tuple[Mesh, ...]:
     return tuple(found)
 
 
+def names_of(train: Sequence[Mesh]) -> GearNames:
+    """Return what columns of a gearbox's indicators are called after."""
+    shafts = GEARS if train[0].planets is None else MEMBERS
+    return GearNames(shafts, tuple(mesh.name for mesh in train[1:]))
+
+
+def train_labels(train: Sequence[Mesh]) -> dict[str, Any]:
+    """Return the labels that `gear_train` makes meshes of: what a file keeps of them."""
+    first = train[0]
+    if first.planets is not None:
+        return planet_labels(first.planets)
+    found: dict[str, Any] = {}
+    for mesh in train:
+        found |= dict(zip(_columns(mesh.name), mesh.teeth, strict=True))
+    return found
+
+
+def _columns(mesh: str) -> tuple[str, ...]:
+    return teeth_columns([mesh]) if mesh else ("teeth_pinion", "teeth_gear")
+
+
 def _teeth(labels: Mapping[str, Any], mesh: str) -> tuple[int, int]:
-    pinion, gear = teeth_columns([mesh]) if mesh else ("teeth_pinion", "teeth_gear")
+    pinion, gear = _columns(mesh)
     return int(labels[pinion]), int(labels[gear])

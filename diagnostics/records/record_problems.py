@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.records.channel_quantities import ANGULAR_SPEED
+from diagnostics.records.planetary_members import AS_PAIR, is_planetary
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 
@@ -66,15 +67,20 @@ def whole_record_problem(record: Recording, *, needs_tacho: bool = True, gear_tu
     gear_turns : bool
         Whether the gear has to turn as often as an average needs, not the pinion alone.
     """
-    teeth = [_number(record.labels.get(f"teeth_{gear}")) for gear in ("pinion", "gear")]
+    teeth = [_number(record.labels.get(name)) for name in AS_PAIR]
     if not is_rate(record.fs_hz):
         return f"sampling rate: received {record.fs_hz}; it must be positive. Correct fs_hz in the set's manifest."
     if not all(np.isfinite(z) and z >= 3 and z == round(z) for z in teeth):
         return (
-            f"teeth_pinion, teeth_gear: received {teeth[0]:g}, {teeth[1]:g}; allowed are whole numbers from 3 on. "
+            f"{', '.join(_named(record))}: received {teeth[0]:g}, {teeth[1]:g}; allowed are whole numbers from 3 on. "
             "Orders and averages need both: correct the columns."
         )
     return _pulse_problem(record, teeth[1] / teeth[0] if gear_turns else 1.0) if needs_tacho else ""
+
+
+def _named(record: Recording) -> list[str]:
+    """Return the label columns that hold a record's teeth."""
+    return list(AS_PAIR.values() if is_planetary(record.labels) else AS_PAIR)
 
 
 def _pulse_problem(record: Recording, ratio: float) -> str:
@@ -88,8 +94,9 @@ def _pulse_problem(record: Recording, ratio: float) -> str:
     if min(turns, turns / ratio) >= FEWEST_REVOLUTIONS:
         return ""
     shafts = "averages" if ratio == 1.0 else "averages of both shafts"
+    what = "turns of the sun against the carrier" if is_planetary(record.labels) else "pinion revolutions"
     return (
-        f"{turns} whole pinion revolutions between pulses; {shafts} over at least {FEWEST_REVOLUTIONS} "
+        f"{turns} whole {what} between pulses; {shafts} over at least {FEWEST_REVOLUTIONS} "
         f"revolutions need {int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, ratio)))}. Use longer records (duration_s) or a "
         "higher speed; without a tacho `siggen-diagnostics indicators` takes --speed-range."
     )

@@ -10,9 +10,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from diagnostics.records.gear_train import further_meshes, teeth_columns
+from diagnostics.records.gear_train import PAIR, GearNames, further_meshes, teeth_columns
+from diagnostics.records.planetary_members import AS_PAIR, MEMBERS, as_pair, is_planetary, own_columns, planets_of
+from diagnostics.signal.order_domain import geared_pulses
 from siggen.dataset.reading import Dataset
-from siggen.errors import UsageError
 
 LABEL_NAMES = (
     *("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split"),
@@ -22,8 +23,6 @@ LABEL_NAMES = (
 """Columns that go along with the indicators; scalars only, so that they fit a CSV file."""
 
 TACHO_NAME = "tacho_s"
-CARRIER = "carrier_hz"
-"""Column that planetary sets alone have."""
 BATCH_ROWS = 16
 
 
@@ -55,28 +54,34 @@ def recordings(
     states : sequence of str, optional
         States to read; default all.
     """
-    labels = [*LABEL_NAMES, *teeth_columns(meshes_behind(dataset))]
+    names = gear_names(dataset)
+    labels = own_columns(LABEL_NAMES) if names.is_planetary else [*LABEL_NAMES, *teeth_columns(names.meshes)]
     columns = [*labels, *(channel.column for channel in dataset.channels), TACHO_NAME]
     for split in dataset.splits if splits is None else splits:
         for batch in dataset.records(split=split, columns=columns, batch_rows=BATCH_ROWS):
             yield from _rows(batch if states is None else _in_states(batch, states), dataset, labels)
 
 
-def meshes_behind(dataset: Dataset) -> tuple[str, ...]:
-    """Return the names of a set's meshes behind the first one; none for gearboxes with one mesh.
-
-    Raises
-    ------
-    UsageError
-        If gearboxes are planetary sets.
-    """
+def gear_names(dataset: Dataset) -> GearNames:
+    """Return what columns of a set's indicators are called after: shafts, and meshes behind the first one."""
     names = dataset.labels().column_names
-    if CARRIER in names:
-        raise UsageError(
-            f"{dataset.path}: received planetary sets (column {CARRIER}); allowed: pairs of gears on two shafts, with "
-            "or without further stages. Read signals and labels with siggen.open"
-        )
-    return further_meshes(names)
+    return GearNames(shafts=MEMBERS) if is_planetary(names) else GearNames(PAIR.shafts, further_meshes(names))
+
+
+def pair_teeth(dataset: Dataset) -> tuple[str, str]:
+    """Return the label columns that hold the teeth of a set's pair: pinion and gear, or sun and ring."""
+    planetary = gear_names(dataset).is_planetary
+    pinion, gear = (own if planetary else name for name, own in AS_PAIR.items())
+    return pinion, gear
+
+
+def turned(labels: dict[str, Any], tacho_s: np.ndarray) -> tuple[dict[str, Any], np.ndarray]:
+    """Return labels and pulse times (k,) [s] of a record as those of a pair.
+
+    Of a planetary set the pulses are those of the sun against the carrier; other records stay as they are.
+    """
+    planets = planets_of(labels)
+    return (labels, tacho_s) if planets is None else (as_pair(labels), geared_pulses(tacho_s, planets.sun_turns))
 
 
 def _in_states(batch: Any, states: Sequence[str]) -> Any:
@@ -94,4 +99,5 @@ def _rows(batch: Any, dataset: Dataset, names: list[str]) -> Iterator[Recording]
     held = {channel.name: channel.quantity for channel in dataset.channels}
     for row in range(batch.num_rows):
         channels = {name: signal[row] for name, signal in signals.items()}
-        yield Recording(labels[row], channels, np.asarray(tacho[row].values), dataset.fs_hz, held)
+        own, pulses = turned(labels[row], np.asarray(tacho[row].values))
+        yield Recording(own, channels, pulses, dataset.fs_hz, held)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.records.gear_train import Mesh, gear_train
-from diagnostics.records.recording import TACHO_NAME
+from diagnostics.records.recording import TACHO_NAME, turned
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
 from diagnostics.training.splits import TEST
@@ -60,7 +60,7 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
     """
     chosen = _example_rows(dataset)
     found = dataset.channels[channel]
-    records = [dataset.record(row["record_id"]) for row in sorted(chosen, key=lambda row: row["state_id"])]
+    records = [_record(dataset, row["record_id"]) for row in sorted(chosen, key=lambda row: row["state_id"])]
     first = records[0]
     return ExampleSet(
         examples=tuple(_example(record, found.column, dataset.fs_hz) for record in records),
@@ -93,6 +93,13 @@ def around_mesh(examples: ExampleSet, mesh: Mesh) -> ExampleSet:
         for example in examples.examples
     ]
     return replace(examples, examples=tuple(shown), speed_hz=examples.speed_hz * turns, teeth=mesh.teeth)
+
+
+def _record(dataset: Dataset, number: int) -> dict[str, Any]:
+    """Return a record with pulses and teeth as of a pair."""
+    found = dataset.record(number)
+    labels, pulses = turned(found, found[TACHO_NAME])
+    return labels | {TACHO_NAME: pulses}
 
 
 def _example(record: dict[str, Any], column: str, fs_hz: float) -> Example:

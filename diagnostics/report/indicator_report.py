@@ -21,6 +21,7 @@ from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.tables import indicator_links, records_line, set_table
 from diagnostics.page.wording import joined, percent
 from diagnostics.records.channel_quantities import ShownQuantity, channel_quantities
+from diagnostics.records.named_set import words_of
 from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
 from diagnostics.report.indicator_figures import column_title
@@ -110,12 +111,13 @@ def write_indicator_report(
     require_packages("the report of indicators", "matplotlib")
     chosen = settings or AssessmentSettings()
     folder.mkdir(parents=True, exist_ok=True)
-    write_table(table.arrow(), folder / "indicators.parquet")
+    words = words_of(dataset)
+    write_table(words.table(table.arrow()), folder / "indicators.parquet")
     with stage("evaluation", len(table.matrix.names)) as advance:
         found = assessment(table, chosen, advance)
     evaluated = Evaluated(table, chosen, judged_records(table.matrix.labels, chosen.seed, chosen.resamples), found, {})
     evaluated = Evaluated(table, chosen, evaluated.records, found, _noise_curves(evaluated))
-    results = result_table(found)
+    results = words.table(result_table(found))
     write_table(results, folder / "evaluation.parquet")
     write_table(results, folder / "evaluation.csv")
     states_found = evaluated.records.states
@@ -124,10 +126,10 @@ def write_indicator_report(
         *indicator_findings(found, states_found, _specimens(table)),
     ]
     numbers = report_numbers(dataset, evaluated, sentences)
-    (folder / NUMBERS).write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (folder / NUMBERS).write_text(words(json.dumps(numbers, indent=1, allow_nan=False)) + "\n", encoding="utf-8")
     with stage("figures", 1) as advance, styled():
         drawn_figures = figures(evaluated, channel_quantities(dataset))
-        pictures = {name: (png_bytes(drawn), text) for name, (drawn, text) in drawn_figures.items()}
+        pictures = {name: (png_bytes(words.figure(drawn)), text) for name, (drawn, text) in drawn_figures.items()}
         advance()
     (folder / "figures").mkdir(exist_ok=True)
     for name, (png, _) in pictures.items():
@@ -261,7 +263,7 @@ def _write_page(
     ]
     parts = [html.heading(title, 1), *html.summary(sentences), html.contents(sections), *sections]
     path = folder / PAGE
-    path.write_text(html.page(title, parts), encoding="utf-8")
+    path.write_text(words_of(dataset)(html.page(title, parts)), encoding="utf-8")
     return path
 
 

@@ -26,6 +26,7 @@ from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted, decimal, joined
 from diagnostics.prediction.saved_models import save_models
+from diagnostics.records.named_set import words_of
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import SHAM, ordered_states
 from diagnostics.report.answer import answer_figure, answer_sentences
@@ -139,7 +140,8 @@ def write_report(
         opening = answer_figure(detectors)
         advance()
     drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
-    _write_tables(table, found, folder)
+    words = words_of(dataset)
+    _write_tables(words.table(table), words.table(separability_table(found)), folder)
     audit = audit_sentence(dataset, audit_beside(dataset))
     answer = answer_sentences(detectors, error_free=is_error_free(dataset.config))
     sentences = [*(text for _, text in answer), *summary(dataset.config, training, found), audit]
@@ -149,12 +151,13 @@ def write_report(
         for side in ("alone", "referenced")
     }
     metrics["studies"] = studies_metrics(studies) if studies else None
-    (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (folder / "metrics.json").write_text(words(json.dumps(metrics, indent=1, allow_nan=False)) + "\n", encoding="utf-8")
     reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, explorer)
     path = folder / "report.html"
     with stage("page", 1):
-        pictures = _write_pictures(folder, {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()})
-        path.write_text(report_page(reported, pictures), encoding="utf-8")
+        drawn = {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()}
+        pictures = _write_pictures(folder, {name: (words.figure(one), text) for name, (one, text) in drawn.items()})
+        path.write_text(words(report_page(reported, pictures)), encoding="utf-8")
     return path
 
 
@@ -241,8 +244,7 @@ def clipping_notes(dataset: Dataset) -> list[str]:
     return notes
 
 
-def _write_tables(table: pa.Table, found: list[Separability], folder: Path) -> None:
-    entries = separability_table(found)
+def _write_tables(table: pa.Table, entries: pa.Table, folder: Path) -> None:
     write_table(table, folder / "features.parquet")
     write_table(entries, folder / "separability.parquet")
     write_table(entries, folder / "separability.csv")

@@ -131,6 +131,33 @@ def shaft_grid(tacho_s: np.ndarray, samples_per_revolution: int, turns: Fraction
     return AngleGrid(time_s, revolutions, samples_per_revolution, slowest_hz)
 
 
+def geared_pulses(tacho_s: np.ndarray, turns: Fraction) -> np.ndarray:
+    """Return the times of whole turns of a shaft that is geared to the one with the pulses, from the first pulse on.
+
+    Parameters
+    ----------
+    tacho_s : (k,) float64
+        Pulse times, as of `angle_grid`.
+    turns : Fraction
+        Turns of the geared shaft per turn of the shaft with the pulses.
+
+    Returns
+    -------
+    (1 + whole turns,) float64
+        Pulses that are fewer than two, or do not increase, come back as they are.
+    """
+    pulses = np.asarray(tacho_s, dtype=np.float64)
+    if pulses.size < 2 or not np.all(np.diff(pulses) > 0):
+        return pulses
+    count = math.floor((pulses.size - 1) * turns) + 1
+    place = np.arange(count) * float(1 / turns)
+    whole = np.minimum(place.astype(np.int64), pulses.size - 2)
+    time_s = np.zeros(count)
+    for row in _polynomials(pulses):
+        time_s = time_s * (place - whole) + row[whole]
+    return time_s
+
+
 def _polynomials(pulses: np.ndarray) -> np.ndarray:
     """Return the coefficients of time over revolutions, highest power first, (powers, revolutions)."""
     if pulses.size < 4:

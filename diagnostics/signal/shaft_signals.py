@@ -62,18 +62,33 @@ def separated_average(
     beside : int
         Teeth of another gear on the shaft, whose mesh harmonics count as regular too; 0: there is none.
     """
-    from scipy import fft
-
-    spectrum = fft.rfft(average)
-    order = np.arange(spectrum.size)
+    order = np.arange(average.size // 2 + 1)
     harmonic = np.round(order / teeth)
     last = np.inf if harmonics is None else harmonics
     distance = np.where((harmonic > 0) & (harmonic <= last), np.abs(order - harmonic * teeth), np.inf)
     if beside:
         distance = np.minimum(distance, _distance(order, beside))
-    shaft = order <= shaft_orders
-    residual = fft.irfft(np.where(shaft | (distance == 0), 0.0, spectrum), n=average.size)
-    difference = fft.irfft(np.where(shaft | (distance <= sidebands), 0.0, spectrum), n=average.size)
+    return parted(average, order <= shaft_orders, distance, sidebands)
+
+
+def parted(average: np.ndarray, of_shaft: np.ndarray, distance: np.ndarray, sidebands: int) -> SeparatedAverage:
+    """Separate one averaged revolution (n,).
+
+    Parameters
+    ----------
+    average : (n,) float64
+    of_shaft : (n // 2 + 1,) bool
+        Orders that count as regular.
+    distance : (n // 2 + 1,) float64
+        How far orders lie from the next mesh harmonic, in sidebands: 0 is the harmonic itself.
+    sidebands : int
+        As of `separated_average`.
+    """
+    from scipy import fft
+
+    spectrum = fft.rfft(average)
+    residual = fft.irfft(np.where(of_shaft | (distance == 0), 0.0, spectrum), n=average.size)
+    difference = fft.irfft(np.where(of_shaft | (distance <= sidebands), 0.0, spectrum), n=average.size)
     return SeparatedAverage(average - difference, residual, difference)
 
 
@@ -87,7 +102,9 @@ def _distance(order: np.ndarray, teeth: int) -> np.ndarray:
 class Shaft:
     """One shaft of a record: its name, teeth, whole revolutions, which sidebands are resolved, and what is not.
 
-    `beside` are the teeth of another gear on it, which takes part in another mesh; 0: there is none.
+    `beside` are the teeth of another gear on it, which takes part in another mesh; 0: there is none. `meets` says what
+    a tooth of a planetary set's member meets, see `member_average`; `period` are the mesh periods after which an event
+    comes back to a sensor at rest, where those are not its teeth.
     """
 
     name: str
@@ -96,6 +113,8 @@ class Shaft:
     resolved: np.ndarray
     note: str
     beside: int = 0
+    meets: str = ""
+    period: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

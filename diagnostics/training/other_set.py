@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.record_classes import STATE, set_classes
-from diagnostics.records.recording import meshes_behind
+from diagnostics.records.recording import gear_names
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.training.baselines import FeatureClassifier, state_index
@@ -42,11 +42,12 @@ def check_other_set(dataset: Dataset, other: Dataset, kind: str = STATE) -> None
             f"{dataset.fs_hz:g} Hz, and indicators of another band are others. Generate it with `fs_hz: "
             f"{dataset.fs_hz:g}`."
         )
-    meshes = [", ".join(meshes_behind(found)) or "none" for found in (dataset, other)]
-    if meshes[0] != meshes[1]:
+    named = [gear_names(found) for found in (dataset, other)]
+    if named[0] != named[1]:
+        ours, theirs = (", ".join((*one.shafts, *one.meshes)) for one in named)
         raise UsageError(
-            f"--test {other.path}: received the further meshes {meshes[1]}; the classifiers take indicators of "
-            f"{meshes[0]}. Generate it with the same names in `stages`."
+            f"--test {other.path}: received indicators of {theirs}; the classifiers take those of {ours}. Generate it "
+            "with the same names in `stages`, or the same kind of gearbox."
         )
     known, found = (set(set_classes(each, kind, HEALTHY).names) for each in (dataset, other))
     if not found <= known:  # any healthy state belongs to the healthy class, whatever its name

@@ -18,6 +18,7 @@ from diagnostics.base.progress import silent_stage
 from diagnostics.machine.healthy_state import healthy_state, pieces_of
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.records.gear_train import Mesh
 from diagnostics.statistics.change_score import change_score
 from diagnostics.training.referenced import log_values
 
@@ -45,13 +46,13 @@ def features(folder: Path) -> np.ndarray:
     channels = ("lid_vertical", "side_horizontal")
     sources = [(file, row) for row in range(3)]
     with silent_stage("references", 3) as advance:
-        machine = healthy_state(sources, channels, facts, (18, 47), None, (), 0.05, advance)
+        machine = healthy_state(sources, channels, facts, (Mesh("", (18, 47)),), None, (), 0.05, advance)
     return np.array([_row(machine, file, row) for row in range(3 * REPEATS)])
 
 
 def _row(machine: Machine, file: Path, row: int) -> np.ndarray:
     recording = read_recording(file, machine.channels, replace(machine.facts, row=row))
-    pieces, _ = pieces_of(recording, machine.fs_hz, machine.teeth, None, machine.duration_s)
+    pieces, _ = pieces_of(recording, machine.fs_hz, machine.train, None, machine.duration_s)
     return np.asarray(log_values(pieces.medians(machine.names)[None])[0])
 
 

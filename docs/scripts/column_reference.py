@@ -16,6 +16,7 @@ import siggen
 from siggen.checks.quantity_names import available_quantities
 from siggen.columns.gearbox_columns import HOUSING_COLUMNS
 from siggen.columns.record import damage_schema, record_schema
+from siggen.config.names import NO_NAMES
 from siggen.record.quantities import quantity_column
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -132,7 +133,7 @@ def internals() -> Iterator[str]:
     """Yield one line for every internal quantity of a gearbox with casing, tooth pairs and oil friction."""
     seen = set()
     for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml")):
-        column = quantity_column(name)
+        column = quantity_column(name, NO_NAMES)
         shown = re.sub(r"pair_\d+", "pair_k", name)
         if shown in seen:
             continue

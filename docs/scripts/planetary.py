@@ -33,7 +33,6 @@ BASE: dict[str, Any] = {
     "planetary": {"ring_teeth": 77},
     "dynamics": {
         "model": "8dof",
-        "friction": {"model": "off"},
         "mesh": {"tip_relief_um": 10.0},
         "motor_inertia_kg_m2": 1e-2,
         "load_inertia_kg_m2": 0.2,
@@ -43,7 +42,7 @@ BASE: dict[str, Any] = {
         {"name": "healthy", "severity": "healthy"},
         *(
             {"name": gear, "severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": gear}}
-            for gear in ("sun", "planet")
+            for gear in ("sun", "planet", "ring")
         ),
     ],
     "sensors": [{"name": "ring", "place": "ring", "axes": ["horizontal"], "bits": None}],

@@ -35,7 +35,8 @@ class Schema:
         """Yield the keys of an object, each before the keys inside it."""
         for name, value in schema["properties"].items():
             path = f"{prefix}{name}"
-            if "const" not in value:  # the kind of a section stands in a column of its own
+            # the kind of a section stands beside its keys; what siggen fills in is no key of users
+            if "const" not in value and not value.get("readOnly", False):
                 yield Key(path, value, name in schema.get("required", schema.get("else", {}).get("required", ())))
             for ending, section in self.sections(value):
                 yield from self.keys(section, f"{path}{ending}.")

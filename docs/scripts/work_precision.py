@@ -25,6 +25,7 @@ LOOKS = {
     "Newmark, numpy": ("C1", "^"),
     "Newmark of ROSS": ("C5", "v"),
     "DOP853": ("C4", "D"),
+    "DOP853, numba": ("C6", "X"),
     "LSODA": ("C0", "P"),
 }
 

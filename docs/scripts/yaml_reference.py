@@ -33,8 +33,9 @@ This page is printed by `make reference` from `siggen schema` and the files in `
   replaced. The set's own `config.yaml` holds the result.
 * The default stands last, in brackets. A key without brackets is required wherever its section stands.
 * **expert**: no shipped configuration sets the key.
-* A section that holds nothing but its keys has no line of its own.
-* A key of one meaning in several places has one line. Defaults that differ are divided by a slash.
+* A line is one thing to learn. Keys of one meaning share it: in several places, along x and y, of pinion and gear, with
+  the unit of each sensor. What differs between them is divided by a slash.
+* Sections are not counted, and one that holds nothing but its keys has no line.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
   `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
@@ -185,9 +186,19 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
     return " ".join(str(text).split())
 
 
+REPEATED = {"stages[].gears": "gears", "stages[].gear": "dynamics.gear"}
+"""Section -> the section whose keys it repeats with the same meaning: one line says so."""
+TAKEN_OVER = {
+    "machine.shafts[]": ("dynamics.gear", "stages[]"),
+    "machine.gears[]": ("gears.gear",),
+    "machine.meshes[]": ("gears", "stages[]"),
+}
+"""Section with keys of its own -> the sections whose other keys it repeats with the same meaning."""
+
+
 @dataclass(frozen=True)
 class Entry:
-    """A key wherever it stands in one list with the same meaning and range: described once, counted once."""
+    """A key wherever it stands in one list with the same meaning: described once, counted once."""
 
     keys: tuple[Key, ...]
     start: str
@@ -207,6 +218,22 @@ class Entry:
         """Defaults in these places."""
         return list(dict.fromkeys(default(key) for key in self.keys))
 
+    def values(self, schema: Schema) -> str:
+        """Return what it may hold in these places."""
+        found: dict[str, str] = {}
+        for key in self.keys:
+            text = allowed(schema, key.schema)
+            found.setdefault(text.lower(), text)
+        return " / ".join(found.values())
+
+    def is_section(self, schema: Schema) -> bool:
+        """Whether it is a section, or a list of some: keys that hold values stand in it."""
+        return any(True for _ in schema.sections(self.keys[0].schema))
+
+    def is_plain(self, schema: Schema) -> bool:
+        """Whether it is a section that holds nothing but its keys."""
+        return self.values(schema) == "section" and set(self.defaults) <= {"", SECTION_DEFAULT}
+
 
 BEGINNING = r"^{}(?:\[\])?(?: \(kind: \w+\))?(?:\.\w+ \(kind: \w+\))?\."
 """Of the paths of a top-level key: an entry of its list and its kind, and a section with kinds."""
@@ -214,28 +241,54 @@ BEGINNING = r"^{}(?:\[\])?(?: \(kind: \w+\))?(?:\.\w+ \(kind: \w+\))?\."
 
 def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
     """Return the lists of one top-level key: its own keys, then those of every section with kinds."""
-    found: dict[str, dict[tuple[str, ...], list[Key]]] = {}
+    found: dict[str, dict[str, list[Key]]] = {}
     for key in keys:
         begins = re.match(BEGINNING.format(top), key.path)
         if begins is not None:
             place = re.sub(r" \(kind: \w+\)|\[\]", "", begins[0])
-            meant = (key.path.rsplit(".", 1)[-1], described(schema, key.schema), allowed(schema, key.schema))
-            found.setdefault(place, {}).setdefault(meant, []).append(key)
+            found.setdefault(place, {}).setdefault(described(schema, key.schema) or key.path, []).append(key)
     return [[Entry(tuple(same), top) for same in place.values()] for place in found.values()]
+
+
+def without_repeated(schema: Schema, keys: list[Key]) -> list[Key]:
+    """Return the keys without those of sections that repeat another one.
+
+    Raises
+    ------
+    ValueError
+        If the other one does not have all of them, with the same meaning and range.
+    """
+    meanings = {key.path: (described(schema, key.schema), allowed(schema, key.schema)) for key in keys}
+    left = []
+    for key in keys:
+        section = next((one for one in REPEATED if key.path.startswith(f"{one}.")), None)
+        mixed = next((one for one in TAKEN_OVER if key.path.startswith(f"{one}.")), "")
+        others = (meanings.get(of + key.path.removeprefix(mixed)) for of in TAKEN_OVER.get(mixed, ()))
+        if meanings[key.path] in others:
+            continue
+        if section is None:
+            left.append(key)
+        elif meanings[key.path] != meanings.get(REPEATED[section] + key.path.removeprefix(section)):
+            raise ValueError(f"{key.path}: not as in {REPEATED[section]}")
+    return left
 
 
 def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str | None:
     """Return the line of a key, or nothing of a section that holds nothing but its keys."""
     first, used = entry.keys[0], any(users[key.path] or key.path == "extends" for key in entry.keys)
-    values = allowed(schema, first.schema)
-    defaults = " / ".join(entry.defaults)
-    if values == "section" and defaults in ("", SECTION_DEFAULT):
+    values = entry.values(schema)
+    defaults = "" if entry.defaults == [""] else " / ".join(each or "required" for each in entry.defaults)
+    if first.path in REPEATED:
+        return f"* `{entry.names[0]}`: {described(schema, first.schema)}; keys as in `{REPEATED[first.path]}`"
+    if entry.is_plain(schema):
         return None
     # What a section cannot do without is never for experts, as in `siggen schema`.
     mark = "" if used or "" in entry.defaults else " (expert)"
     names = ", ".join(f"`{name}`" for name in entry.names)
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
+    if (of := TAKEN_OVER.get(f"{first.path}[]")) is not None:
+        values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
     ending = f" ({defaults})" if defaults else ""
     return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
 
@@ -254,15 +307,18 @@ def listing_of(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]
 def page() -> str:
     """Return the page."""
     schema = Schema(json.loads(CliRunner().invoke(app, ["schema"], catch_exceptions=False).output))
-    keys = list(schema.keys(schema.content))
+    keys_everywhere = list(schema.keys(schema.content))
+    keys = without_repeated(schema, keys_everywhere)
     users: dict[str, list[str]] = {key.path: [] for key in keys}
     for path in sorted(CONFIGS.glob("*.yaml")):
         for key in Shipped(path).set_keys(schema) & set(users):
             users[key].append(path.stem)
     tops = [(key, entries(schema, keys, key.path)) for key in keys if key.path in schema.content["properties"]]
     plain = [Entry((key,), "") for key, _ in tops]
-    count = len(plain) + sum(len(rows) for _, tables in tops for rows in tables)
-    lines = [HEAD, f"There are {count} keys in {len(keys)} places.", ""]
+    every = [*plain, *(entry for _, tables in tops for rows in tables for entry in rows)]
+    count = sum(not entry.is_section(schema) for entry in every)
+    places = sum(not Entry((key,), "").is_section(schema) for key in keys_everywhere)
+    lines = [HEAD, f"There are {count} keys to learn, in {places} places.", ""]
     alone = [Entry((key,), "") for key, tables in tops if not tables]
     lines += ["## Top level", "", *listing_of(schema, alone, users)]
     for top, tables in tops:

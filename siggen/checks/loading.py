@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from siggen.config import Config, apply_overrides, config_file, extended_files, inherited, parse, placed, read_yaml
-from siggen.errors import ConfigError
+from siggen.config.gears import Gears
+from siggen.errors import ConfigError, Problem
+
+
+def emptied_pairs(raw: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield the problem of an empty `gears.pairs` that someone wrote.
+
+    Parameters
+    ----------
+    raw : mapping
+        As written, without what it extends. A stored configuration states every key of `gears`, so an empty list there
+        is the default and nobody's slip.
+    """
+    gears = raw.get("gears")
+    if not isinstance(gears, Mapping) or gears.get("pairs") not in ([], ()) or set(Gears.model_fields) <= set(gears):
+        return
+    yield Problem("gears.pairs", "a list without a pair", "allowed: one pair at least, or null for none")
 
 
 def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> Config:
@@ -25,7 +41,6 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     """
     # compile nothing, but load the physics
     from siggen.checks.density_files import with_density_files
-    from siggen.checks.emptied_pairs import emptied_pairs
     from siggen.checks.mode_files import mode_problems, with_mode_file
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.quantity_names import quantity_problems
@@ -42,17 +57,13 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     with_modes, unread_modes = with_mode_file(filled, folder)
     parsed = parse(with_modes)
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
-    problems = [
-        *written,
-        *parsed.problems,
+    of_physics = [
         *physical_problems(parsed),
         *state_problems(parsed),
-        *unread,
-        *unread_modes,
-        *unusable,
         *response_problems(parsed.sections),
         *mode_problems(parsed.sections),
     ]
+    problems = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *map(parsed.names.problem, of_physics)]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:

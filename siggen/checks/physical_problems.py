@@ -6,7 +6,7 @@ Everything is checked at the bounds of the distributions, so that no specimen ca
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +17,7 @@ from siggen.checks.bearing_problems import bearing_problems
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.pair_problems import pair_problems
-from siggen.checks.ring_problems import ring_problems
+from siggen.checks.ring_problems import ring_problems, rings_round
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.stage_layout_problems import stage_layout_problems
 from siggen.checks.tilt_problems import tilt_problems
@@ -33,7 +33,7 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
-from siggen.planning.stages import first_sections, stage_of, stage_sections
+from siggen.planning.stages import first_sections, ring_sections, stage_of, stage_sections
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.gears import gear_pair, stiffness_options
 
@@ -59,7 +59,8 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     if gears.pairs:
         return pair_problems(parsed.sections, _problems)
     behind = (_located_in(path, one) for path, own in stage_sections(parsed.sections) for one in _problems(own))
-    return (*_problems(first_sections(parsed.sections)), *behind, *stage_layout_problems(parsed.sections))
+    ring = _of_ring(parsed.sections)
+    return (*_problems(first_sections(parsed.sections)), *ring, *behind, *stage_layout_problems(parsed.sections))
 
 
 def _has_stages(sections: Mapping[str, Any]) -> bool:
@@ -87,7 +88,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
         for path, damage in state.placed(f"states.{index}"):
             problems += _state_problems(flanks, damage, path, through_face=through_face)
     if sections.get("manufacture") is not None:
-        problems += _tolerance_problems(sound)
+        problems += _outside_tolerances(sound, ("pinion", "gear"))
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)
     problems += bearing_problems(sections)
     problems += variation_problems(sections, sound)
@@ -99,11 +100,29 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 
-def _tolerance_problems(pairs: list[GearPair]) -> Iterator[Problem]:
+def _of_ring(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield what is wrong with the ring of a planetary set: damage off its flanks, each path once, and tolerances."""
+    section, gears = sections.get("planetary"), sections["gears"]
+    if section is None:
+        return
+    sound = [one for one in map(gear_pair, corners(_without_material(gears))) if not geometry_problems(one)]
+    rings = rings_round(section, sound)
+    if sections.get("manufacture") is not None:
+        yield from _outside_tolerances(rings, ("gear",), "ring")
+    found = [
+        problem
+        for state, one in ring_sections(sections)["states"].items()
+        for path, damage in one.placed(f"states.{state}")
+        for problem in _state_problems(rings, damage, path, through_face=True)
+    ]
+    yield from {problem.path: problem for problem in reversed(found)}.values()
+
+
+def _outside_tolerances(pairs: Sequence[GearPair], members: Sequence[str], name: str = "") -> Iterator[Problem]:
     for pair in pairs:
-        for which in ("pinion", "gear"):
+        for which in members:
             for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which, pair.helix_rad):
-                received = f"tolerances for a {which} with {problem.name} {problem.received}"
+                received = f"tolerances for a {name or which} with {problem.name} {problem.received}"
                 yield Problem("manufacture", received, f"{problem.allowed}; or null")
 
 
@@ -148,7 +167,7 @@ def _located(problem: GeometryProblem) -> Problem:
     return Problem(f"{section}.{key}" if key else section, received, allowed_text(problem.allowed))
 
 
-def _state_problems(pairs: list[GearPair], damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:
+def _state_problems(pairs: Sequence[GearPair], damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:
     """Yield what is wrong with the damage of a state; with `through_face` it may take the whole contact length."""
     for pair in pairs:
         misplaced = [replace(problem, path=f"{path}.{problem.path}") for problem in damage.place_problems(pair)]

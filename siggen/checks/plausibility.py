@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
-from siggen.config import Bolts, Config, Feet, Housing, ModalHousing, RigidHousing
+from siggen.config import Config, Housing, ModalHousing, RigidHousing
 from siggen.errors import counted
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
@@ -217,7 +217,6 @@ def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
 
 
 def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
-    bolts: Bolts | Feet
     gears = sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
     if isinstance(housing, ModalHousing):
         what, hint = "mass that a seat feels over both discs", "are shapes in 1/sqrt(kg), not of unit length?"
@@ -225,16 +224,13 @@ def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
         yield Quantity("housing.modes", what, _ends(masses), 0.5, 500.0, hint)
         return
     if isinstance(housing, RigidHousing):
-        bolts, name = housing.bolts, "bolts"
         yield _of("housing.mass_kg", "mass over both discs", housing.mass_kg, 0.5, 500.0, "is it in kg?", gears)
-    else:
-        bolts, name = housing.feet, "feet"
-        if housing.wall_mm is not None:
-            what, centre_mm = "thickness over the centre distance", 1e3 * pair.working_centre_distance_m
-            yield _of("housing.wall_mm", what, housing.wall_mm, 0.01, 0.4, "is it in mm?", centre_mm)
-    for key in ("shear_stiffness_n_per_m", "axial_stiffness_n_per_m"):
-        if (stiffness := getattr(bolts, key)) is not None:
-            yield _of(f"housing.{name}.{key}", "stiffness [N/m]", stiffness, 1e5, 1e11, "is it in N/m, not N/mm?")
+        for key in ("shear_stiffness_n_per_m", "axial_stiffness_n_per_m"):
+            stiffness = getattr(housing.bolts, key)
+            yield _of(f"housing.bolts.{key}", "stiffness [N/m]", stiffness, 1e5, 1e11, "is it in N/m, not N/mm?")
+    elif housing.wall_mm is not None:
+        what, centre_mm = "thickness over the centre distance", 1e3 * pair.working_centre_distance_m
+        yield _of("housing.wall_mm", what, housing.wall_mm, 0.01, 0.4, "is it in mm?", centre_mm)
 
 
 def _teeth(config: Config, pair: GearPair) -> Iterator[Quantity]:

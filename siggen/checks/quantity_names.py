@@ -29,7 +29,7 @@ def quantity_problems(config: Config) -> list[Problem]:
     asked = () if section is None else section.named
     if not asked:
         return []
-    available = available_quantities(config)
+    available = tuple(map(config.names.column, available_quantities(config)))
     problems = []
     for place, name in asked:
         if name not in available:

@@ -22,7 +22,7 @@ def variation_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -
     variation, points = sections["variation"], sections["operating_points"]
     return [
         *_stalling(variation, points),
-        *_driven_by_load(variation, points, sections["dynamics"], sections["duration_s"], pairs),
+        *_driven_by_load(variation, points, _driven_inertias_kg_m2(sections, pairs), sections["duration_s"]),
     ]
 
 
@@ -39,9 +39,8 @@ def _stalling(variation: Variation, points: Sequence[OperatingRange]) -> list[Pr
 def _driven_by_load(
     variation: Variation,
     points: Sequence[OperatingRange],
-    dynamics: Dynamics,
+    driven_kg_m2: Sequence[float],
     duration_s: float,
-    pairs: Sequence[GearPair],
 ) -> list[Problem]:
     """Refuse run-ups and run-downs that load the other flanks in the mean than the torque of an operating point does.
 
@@ -59,7 +58,7 @@ def _driven_by_load(
         else:
             continue
         speeding = 2.0 * pi * bounds(point.speed_hz)[1] * change / duration_s
-        at_mesh = [sign * (torque_nm + _driven_inertia_kg_m2(dynamics, pair) * speeding) for pair in pairs]
+        at_mesh = [sign * (torque_nm + inertia * speeding) for inertia in driven_kg_m2]
         if min(at_mesh, default=1.0) <= 0.0:
             received = f"{change:+g} of {bounds(point.speed_hz)[1]:g} Hz in {duration_s:g} s, with which "
             received += "gear and load drive the pinion" if sign > 0.0 else "the pinion drives gear and load"
@@ -72,8 +71,16 @@ def _driven_by_load(
     return []
 
 
+def _driven_inertias_kg_m2(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> list[float]:
+    """Return the largest inertia of gear and load of each pair, seen from the pinion; the load's behind a carrier."""
+    planetary, dynamics = sections.get("planetary"), sections["dynamics"]
+    if planetary is None:
+        return [_driven_inertia_kg_m2(dynamics, pair) for pair in pairs]
+    load = bounds(dynamics.load_inertia_kg_m2)[1]
+    return [load / (1.0 + planetary.ring_teeth / pair.pinion.teeth) ** 2 for pair in pairs]
+
+
 def _driven_inertia_kg_m2(dynamics: Dynamics, pair: GearPair) -> float:
-    """Return the largest inertia of gear and load, seen from the pinion."""
     own = dynamics.gear.inertia_kg_m2
     gear = disc_inertia_kg_m2(pair.gear, pair.face_width_m) if own is None else bounds(own)[1]
     load = 0.0 if dynamics.model == "6dof" else bounds(dynamics.load_inertia_kg_m2)[1]

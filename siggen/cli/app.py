@@ -15,6 +15,7 @@ from siggen.cli.extend import extend
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.init import init
+from siggen.cli.life import life
 from siggen.cli.merge import merge
 from siggen.cli.modes import modes
 from siggen.cli.path import path
@@ -42,9 +43,10 @@ INSPECTED: dict[str, Callable[..., None]] = {
     "modes": modes,
     "path": path,
     "planetary": planetary,
+    "life": life,
     "run": run_report,
 }
-"""What `siggen inspect` shows of one gearbox, of a planetary set, or of a run."""
+"""What `siggen inspect` shows of one gearbox, of its life, of a planetary set, or of a run."""
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",
@@ -58,7 +60,7 @@ for command in COMMANDS:
     app.command()(command)
 
 inspect = typer.Typer(
-    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path; at a planetary set; or at a run.",
+    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path, life; at a planetary set; at a run.",
     no_args_is_help=True,
     rich_markup_mode="rich",
     epilog="Begin with: siggen inspect tvms quickstart --open",

@@ -35,6 +35,8 @@ class GearboxChoice:
         if self.stage is None:
             return first_mesh(config)
         names = [one.name for one in config.stages]
+        if config.machine is not None and self.stage == config.names.mesh(""):
+            return first_mesh(config)
         if self.stage not in names:
             raise UsageError(f"--stage {self.stage}: allowed: {', '.join(names) or 'none, the gearbox has one mesh'}")
         return stage_config(config, draw_specimen(config, self.specimen), names.index(self.stage))

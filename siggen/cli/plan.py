@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from siggen.cli.json_output import AsJson, echo_json
+from siggen.cli.life_table import life_doubts, life_summary, life_table
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def plan(
         return
     console = Console()
     console.print(_overview(summary))
-    console.print(_states(summary))
+    console.print(_states(summary) if summary["life"] is None else life_table(summary["life"]))
     console.print(summary["stiffness_tables"], highlight=False, markup=False)
     for sentence in summary["implausible"]:
         console.print(f"implausible: {sentence}", highlight=False, markup=False, style="yellow")
@@ -125,9 +126,11 @@ def plan_summary(config: Config) -> dict[str, Any]:
         specimen_count,
         specimens_per_shard,
     )
+    from siggen.planning.plan import plan as planned
 
     specimens = {split: specimen_count(config, split) for split in SPLITS}
-    records = config.specimens * config.records_per_specimen
+    records = planned(config).count
+    lives, notes = life_summary(config), _notes(config)
     raw_bytes = records * config.samples * 4 * len(config.channels)
     return {
         "name": config.name,
@@ -140,43 +143,44 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "duration_s": config.duration_s,
         "signal_hours": records * config.duration_s / 3600,
         "mesh_hz": list(_mesh_range_hz(config)),
+        "mesh": config.names.mesh(""),
         "stages_hz": {name: list(ends) for name, ends in _stage_ranges_hz(config).items()},
         "specimens_of_split": specimens,
         "states": _state_counts(config, specimens),
         "severity_share": _severity_shares(config),
+        "life": lives,
         "shards_of_split": {split: shard_count(config, split) for split in SPLITS},
         "specimens_per_full_shard": specimens_per_shard(config),
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
-        **_notes(config),
+        **notes,
+        "implausible": [*notes["implausible"], *life_doubts(lives)],
     }
 
 
 def _notes(config: Config) -> dict[str, Any]:
     """Return how exact its tables are, how it varies, and what a user should know about it, in words."""
     from siggen.checks.contact_notes import contact_notes
-    from siggen.checks.damage_notes import damage_notes
+    from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
-    from siggen.checks.state_notes import state_notes
-    from siggen.checks.torque_notes import torque_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.specimen.gears import model_notes
     from siggen.views.table_error import table_error_text
 
-    return {
-        "stiffness_tables": table_error_text(config),
+    notes = {
         "stiffness_notes": _of_every_pair(config, model_notes),
-        "manufacture": _manufacture(config),
-        "variation": list(variation_notes(config)),
-        "lubrication_notes": list(contact_notes(config)),
+        "variation": variation_notes(config),
+        "lubrication_notes": contact_notes(config),
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
         "damage_notes": _of_every_pair(config, damage_notes),
-        "state_notes": list(state_notes(config)),
-        "implausible": list(implausible(config)),
+        "state_notes": state_notes(config),
+        "implausible": implausible(config),
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }
+    own = {kind: [config.names.text(note) for note in found] for kind, found in notes.items()}
+    return {"stiffness_tables": table_error_text(config), "manufacture": _manufacture(config), **own}
 
 
 def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> list[str]:
@@ -212,7 +216,7 @@ def _stage_ranges_hz(config: Config) -> dict[str, tuple[float, float]]:
 
     first, ends = config.gears.pinion.teeth, _mesh_range_hz(config)
     return {
-        stage.name: (float(teeth / first) * ends[0], float(teeth / first) * ends[1])
+        config.names.mesh(stage.name): (float(teeth / first) * ends[0], float(teeth / first) * ends[1])
         for stage, teeth in zip(config.stages, turned_teeth(config.gears, config.stages), strict=True)
     }
 
@@ -270,9 +274,9 @@ def _overview(summary: dict[str, Any]) -> Table:
         "records": f"{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
         "channels": ", ".join(summary["channels"]),
         "hours of signal": f"{summary['signal_hours']:.3g}",
-        "mesh frequency": _hertz(low_hz, high_hz),
+        f"mesh of {summary['mesh']}" if summary["mesh"] else "mesh frequency": _hertz(low_hz, high_hz),
         **{f"mesh of {name}": _hertz(*ends) for name, ends in summary["stages_hz"].items()},
-        "class balance": ", ".join(f"{name} {share:.0%}" for name, share in summary["severity_share"].items()),
+        **_balance(summary),
         "errors of the teeth": summary["manufacture"],
         "shards": f"{sum(summary['shards_of_split'].values())}  ({_per_split(summary['shards_of_split'])}), "
         f"{counted(summary['specimens_per_full_shard'], 'gearbox', 'gearboxes')} in a full one",
@@ -284,6 +288,12 @@ def _overview(summary: dict[str, Any]) -> Table:
     for name, text in rows.items():
         table.add_row(name, text)
     return table
+
+
+def _balance(summary: dict[str, Any]) -> dict[str, str]:
+    """Return the shares of the severities; nothing where they follow from lives."""
+    shares = summary["severity_share"]
+    return {"class balance": ", ".join(f"{name} {share:.0%}" for name, share in shares.items())} if shares else {}
 
 
 def _pair_row(summary: dict[str, Any]) -> dict[str, str]:

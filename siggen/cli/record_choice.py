@@ -20,9 +20,15 @@ def chosen_config(source: Path, record: int, overrides: Sequence[str]) -> Config
     """
     from siggen.checks.loading import load_config
     from siggen.errors import UsageError, counted
+    from siggen.planning.plan import record_ids_of
 
     config = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
     count = config.specimens * config.records_per_specimen
     if record >= count:
         raise UsageError(f"--record {record}: {source} has {counted(count, 'record')}, 0 to {count - 1}")
+    if record not in (ids := record_ids_of(config, record // config.records_per_specimen)):
+        raise UsageError(
+            f"--record {record}: this gearbox fails, or is taken out, before; allowed: {ids[0]} to {ids[-1]}, or those "
+            "of another one"
+        )
     return config

@@ -91,14 +91,15 @@ def tvms(
         meaning = stiffness_meaning(usable, torque)
         error = table_error_text(usable, gearbox.specimen)
     if out is not None:
-        write_table_file(curve_table(curves, **asdict(further)), out)
+        table = curve_table(curves, **asdict(further))
+        write_table_file(table.rename_columns([usable.names.column(name) for name in table.column_names]), out)
     if png is not None:
         with working("drawing the picture", compiles=False):
-            save_stiffness_figure(curves, png, **asdict(further), title=meaning)
-    typer.echo(meaning, err=True)
-    typer.echo(error, err=True)
+            save_stiffness_figure(curves, png, usable.names, **asdict(further), title=meaning)
+    typer.echo(usable.names.text(meaning), err=True)
+    typer.echo(usable.names.text(error), err=True)
     for note in model_notes(usable):
-        typer.echo(f"note: {note}", err=True)
+        typer.echo(f"note: {usable.names.text(note)}", err=True)
     if out is not None:
         typer.echo(str(out))
     if png is not None:

@@ -62,8 +62,7 @@ def damage_columns(config: Config) -> tuple[Column, ...]:
 
 def kind_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns that kinds of damage of a set have beyond those of all, each once."""
-    kinds = (section for state in config.states for section in state.damages)
-    return tuple(dict.fromkeys(column for kind in kinds for column in kind.columns))
+    return tuple(dict.fromkeys(column for kind in config.damages for column in kind.columns))
 
 
 def nothing_of(column: Column) -> object:
@@ -75,4 +74,4 @@ def nothing_of(column: Column) -> object:
 
 def has_drawn_edges(config: Config) -> bool:
     """Tell whether damage of a set has edges of its own, so that its rows have `EDGE_COLUMNS`."""
-    return any(section.own_edge_radius is not None for state in config.states for section in state.damages)
+    return any(section.own_edge_radius is not None for section in config.damages)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 RENAMED = {
-    "faulty_gear": ("faulty_gear", "gear with damage: none, sun, planet or both"),
+    "faulty_gear": ("faulty_gear", "gear with damage: none, sun, planet, ring, both (sun and planet) or several"),
     "faulty_teeth_pinion": ("faulty_teeth_sun", "indices of the sun's damaged teeth"),
     "faulty_teeth_gear": ("faulty_teeth_planet", "indices of the first planet's damaged teeth"),
     "teeth_pinion": ("teeth_sun", "number of teeth of the sun"),
@@ -29,6 +29,7 @@ RENAMED = {
 }
 """Column of a pair -> its name and its meaning in a planetary set."""
 ADDED = (
+    Column("faulty_teeth_ring", list_of(pa.int32()), "", "indices of the ring's damaged teeth"),
     Column("teeth_ring", pa.int32(), "", "number of teeth of the ring"),
     Column("planet_positions_deg", list_of(pa.float64()), "deg", "where the planets stand on the carrier"),
     Column("carrier_hz", pa.float64(), HERTZ, "rotation frequency of the carrier"),
@@ -43,8 +44,16 @@ def of_planets(config: Config, columns: Iterable[Column]) -> tuple[Column, ...]:
     return (*(_renamed(column) for column in columns), *ADDED)
 
 
+def renamed(name: str) -> str:
+    """Return the name of a pair's column in a planetary set."""
+    return RENAMED[name][0] if name in RENAMED else name.replace("_pinion", "_sun").replace("_gear", "_planet")
+
+
 def _renamed(column: Column) -> Column:
-    if column.name not in RENAMED:
+    name = renamed(column.name)
+    if column.name in RENAMED:
+        return replace(column, name=name, meaning=RENAMED[column.name][1])
+    if name == column.name:
         return column
-    name, meaning = RENAMED[column.name]
+    meaning = column.meaning.replace("pinion", "sun").replace("gear", "planet")
     return replace(column, name=name, meaning=meaning)

@@ -10,18 +10,14 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.columns.background_columns import background_columns
+from siggen.columns.common_columns import common_columns
 from siggen.columns.damage_columns import damage_columns
-from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.instrument_columns import instrument_columns
-from siggen.columns.manufacture_columns import manufacture_columns
-from siggen.columns.planetary_columns import of_planets
-from siggen.columns.stage_columns import stage_columns
-from siggen.columns.state_columns import state_columns
+from siggen.columns.own_columns import own_columns
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
-from siggen.keys.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
-from siggen.sensors.quantity import STILL_M_S2
+from siggen.keys.column import DECIBEL, Column, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -93,65 +89,6 @@ ID_COLUMNS = (
     Column("repeat", pa.int32(), "", "repeat of the same specimen, state and operating point"),
     Column("split", pa.string(), "", "train, validation or test"),
 )
-LABEL_COLUMNS = (
-    Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
-    Column("severity", pa.string(), "", "healthy, slight, moderate or severe"),
-    Column("faulty_gear", pa.string(), "", "gear with damage: none, pinion, gear, both, STAGE.pinion, ... or several"),
-    Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
-    Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
-    Column("damage_count", pa.int32(), "", "number of single damages on all teeth"),
-    Column("damaged_area_mm2", pa.float64(), "mm^2", "area of the union of all damage, all teeth"),
-    Column("damaged_area_share", pa.float64(), "", "damaged share of the most damaged flank"),
-    Column("damage_face_length_mm", pa.float64(), MILLIMETRE, "longest single damage across the face"),
-    Column("damage_profile_length_mm", pa.float64(), MILLIMETRE, "longest single damage along the profile (arc)"),
-    Column("contact_length_loss_mm", pa.float64(), MILLIMETRE, "largest length that a contact line loses"),
-    Column(
-        "mesh_stiffness_loss",
-        pa.float64(),
-        "",
-        "largest relative loss of mesh stiffness against healthy by potential energy: a pair without contact length "
-        "carries nothing; a measure of the damage alone, also where the simulation lets flanks sink instead; 0 for "
-        "wear, which takes neither section nor contact length: see mesh_stiffness_loss_as_simulated",
-    ),
-    Column("contact_loss_share", pa.float64(), "", "share of the time without tooth contact"),
-    Column("status", pa.string(), "", "ok; records that failed are in the manifest, not among the rows"),
-    Column("through_face", pa.bool_(), "", "whether damage takes the whole contact length somewhere"),
-    Column("sink_depth_um", pa.float64(), "um", "how far the mating flank sinks at most; 0 where lands carry"),
-    Column(
-        "mesh_stiffness_loss_as_simulated",
-        pa.float64(),
-        "",
-        "largest relative loss of force over approach at rest and at the record's torque, by the simulated law; "
-        "errors of single teeth are left out",
-    ),
-)
-OPERATING_COLUMNS = (
-    Column("teeth_pinion", pa.int32(), "", "number of teeth of the pinion"),
-    Column("teeth_gear", pa.int32(), "", "number of teeth of the gear"),
-    Column("speed_hz", pa.float64(), HERTZ, "nominal speed of the input (pinion) shaft"),
-    Column("torque_nm", pa.float64(), "N m", "torque at the input shaft"),
-    Column("pinion_shaft_hz", pa.float64(), HERTZ, "rotation frequency of the pinion's shaft"),
-    Column("gear_shaft_hz", pa.float64(), HERTZ, "rotation frequency of the gear's shaft"),
-    Column("mesh_hz", pa.float64(), HERTZ, "tooth mesh frequency"),
-    Column("start_angle_rad", pa.float64(), "rad", "pinion angle at the first sample"),
-)
-INTEGRATION_COLUMNS = (
-    Column(
-        "integration_error",
-        pa.float64(),
-        "",
-        f"estimated relative rms error of the simulated motion (of at least {STILL_M_S2:g} in SI units) by the steps "
-        "of integration, from a stretch of the record with twice as many; above the set's tolerance where the motion "
-        "depends on every rounding or the finest steps do not suffice, inf where it diverges",
-    ),
-)
-"""Columns of sets of the law pairs."""
-VARIATION_COLUMNS = (
-    Column("speed_std_hz", pa.float64(), HERTZ, "standard deviation of the pinion's speed about pinion_shaft_hz"),
-    Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque, what speeds the train up included"),
-    Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
-)
-"""Columns of sets in which speed or torque varies within a record."""
 TACHO_COLUMN = Column("tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample")
 
 
@@ -161,7 +98,7 @@ def channels(config: Config) -> tuple[Channel, ...]:
         Channel(
             name=name,
             sensor=sensor.name,
-            place=sensor.place,
+            place=config.names.place(sensor.place),
             axis=axis,
             unit=sensor.quantity.unit,
             column=sensor.quantity.column(name),
@@ -186,19 +123,10 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
     named = ((name, sensor.quantity) for sensor in config.sensors for name, _ in sensor.channels)
     per_channel = (column for one in named for column in channel_label_columns(*one))
-    varying = VARIATION_COLUMNS if config.variation.active else ()
-    stepped = INTEGRATION_COLUMNS if config.dynamics.method == "exponential" else ()
-    operating = (*OPERATING_COLUMNS, *stepped)
-    common = of_planets(config, (
-        *LABEL_COLUMNS,
-        *state_columns(config),
-        *operating,
-        *gearbox_columns(config),
-        *stage_columns(config),
-        *varying,
-        *manufacture_columns(config),
-    ))  # fmt: skip
-    return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
+    common, behind = (
+        own_columns(config.names, columns) for columns in (common_columns(config), background_columns(config))
+    )
+    return (*common, *per_channel, *instrument_columns(config), *behind)
 
 
 def label_names(config: Config) -> tuple[str, ...]:
@@ -210,7 +138,8 @@ def record_schema(config: Config) -> pa.Schema:
     """Return the schema of `data/*.parquet`: ids, labels, operating, per-channel labels, signals, tacho."""
     signals = [_signal_field(config, channel) for channel in channels(config)]
     labels = [column.field() for column in (*ID_COLUMNS, *label_columns(config))]
-    return pa.schema([*labels, *signals, TACHO_COLUMN.field()], metadata=schema_metadata(config))
+    (tacho,) = own_columns(config.names, [TACHO_COLUMN])
+    return pa.schema([*labels, *signals, tacho.field()], metadata=schema_metadata(config))
 
 
 def label_schema(config: Config) -> pa.Schema:
@@ -221,7 +150,8 @@ def label_schema(config: Config) -> pa.Schema:
 
 def damage_schema(config: Config) -> pa.Schema:
     """Return the schema of `damage/*.parquet`."""
-    return pa.schema([column.field() for column in damage_columns(config)], metadata=schema_metadata(config))
+    columns = own_columns(config.names, damage_columns(config))
+    return pa.schema([column.field() for column in columns], metadata=schema_metadata(config))
 
 
 def schema_metadata(config: Config) -> dict[str, str]:

@@ -5,11 +5,11 @@ A configuration's identity has a version of its own (`siggen.config.config`), wh
 
 from __future__ import annotations
 
-SCHEMA_VERSION = "2"
+SCHEMA_VERSION = "3"
 """Version of the columns and of the files around them that is written."""
 
 READ_VERSIONS = (SCHEMA_VERSION,)
 """Versions that are read; nothing older was ever released."""
 
-SIMULATION_VERSION = 7
+SIMULATION_VERSION = 8
 """Raised, at most once per release, when a configuration of an earlier release comes to give a record other numbers."""

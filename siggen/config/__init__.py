@@ -12,10 +12,9 @@ from siggen.config.background import (
     ShaftLines,
 )
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
-from siggen.config.dynamics import Coupling, Dynamics, PlainRotor, Rotor, by_reference
-from siggen.config.external_forces import Unbalance
+from siggen.config.dynamics import Coupling, Dynamics, PlainRotor, Rotor, Shaft, Shafts, Unbalance, by_reference
 from siggen.config.gears import Gears, Pair, Wheel
-from siggen.config.housing import Bolts, Feet, Housing, ModalHousing, PlateHousing, RigidHousing
+from siggen.config.housing import Bolts, Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
@@ -25,7 +24,6 @@ from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.planetary import Planetary
 from siggen.config.presets import config_file
-from siggen.config.shafts import Shaft, Shafts
 from siggen.config.stages import Stage
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
@@ -44,7 +42,6 @@ __all__ = [
     "Config",
     "Coupling",
     "Dynamics",
-    "Feet",
     "ForeignMesh",
     "Friction",
     "Gears",

@@ -26,18 +26,10 @@ class Base(Section):
     gyration_m: Annotated[Number, Within(above=0, most=20)] = Field(
         default=Uniform(low=0.2, high=0.4), description="radius of gyration in rocking (assumed)"
     )
-    mount_hz: Annotated[Number, Within(above=0, most=1000)] = Field(
-        default=LogUniform(low=10.0, high=60.0),
-        description="natural frequencies on its mounts, drawn for each of horizontal, vertical and rocking (assumed)",
-    )
 
 
 class Bursts(Section):
     """Rubbing that rises for some milliseconds at random times: dirt, oil, a loose part. Never tied to the state."""
-
-    rate_hz: Annotated[Number, Within(least=0, most=100)] = Field(
-        default=LogUniform(low=0.2, high=5.0), description="mean number per second, Poisson (assumed)"
-    )
 
 
 class Rubbing(Section):
@@ -45,10 +37,6 @@ class Rubbing(Section):
 
     roughness_um: Annotated[Number, Within(least=0, most=20)] = Field(
         default=LogUniform(low=0.2, high=0.6), description="composite Rq along the flank (source: ground flanks)"
-    )
-    level_std: Annotated[Number, Within(least=0, most=2)] = Field(
-        default=LogUniform(low=0.1, high=1.25),
-        description="s of the random level exp(s U - s²/2); kurtosis 3 exp(s²) (measured: 0.1 to 0.6; assumed beyond)",
     )
     bursts: Bursts | None = Field(default=None, description="null: none")
 
@@ -60,19 +48,6 @@ class Bearings(Section):
         default=LogUniform(low=20.0, high=200.0),
         description="rms velocity of the outer ring at 1800 turns a minute, drawn for each band of ISO 15242: 50, 300, "
         "1800, 10000 Hz (memory)",
-    )
-    compliance_um: Annotated[Number, Within(least=0, most=100)] = Field(
-        default=LogUniform(low=0.02, high=0.3),
-        description="displacement as each ball passes (assumed); bearings of dynamics.<shaft>.bearing have their own",
-    )
-    ball_pass_order: Annotated[Number, Within(above=0, most=100)] = Field(
-        default=Uniform(low=3.0, high=5.5),
-        description="balls past the outer ring per turn of the shaft (derived); "
-        "bearings of dynamics.<shaft>.bearing have their own",
-    )
-    level_std: Annotated[Number, Within(least=0, most=2)] = Field(
-        default=LogUniform(low=0.1, high=0.6),
-        description="s of the random level exp(s U - s²/2), one course per shaft; kurtosis 3 exp(s²) (measured)",
     )
 
 
@@ -91,9 +66,6 @@ class ShaftLines(Section):
 
     coupling_stiffness_n_per_um: Annotated[Number, Within(least=0, most=1000)] = Field(
         default=LogUniform(low=0.1, high=1.0), description="radial, per coupling (assumed)"
-    )
-    offset_um: Annotated[Number, Within(least=0, most=5000)] = Field(
-        default=LogUniform(low=10.0, high=100.0), description="misalignment and run-out of each coupling (assumed)"
     )
     rotor_mass_kg: Annotated[Number, Within(least=0, most=100_000)] = Field(
         default=LogUniform(low=3.0, high=30.0), description="of the machine on each shaft (assumed)"
@@ -135,11 +107,6 @@ class ForeignMesh(Section):
 class Background(Section):
     """A healthy machine around the gears; with this section, noise levels belong to the gearbox."""
 
-    redraw: Literal["gearbox", "record"] = Field(
-        default="gearbox",
-        description="what levels of noise and forces are drawn for; gearbox: all states share them, record: each "
-        "record has its own",
-    )
     base: Base | None = Field(default=None, description="null: bolts stand on the ground")
     rubbing: Rubbing | None = Field(default=None, description="null: none")
     bearings: Bearings | None = Field(default=None, description="null: none")

@@ -15,17 +15,23 @@ from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears
 from siggen.config.housing import Housing, PlateHousing, RigidHousing
 from siggen.config.internals import Internals
+from siggen.config.life import Life
+from siggen.config.machine import Machine
 from siggen.config.manufacture import Manufacture
+from siggen.config.names import NO_NAMES, Names
 from siggen.config.planetary import Planetary
+from siggen.config.short_form import names_of, own_form
 from siggen.config.stages import Stage
 from siggen.config.states import State, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
 from siggen.errors import Problem
+from siggen.faults.fault import Fault
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
+from siggen.life.pitting import EXAMPLE
 from siggen.sensors.registry import SensorSection
 
 IDENTITY_VERSION = 2
@@ -37,13 +43,15 @@ BLOCK = 20
 
 CONFIG_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter or a digit, at most 200")
 
+SHARES = "of every 20 gearboxes (or pairs), for fitting, for choosing and for judging"
+
 
 class Splits(Section):
     """How many of every 20 specimens belong to each split."""
 
-    train: Annotated[Whole, Field(ge=0)] = Field(default=12, description="for fitting")
-    validation: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for choosing")
-    test: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for judging")
+    train: Annotated[Whole, Field(ge=0)] = Field(default=12, description=SHARES)
+    validation: Annotated[Whole, Field(ge=0)] = Field(default=4, description=SHARES)
+    test: Annotated[Whole, Field(ge=0)] = Field(default=4, description=SHARES)
     by: Literal["gearbox", "pair"] = Field(
         default="gearbox",
         description="what splits never share; pair: gear pairs (gears.pairs), so that test holds gears never seen",
@@ -89,9 +97,12 @@ class Config(Section):
         default=1, description="records per state and operating point"
     )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
-    gears: Gears = Field(description="the gear pair")
+    gears: Gears = Field(description="the gear pair; needed without `machine`")
     stages: tuple[Stage, ...] = Field(
         default=(), description="further meshes behind `gears`, in the order of power; the last gear drives the load"
+    )
+    machine: Machine | None = Field(
+        default=None, description="shafts, gears and meshes with names of your own, in place of `gears` and `stages`"
     )
     planetary: Planetary | None = Field(
         default=None, description="null: a pair on two shafts; given: `gears` are sun and planets in a ring"
@@ -101,7 +112,10 @@ class Config(Section):
     operating_points: Annotated[tuple[OperatingRange, ...], Field(min_length=1), OPERATING_POINTS] = Field(
         description="speeds and torques; ranges are drawn for each entry"
     )
-    states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(description="conditions of health")
+    states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(default=(), description="conditions of health")
+    life: Life | None = Field(
+        default=None, description="null: `states`; given: gearboxes run until teeth fail, and `states` has no entry"
+    )
     sensors: Annotated[tuple[SensorSection, ...], Field(min_length=1)] = Field(
         description="what measures; of kind accelerometer unless it says otherwise"
     )
@@ -135,9 +149,33 @@ class Config(Section):
         return tuple(name for sensor in self.sensors for name, _ in sensor.channels)
 
     @property
+    def state_count(self) -> int:
+        """Number of states; with `life` the most inspections of a gearbox."""
+        return len(self.states) if self.life is None else self.life.most
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states, of all inspections that a gearbox may have."""
+        if self.life is None:
+            return tuple(state.name for state in self.states)
+        return tuple(map(self.life.name_of, range(self.life.most)))
+
+    @property
+    def damages(self) -> tuple[Fault, ...]:
+        """Sections of damage of all states; with `life` an example of what its inspections show."""
+        if self.life is not None:
+            return (EXAMPLE,)
+        return tuple(section for state in self.states for section in state.damages)
+
+    @property
     def records_per_specimen(self) -> int:
-        """Records of one specimen: all states at all operating points, repeats included."""
-        return len(self.states) * len(self.operating_points) * self.repeats
+        """Records of one specimen: all states at all operating points, repeats included; with `life` the most."""
+        return self.state_count * len(self.operating_points) * self.repeats
+
+    @property
+    def names(self) -> Names:
+        """The user's own names of gears, shafts and meshes; without a machine those of the short form."""
+        return NO_NAMES if self.machine is None else names_of(self.machine)
 
     def grown_from(self, state_id: int) -> int | None:
         """Return the index of the state whose damage a state contains, or None."""
@@ -145,11 +183,17 @@ class Config(Section):
 
     def changes_of(self, state_id: int) -> tuple[tuple[int, Change], ...]:
         """Return the keys that a state changes, those of its milder states too, each with the state that says so."""
-        return changes_of(self.states, state_id)
+        return () if self.life is not None else changes_of(self.states, state_id)
 
     def canonical(self) -> dict[str, Any]:
         """Return the configuration with all defaults, as plain mappings and lists; parsing it gives an equal one."""
-        return {name: _plain(value) for name, value in self.model_dump(mode="json").items()}
+        found = {name: _plain(value) for name, value in self.model_dump(mode="json").items()}
+        if not self.states:  # which no file may give beside a section life
+            del found["states"]
+        if self.machine is not None:
+            return own_form(found, self.names)
+        del found["machine"]
+        return found
 
     @cached_property
     def identity(self) -> str:

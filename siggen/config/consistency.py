@@ -11,7 +11,8 @@ from typing import Any
 
 from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
-from siggen.config.planetary import in_pair
+from siggen.config.life_problems import life_problems
+from siggen.config.planetary import RING, in_pair
 from siggen.config.planetary_problems import sets_problems
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
 from siggen.config.stages import shaft_turns
@@ -33,6 +34,7 @@ SAMPLES_PER_PERIOD = 2.56
 def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> list[Problem]:
     """Return what is contradictory between the valid sections of a configuration."""
     checks: list[Callable[[Mapping[str, Any], Mapping[str, object]], Iterable[Problem]]] = [
+        life_problems,
         _sample_count,
         _band,
         _twice_named,
@@ -321,7 +323,9 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             if (pair := pair_of(sections, gear)) is None:  # told by `_stages_named`
                 continue
             selected = most_teeth(teeth)
-            count = min(pair.teeth_of(in_pair(gear.rpartition(".")[2])))
+            planetary = sections.get("planetary") if gear == RING else None
+            name = in_pair(gear.rpartition(".")[2])
+            count = min(pair.teeth_of(name)) if planetary is None else planetary.ring_teeth
             if isinstance(selected, int):
                 if selected > count:
                     yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")

@@ -6,12 +6,43 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.external_forces import Unbalance
 from siggen.config.mesh import Friction, Mesh
-from siggen.config.shafts import Shafts
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
+
+
+class Shaft(Section):
+    """A round steel shaft of one diameter on two bearings, with its gear between them."""
+
+    bearing_span_mm: Annotated[Number, Within(above=0, most=2000)] = Field(
+        default=100.0, description="distance of the bearings"
+    )
+    gear_position: Annotated[Number, Within(above=0, below=1)] = Field(
+        default=0.5, description="middle of the gear from one bearing, as a share of the span"
+    )
+    diameter_mm: Annotated[Number, Within(least=5)] = Field(default=25.0, description="of the shaft")
+
+
+class Shafts(Section):
+    """Shafts of both gears; bearing stiffnesses of `dynamics.pinion` and `dynamics.gear` are those of both bearings."""
+
+    pinion: Shaft = Field(default=Shaft(), description="shaft of the pinion")
+    gear: Shaft = Field(default=Shaft(), description="shaft of the gear")
+
+
+class Unbalance(Section):
+    """Residual unbalance of both shafts by balance quality grade; its phase is drawn per specimen."""
+
+    grade_mm_s: Annotated[Number, Within(least=0, most=100)] = Field(
+        default=0.0,
+        description="eccentricity times speed at 50 Hz of the pinion shaft; 2.5 and 6.3 are the grades G2.5 and G6.3",
+    )
+
+
+BEARINGS = "both bearings of the shaft, horizontal (x) and vertical (y)"
+DAMPED = "the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+MACHINE = "of the machine that drives, or is driven"
 
 
 class PlainRotor(Section):
@@ -23,18 +54,10 @@ class PlainRotor(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=2e8, description="both bearings of the shaft, horizontal"
-    )
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=2e8, description="both bearings of the shaft, vertical"
-    )
-    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
-        default=1000.0, description="horizontal; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
-    )
-    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
-        default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
-    )
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
+    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
+    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
 
 
 class Rotor(PlainRotor):
@@ -87,8 +110,8 @@ class Dynamics(Section):
     backlash_um: Annotated[Number, Within(least=0)] = Field(
         default=80.0, description="total play along the line of action"
     )
-    motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=4e-3, description="of the driving machine")
-    load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=1e-2, description="of the driven machine")
+    motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=4e-3, description=MACHINE)
+    load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=1e-2, description=MACHINE)
     pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")
     gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
     input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")

@@ -40,7 +40,9 @@ def schema_with_experts() -> dict[str, Any]:
 def schema_text() -> str:
     """Return the JSON Schema as editors read it; a file that extends another one needs no key of its own."""
     schema = schema_with_experts()
-    needed = {"if": {"required": [EXTENDS]}, "else": {"required": schema.pop("required")}}
+    required = [key for key in schema.pop("required") if key != "gears"]
+    drivetrain = [{"required": ["gears"]}, {"required": ["machine"]}]
+    needed = {"if": {"required": [EXTENDS]}, "else": {"required": required, "anyOf": drivetrain}}
     return json.dumps({"$schema": DRAFT, **schema, **needed}, indent=2) + "\n"
 
 

@@ -12,6 +12,8 @@ from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Section, Whole
 
+RACK = "addendum and tip clearance in modules"
+
 
 class Wheel(Section):
     """One of the two gears."""
@@ -25,8 +27,8 @@ class Wheel(Section):
     )
 
 
-class Pair(Section):
-    """One pair: common tooth form, material, and the two wheels. The pinion drives."""
+class ToothForm(Section):
+    """What both gears of a mesh share: tooth form, face width, material, distance."""
 
     module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module")
     pressure_angle_deg: Annotated[Number, Within(least=10, most=35)] = Field(
@@ -42,15 +44,16 @@ class Pair(Section):
         default=206.0, description="Young's modulus of both gears"
     )
     poisson_ratio: Annotated[Number, Within(least=0, below=0.5)] = Field(default=0.3, description="Poisson's ratio")
-    addendum_coefficient: Annotated[Number, Within(above=0, most=2)] = Field(
-        default=1.0, description="addendum in modules"
-    )
-    clearance_coefficient: Annotated[Number, Within(above=0, most=1)] = Field(
-        default=0.25, description="tip clearance in modules"
-    )
+    addendum_coefficient: Annotated[Number, Within(above=0, most=2)] = Field(default=1.0, description=RACK)
+    clearance_coefficient: Annotated[Number, Within(above=0, most=1)] = Field(default=0.25, description=RACK)
     centre_distance_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: the one at which the profile shifts mesh without backlash"
     )
+
+
+class Pair(ToothForm):
+    """One pair: common tooth form, material, and the two wheels. The pinion drives."""
+
     pinion: Wheel = Field(description="the driving gear")
     gear: Wheel = Field(description="the driven gear")
 

@@ -12,28 +12,18 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Discriminator, Field, model_validator
 
 from siggen.errors import Problem
-from siggen.keys.distributions import LogUniform, Uniform
+from siggen.keys.distributions import LogUniform
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Position, Section
 
-Stiffness = Annotated[Number | None, Within(above=0, words=(None,))]
 Length = Annotated[Number | None, Within(above=0, most=10_000, words=(None,))]
+INSIDE = (
+    "inside, across the shafts, upright and along the shafts; null: the gears with clearances of 10 to 26 % of the "
+    "centre distance at either end, 15 to 31 % above and a sump of 26 to 62 %, and as wide as the bearings need"
+)
+EACH = "of each, horizontal (shear) and vertical (axial)"
 FOOT = "what one foot has left of its stiffness: the pinion's, behind, or the first bolt of a rigid housing"
-
-
-class Feet(Section):
-    """The four bolts under a housing of plates, at the corners of its floor, all alike but for a loose one."""
-
-    shear_stiffness_n_per_m: Stiffness = Field(
-        default=None, description="horizontal, each; null: 0.62 to 1.13e9 per metre of centre distance (assumed)"
-    )
-    axial_stiffness_n_per_m: Stiffness = Field(
-        default=None, description="vertical, each; null: 1.13 to 2.05e9 per metre of centre distance (assumed)"
-    )
-    damping_ratio: Annotated[Number, Within(above=0, below=0.5)] = Field(
-        default=Uniform(low=0.03, high=0.07), description="of what the bolts hold of a mode's energy (assumed)"
-    )
 
 
 class PlateHousing(Section):
@@ -45,17 +35,9 @@ class PlateHousing(Section):
     material: Literal["any", "grey_iron", "steel"] = Field(
         default="any", description="cast or welded; any: three of five gearboxes are cast"
     )
-    length_mm: Length = Field(
-        default=None,
-        description="inside, across the shafts; null: the gears and 10 to 26 % of the centre distance at either end",
-    )
-    height_mm: Length = Field(
-        default=None,
-        description="inside; null: the larger gear, 15 to 31 % of the centre distance above and a sump of 26 to 62 %",
-    )
-    width_mm: Length = Field(
-        default=None, description="inside, along the shafts; null: so that the walls carry the bearings"
-    )
+    length_mm: Length = Field(default=None, description=INSIDE)
+    height_mm: Length = Field(default=None, description=INSIDE)
+    width_mm: Length = Field(default=None, description=INSIDE)
     wall_mm: Length = Field(
         default=None,
         description="of the plates with the bearings; null: 1.1 to 3 times 3 mm + 2.5 % of the centre distance, welded "
@@ -64,15 +46,14 @@ class PlateHousing(Section):
     damping_ratio: Annotated[Number, Within(above=0, below=0.5)] = Field(
         default=LogUniform(low=0.003, high=0.05), description="of the plates, drawn for each mode"
     )
-    feet: Feet = Field(default=Feet(), description="bolts between floor and ground")
     loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(default=1.0, description=FOOT)
 
 
 class Bolts(Section):
     """The bolts between casing and ground, all alike but for a loose one."""
 
-    shear_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8e7, description="horizontal, each")
-    axial_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1.5e8, description="vertical, each")
+    shear_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8e7, description=EACH)
+    axial_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1.5e8, description=EACH)
     damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.04, description="of a bolt that carries its share of the casing's mass"
     )

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.keys.section import Section, Whole
+from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
 ALL = "all"
@@ -22,9 +22,6 @@ class Internals(Section):
     records: Literal["all", "first_of_state"] = Field(
         default="all",
         description="first_of_state: of every specimen and state the first operating point and repeat alone",
-    )
-    every_specimen: Annotated[Whole, Field(ge=1)] = Field(
-        default=1, description="10: those of specimens 0, 10, 20, ... alone"
     )
 
     @property

@@ -12,15 +12,22 @@ from siggen.keys.number import Number, Within, bounds
 from siggen.keys.problems import refusal
 from siggen.keys.section import Section
 
+CLASS = (
+    "flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or kind: choice of some; of the driven gear, null: "
+    "drawn like the pinion's, for itself"
+)
+CROWNING = (
+    "lead crowning: a parabola across the face that takes so much at both ends and nothing in the middle; of the "
+    "driven gear, null: drawn like the pinion's, for itself"
+)
+
 
 class Manufacture(Section):
     """Deviations of every tooth of both gears within ISO 1328-1:2013; needs the mesh law pairs."""
 
-    accuracy_class: Annotated[Number, Within(least=1, most=11)] = Field(
-        description="flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or kind: choice of some"
-    )
+    accuracy_class: Annotated[Number, Within(least=1, most=11)] = Field(description=CLASS)
     accuracy_class_gear: Annotated[Number | None, Within(least=1, most=11, words=(None,))] = Field(
-        default=None, description="class of the driven gear; null: drawn like the pinion's, for itself"
+        default=None, description=CLASS
     )
     # Real gears use 30 to 70 % of their tolerance. Running in takes the peaks first, and gears at their full tolerance
     # lose contact at light loads even while they are healthy: the lower part stands for gears that have run in.
@@ -29,11 +36,10 @@ class Manufacture(Section):
     )
     crowning_um: Annotated[Number, Within(least=0, most=200)] = Field(
         default=0.0,
-        description="lead crowning of the pinion: a parabola across the face that takes so much at both ends and "
-        "nothing in the middle",
+        description=CROWNING,
     )
     crowning_gear_um: Annotated[Number | None, Within(least=0, most=200, words=(None,))] = Field(
-        default=None, description="of the driven gear; null: drawn like the pinion's, for itself"
+        default=None, description=CROWNING
     )
     helix: Literal["off", "iso_1328"] = Field(
         default="off",

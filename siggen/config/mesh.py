@@ -10,6 +10,12 @@ from siggen.config.oil import Oil
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
+ROUGHNESS = "rms roughness of either flank, and of its lands inside damage (mixed_ehl)"
+DAMPING_PARTS = (
+    "parts of the mesh damping ratio with damping: asperity_share: always there, in a full oil film, where asperities "
+    "carry all"
+)
+
 
 class Mesh(Section):
     """The law of the mesh force; everything but `law` is used by the law pairs alone."""
@@ -39,13 +45,11 @@ class Mesh(Section):
         "asperity share La of friction.model: mixed_ehl",
     )
     structure_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.04, description="part of the mesh damping ratio that is always there (damping: asperity_share)"
+        default=0.04, description=DAMPING_PARTS
     )
-    film_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.02, description="part of the mesh damping ratio in a full oil film (damping: asperity_share)"
-    )
+    film_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.02, description=DAMPING_PARTS)
     asperity_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.05, description="part of the mesh damping ratio where asperities carry all (damping: asperity_share)"
+        default=0.05, description=DAMPING_PARTS
     )
 
 
@@ -64,10 +68,8 @@ class Friction(Section):
     oil_temperature_c: Annotated[Number, Within(least=-20, most=150)] = Field(
         default=50.0, description="at the inlet of the contact"
     )
-    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
-        default=0.4, description="rms roughness of either flank (mixed_ehl)"
-    )
+    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(default=0.4, description=ROUGHNESS)
     pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=2.0,
-        description="rms roughness of a flank's lands inside damage (mixed_ehl)",
+        description=ROUGHNESS,
     )

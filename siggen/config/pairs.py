@@ -49,7 +49,7 @@ class DrawnPairs(Section):
     ratio: Annotated[Number, Within(least=0.1, most=20)] = Field(
         description="teeth of the gear over the pinion's; moved to the nearest number without a common divisor"
     )
-    module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module, such as a choice of ISO 54")
+    module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module")
     face_width_over_module: Annotated[Number, Within(above=0, most=100)] = Field(
         description="face width in modules; the width is rounded to whole mm"
     )

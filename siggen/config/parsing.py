@@ -12,6 +12,10 @@ from pydantic import TypeAdapter, ValidationError
 
 from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
+from siggen.config.machine import Machine
+from siggen.config.machine_problems import machine_problems
+from siggen.config.names import NO_NAMES, Names
+from siggen.config.short_form import names_of, short_form
 from siggen.errors import Problem
 from siggen.keys.problems import MOST_PROBLEMS, missing_key, section_problems, unknown_keys
 
@@ -35,30 +39,53 @@ class ParsedConfig:
         of an entry to the valid entry.
     problems
         Everything that is wrong, physics not considered.
+    names
+        The user's own names of gears, shafts and meshes; sections and problems of physics have those of the short form.
     """
 
     config: Config | None
     sections: Mapping[str, Any]
     problems: tuple[Problem, ...]
+    names: Names = NO_NAMES
 
 
 def parse(raw: Mapping[str, object]) -> ParsedConfig:
     """Return the configuration that a mapping stands for, or all its problems; never raises because of its content."""
-    sections: dict[str, Any] = {}
+    if raw.get("machine") is None:
+        return _parsed(raw, None)
+    machine, wrong = _validated(_adapter("machine"), raw["machine"], ("machine",))
+    if wrong := wrong or machine_problems(machine):
+        return ParsedConfig(None, MappingProxyType({}), tuple(wrong))  # words of all else are those of its names
+    names = names_of(machine)
+    short, wrong = short_form(raw, machine, names)
+    parsed, told = _parsed(short, machine), {problem.path for problem in wrong}
+    problems = [*wrong, *(one for one in map(names.problem, parsed.problems) if one.path not in told)]
+    return ParsedConfig(None if wrong else parsed.config, parsed.sections, tuple(problems), names)
+
+
+def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:
+    """Return what a mapping in the short form holds."""
+    if raw.get("life") and not raw.get("states", True):  # no states, as a file says that extends one with some
+        raw = {key: value for key, value in raw.items() if key != "states"}
+    sections: dict[str, Any] = {"machine": machine}
     unknown = [(str(key), raw[key]) for key in raw if key not in Config.model_fields]
     problems = unknown_keys(unknown, list(Config.model_fields))
-    for name in Config.model_fields:
+    for name in (name for name in Config.model_fields if name != "machine"):
         value, found = (
             _entries(name, raw[name]) if name in LISTS and _is_filled_list(raw, name) else _section(name, raw)
         )
         problems += found
         if value is not None:
-            sections[name] = value
+            sections[name] = dict(enumerate(value)) if name in LISTS and isinstance(value, tuple) else value
     problems += consistency_problems(sections, raw)
-    config = (
-        None if problems else Config.model_validate({**sections, **{n: tuple(sections[n].values()) for n in LISTS}})
-    )
+    config = None if problems else Config.model_validate(_listed(sections))
     return ParsedConfig(config, MappingProxyType(sections), tuple(problems))
+
+
+def _listed(sections: Mapping[str, Any]) -> dict[str, Any]:
+    """Return valid sections with lists in place of their numbered entries, and without lists of none."""
+    lists = {name: tuple(sections[name].values()) for name in LISTS}
+    return {name: lists.get(name, value) for name, value in sections.items() if lists.get(name) != ()}
 
 
 def _is_filled_list(raw: Mapping[str, object], name: str) -> bool:
@@ -70,7 +97,7 @@ def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     if isinstance(value := raw.get(name), (list, tuple)) and len(value) > MOST_ENTRIES:
         return None, [Problem(name, f"a list of {len(value)}", f"allowed: at most {MOST_ENTRIES} entries")]
     if name not in raw:
-        if field.is_required():
+        if field.is_required() or (name == "states" and not raw.get("life")):
             return None, [missing_key(name, field)]
         return field.get_default(call_default_factory=True), []
     return _validated(_adapter(name), raw[name], (name,))

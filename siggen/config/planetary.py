@@ -12,8 +12,15 @@ from siggen.keys.wording import AllowedText
 
 ROLES = {"sun": "pinion", "planet": "gear"}
 """Name of a gear in a planetary set -> what it is in the pair of `gears`."""
+RING = "ring"
+"""The gear that is in no mesh of the pair of `gears`."""
 NAMES = {role: name for name, role in ROLES.items()}
 POSITIONS = AllowedText("a list of 3 to 5 angles in degrees, 0 first, ascending, below 360")
+
+SUPPORTS = (
+    "bearings of the sun's shaft (soft: it floats); pin and bearing of each planet; what holds the ring round its rim, "
+    "and from turning; both bearings of the carrier"
+)
 
 
 class Planetary(Section):
@@ -33,23 +40,12 @@ class Planetary(Section):
         default=0.0,
         description="standard deviation of the place of each planet's pin along the tangent, drawn per gearbox",
     )
-    sun_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=2e7, description="bearings of the sun's shaft; a floating sun is soft"
-    )
-    planet_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=2e8, description="pin and bearing of each planet"
-    )
-    ring_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=5e8, description="what holds the ring, round its rim; it keeps the ring from turning too"
-    )
-    carrier_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=2e8, description="both bearings of the carrier"
-    )
+    sun_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e7, description=SUPPORTS)
+    planet_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=SUPPORTS)
+    ring_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=5e8, description=SUPPORTS)
+    carrier_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=SUPPORTS)
     ring_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: steel, four modules thick behind the roots (assumed)"
-    )
-    carrier_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None, description="null: a steel disc as wide as the gears and as large as the pins' circle (assumed)"
     )
     damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.03, description="of each body on its support alone"
@@ -62,5 +58,5 @@ def pitches_per_turn(sun: int, ring: int) -> float:
 
 
 def in_pair(name: str) -> str:
-    """Return what a gear of a planetary set is in the pair of `gears`; any other name stays."""
-    return ROLES.get(name, name)
+    """Return what a gear of a planetary set is in its own pair, a ring behind a planet; any other name stays."""
+    return {**ROLES, RING: "gear"}.get(name, name)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from siggen.config.dynamics import Dynamics
-from siggen.config.external_forces import Unbalance
+from siggen.config.dynamics import Dynamics, Unbalance
 from siggen.config.gears import Gears
-from siggen.config.planetary import ROLES, Planetary
+from siggen.config.planetary import RING, ROLES, Planetary
 from siggen.errors import Problem
 from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems, typed_places
 from siggen.keys.number import bounds
@@ -42,7 +41,7 @@ def set_of(gears: Gears, section: Planetary) -> PlanetarySet:
 def _without_one(sections: Mapping[str, Any]) -> Iterator[Problem]:
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
-            if getattr(one, "gear", "") in ROLES:
+            if getattr(one, "gear", "") in {*ROLES, RING}:
                 yield Problem(f"{where}.gear", f"'{one.gear}'", "allowed: pinion, gear, either; or a section planetary")
 
 
@@ -63,9 +62,6 @@ def _of_dynamics(dynamics: Dynamics) -> Iterator[Problem]:
         yield Problem("dynamics.model", received, f"allowed: 8dof {BESIDE}, whose bodies stand on the ground")
     if dynamics.mesh.law != "pairs":
         yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {BESIDE}")
-    if dynamics.friction.model != "off":
-        received = f"'{dynamics.friction.model}'{' (by default)' if dynamics.friction.model == 'auto' else ''}"
-        yield Problem("dynamics.friction.model", received, f"allowed: off {BESIDE}, whose flanks do not rub so far")
     if dynamics.shafts is not None:
         yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
     if dynamics.unbalance != Unbalance():
@@ -77,14 +73,11 @@ def _of_dynamics(dynamics: Dynamics) -> Iterator[Problem]:
 
 
 def _of_others(sections: Mapping[str, Any]) -> Iterator[Problem]:
-    for key, what in {"stages": "further meshes", "manufacture": "errors of single teeth"}.items():
-        if sections.get(key):
-            yield Problem(key, what, f"allowed: none {BESIDE}")
+    if sections.get("stages"):
+        yield Problem("stages", "further meshes", f"allowed: none {BESIDE}")
     for key in ("background", "internals"):
         if sections.get(key) is not None:
             yield Problem(key, "a section", f"allowed: null {BESIDE}")
-    if "variation" in sections and sections["variation"].active:
-        yield Problem("variation", "a section", f"allowed: none {BESIDE}, which turns evenly")
     for index, point in enumerate(sections.get("operating_points", ())):
         if bounds(point.torque_nm)[0] <= 0.0:
             yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")
@@ -95,4 +88,7 @@ def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
         for where, one in state.placed(f"states.{index}"):
             if one.needs_pairs or one.needs_bearings:
                 allowed = f"allowed {BESIDE}: pits, spalls and cracks of sun and planets"
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
+            elif getattr(one, "gear", "") == RING and not one.nouns:
+                allowed = "allowed: pits and spalls of a ring, whose teeth have no law of cracks"
                 yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)

@@ -18,6 +18,16 @@ from siggen.keys.wording import AllowedText
 STAGE_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
 
 
+SPAN = (
+    "distance of the bearings of a shaft with two gears, in `stages` of the one in front, as thick as the thinner bore "
+    "of both; null: twice both face widths (assumed)"
+)
+DIRECTION = (
+    "of the line from the driving to the driven gear against that of the first mesh, in the sense in which the first "
+    "shaft turns"
+)
+
+
 class Stage(Section):
     """One further mesh: its pinion stands on the shaft of the gear in front, its gear on a shaft of its own.
 
@@ -28,19 +38,19 @@ class Stage(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), STAGE_NAME] = Field(
         description="part of the names of its labels, and of its gears: NAME.pinion and NAME.gear"
     )
-    gears: Pair = Field(description="its pair")
+    gears: Pair = Field(description="its pair, without `pairs`")
     gear: PlainRotor = Field(
-        default=PlainRotor(), description="its gear and that gear's shaft; its pinion is a solid steel disc"
+        default=PlainRotor(),
+        description="its gear and that gear's shaft, without `eccentricity_um` and `bearing`; its pinion is a "
+        "solid steel disc",
     )
     span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
         default=None,
-        description="distance of the bearings of the shaft in front, as thick as the thinner bore of its two gears; "
-        "null: twice both face widths (assumed)",
+        description=SPAN,
     )
     direction_deg: Annotated[Number, Within(least=-180, most=180)] = Field(
         default=0.0,
-        description="of the line from its pinion to its gear against that of `gears`, in the sense in which the first "
-        "pinion turns",
+        description=DIRECTION,
     )
 
 

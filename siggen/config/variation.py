@@ -12,28 +12,21 @@ from siggen.keys.section import Section
 RARE = 4.0
 """Standard deviations that a slow random part hardly ever leaves; the band must carry the speed up to there."""
 
+RAMP = "speed at the first sample, and at the last, over that of the operating point; linear between (run-up, run-down)"
+RANDOM = "slow random part, relative; usual are 0.001 to 0.005 of speeds, 0.01 to 0.05 of torques"
+RIPPLE = "amplitude once per revolution, and twice, relative; 0.0002 to 0.001 is usual"
 SLOW_CORNER = "frequency above which the random part falls off"
 
 
 class SpeedVariation(Section):
     """Rotation of the pinion; numbers are drawn per specimen and operating point, random courses per record."""
 
-    start_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(
-        default=1.0, description="speed at the first sample over that of the operating point"
-    )
-    end_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(
-        default=1.0, description="the same at the last; the speed runs linearly between (run-up, run-down)"
-    )
-    random_rms: Annotated[Number, Within(least=0, most=0.05)] = Field(
-        default=0.0, description="slow random part, relative; 0.001 to 0.005 is usual"
-    )
+    start_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(default=1.0, description=RAMP)
+    end_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(default=1.0, description=RAMP)
+    random_rms: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RANDOM)
     corner_hz: Annotated[Number, Within(least=0.01, most=5)] = Field(default=0.5, description=SLOW_CORNER)
-    ripple_once: Annotated[Number, Within(least=0, most=0.05)] = Field(
-        default=0.0, description="amplitude once per revolution, relative; 0.0002 to 0.001 is usual"
-    )
-    ripple_twice: Annotated[Number, Within(least=0, most=0.05)] = Field(
-        default=0.0, description="the same twice per revolution"
-    )
+    ripple_once: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RIPPLE)
+    ripple_twice: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RIPPLE)
     slip: Annotated[Number, Within(least=0, most=0.2)] = Field(
         default=0.0,
         description="share of the speed that the motor loses at its rated torque, in proportion to the torque",
@@ -44,9 +37,7 @@ class SpeedVariation(Section):
 class TorqueVariation(Section):
     """Torque about that of the operating point; motor and load balance on the mean."""
 
-    random_rms: Annotated[Number, Within(least=0, most=0.1)] = Field(
-        default=0.0, description="slow random part, relative; 0.01 to 0.05 is usual"
-    )
+    random_rms: Annotated[Number, Within(least=0, most=0.1)] = Field(default=0.0, description=RANDOM)
     corner_hz: Annotated[Number, Within(least=0.01, most=5)] = Field(default=0.5, description=SLOW_CORNER)
     load_once: Annotated[Number, Within(least=0, most=2)] = Field(
         default=0.0, description="amplitude of the load torque once per revolution of its shaft, relative"

@@ -109,16 +109,17 @@ def _view(name: str, paths: dict[str, str], *, default: bool = False) -> dict[st
 
 def _summary(config: Config, rows: int) -> str:
     records = counted(rows, f"labelled {quantities_text(config)} record")
+    what = "spur gear pair" if config.machine is None else "gearbox"
     return f"""# {config.name}
 
-{records} of a simulated spur gear pair, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
+{records} of a simulated {what}, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
 Channels: {channels_text(config)}. Every record is simulated from its own gearbox, state, speed, load and noise;
 none is a copy or a cut of another one. **The data are synthetic**: they were computed, not measured.
 """
 
 
 def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
-    names = [state.name for state in config.states]
+    names = list(config.state_names)
     lines = ["## Contents", "", f"| split | specimens | records | {' | '.join(names)} | MB |"]
     lines.append("|---" * (len(names) + 4) + "|")
     for split in splits:
@@ -171,12 +172,11 @@ def _internals(config: Config, quantities: Sequence[Column]) -> str:
     """Say which records have internal quantities, and how to join them."""
     if config.internals is None or not quantities:
         return ""
-    chosen, every = config.internals.records, config.internals.every_specimen
+    chosen = config.internals.records
     which = "every record" if chosen == "all" else "the first operating point and repeat of every state"
-    whose = "" if every == 1 else f" of specimens 0, {every}, {2 * every}, ..."
     table = _columns("Columns of `internals/`", internals_schema(config, quantities))
     return f"""{table}
-What no sensor sees, of {which}{whose}, at the instants of the samples; join by `record_id`. Accelerations and bearing
+What no sensor sees, of {which}, at the instants of the samples; join by `record_id`. Accelerations and bearing
 forces are low-passed like the signals, everything else is taken at the instant.
 """
 
@@ -214,7 +214,7 @@ signals = np.stack(frame["{column}"])                   # (rows, samples)
 
 import polars as pl
 labels = pl.read_parquet("metadata/{split}.parquet")
-frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.states[-1].name}").collect()
+frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.state_names[-1]}").collect()
 
 import pyarrow.dataset as ds
 for batch in ds.dataset("data", format="parquet").to_batches(columns=["{column}"], batch_size=32):

@@ -56,7 +56,7 @@ def making(config: Config) -> str:
     )
     listed = "\n".join(fill(step, WIDTH, subsequent_indent="   ", break_on_hyphens=False) for step in steps)
     states = "\n".join(_state_text(state) for state in config.states)
-    return f"## How it was made\n\n{listed}\n\nStates:\n\n{states}\n"
+    return config.names.text(f"## How it was made\n\n{listed}\n\nStates:\n\n{states}\n")
 
 
 def _state_text(state: State) -> str:
@@ -76,6 +76,8 @@ def _teeth_text(config: Config) -> str:
     gears = config.gears
     if config.planetary is not None:
         return _planetary_text(config)
+    if config.machine is not None:
+        return _machine_text(config)
     if not gears.pairs:
         first = f"A spur pair with {gears.pinion.teeth} and {gears.gear.teeth} teeth"
         return f"{first}.{_stages_text(config)}"
@@ -94,6 +96,17 @@ def _stages_text(config: Config) -> str:
         return ""
     pairs = [f"`{one.name}` with {one.gears.pinion.teeth} and {one.gears.gear.teeth}" for one in config.stages]
     return f" Behind it, in the order of power: {', '.join(pairs)}; all meshes are simulated together."
+
+
+def _machine_text(config: Config) -> str:
+    """Say which gears mesh, by the names of the user."""
+    names, pairs = config.names, (config.gears, *(stage.gears for stage in config.stages))
+    meshes = [
+        f"`{own}`, in which {names.gears[2 * i][1]} with {pair.pinion.teeth} teeth drives {names.gears[2 * i + 1][1]} "
+        f"with {pair.gear.teeth}"
+        for i, ((_, own), pair) in enumerate(zip(names.meshes, pairs, strict=True))
+    ]
+    return f"Spur gears in the order of power: {'; '.join(meshes)}; all meshes are simulated together."
 
 
 def _planetary_text(config: Config) -> str:
@@ -120,7 +133,9 @@ def damage_text(config: Config) -> str:
         return " ".join(["No teeth are damaged.", *changed] if changed else ["None: every state is healthy."])
     nouns = list(dict.fromkeys(noun for kind in kinds if kind.nouns for noun in kind.nouns.split(" and ")))
     said = [_flank_text(config, " and ".join(nouns))] if nouns else []
-    return " ".join([*said, *dict.fromkeys(kind.acts for kind in kinds if kind.acts), GROWTH, *changed])
+    return " ".join(
+        [*said, *dict.fromkeys(config.names.of_any_mesh(kind.acts) for kind in kinds if kind.acts), GROWTH, *changed]
+    )
 
 
 def _flank_text(config: Config, nouns: str) -> str:
@@ -168,7 +183,7 @@ def _sensing_text(config: Config) -> str:
 
 def _acts(config: Config) -> list[str]:
     """Say how kinds of sensors read the model that need saying."""
-    return list(dict.fromkeys(sensor.acts for sensor in config.sensors if sensor.acts))
+    return list(dict.fromkeys(config.names.of_any_mesh(one.acts) for one in config.sensors if one.acts))
 
 
 def quantities_text(config: Config) -> str:
@@ -244,4 +259,4 @@ def background_text(config: Config) -> str:
     if not parts:
         return ""
     listed = " and ".join(part for part in (", ".join(parts[:-1]), parts[-1]) if part)
-    return f"A healthy machine adds {listed} (`background`); the levels belong to the {section.redraw}. "
+    return f"A healthy machine adds {listed} (`background`); the levels belong to the gearbox. "

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import BinaryIO, NamedTuple
 from zlib import crc32
@@ -17,7 +17,8 @@ from zlib import crc32
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from siggen.dataset.storage import READ_BYTES, Storage
+from siggen.dataset.object_file import ObjectFile
+from siggen.dataset.storage import HOW_TO_GO_ON, READ_BYTES, Storage
 from siggen.errors import DatasetError
 
 BLOCK_BYTES = 1 << 16
@@ -94,6 +95,11 @@ class CheckedFile(io.RawIOBase):
         self._place += len(found)
         return found
 
+    def expect(self, first: int, end: int) -> None:
+        """Fetch the blocks of a stretch at once where they come from a store."""
+        if isinstance(self._file, ObjectFile):
+            self._file.expect(first - first % BLOCK_BYTES, -(-end // BLOCK_BYTES) * BLOCK_BYTES)
+
     def close(self) -> None:
         """Close the file below as well."""
         self._file.close()
@@ -105,9 +111,61 @@ class CheckedFile(io.RawIOBase):
             raise OSError(f"bytes {begin} to {begin + len(block) - 1} do not match their checksum")
 
 
+class CheckedTable(NamedTuple):
+    """A Parquet file over a checked one; of a store, a row group is one request."""
+
+    file: CheckedFile
+    parquet: pq.ParquetFile
+
+    @property
+    def schema(self) -> pa.Schema:
+        """The columns."""
+        return self.parquet.schema_arrow
+
+    @property
+    def footer(self) -> pq.FileMetaData:
+        """What the file says of its row groups."""
+        return self.parquet.metadata
+
+    def groups(self, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
+        """Yield the row groups one by one, all columns or some."""
+        for number in range(self.footer.num_row_groups):
+            yield self.group(number, columns)
+
+    def group(self, number: int, columns: Sequence[str] | None = None) -> pa.Table:
+        """Return the rows of a row group, all columns or some."""
+        self.file.expect(*self._span(number, columns))
+        wanted = None if columns is None else list(columns)
+        return self.parquet.read_row_group(number, columns=wanted, use_threads=False)
+
+    def read(self, columns: Sequence[str] | None = None) -> pa.Table:
+        """Return all rows, all columns or some."""
+        if columns is None:
+            self.file.expect(0, self.file.seek(0, os.SEEK_END))
+        return self.parquet.read(columns=None if columns is None else list(columns), use_threads=False)
+
+    def _span(self, number: int, columns: Sequence[str] | None) -> tuple[int, int]:
+        """Return where column chunks of a row group lie: first byte, byte behind the last."""
+        group = self.footer.row_group(number)
+        chunks = [group.column(i) for i in range(self.footer.num_columns)]
+        wanted = [c for c in chunks if columns is None or c.path_in_schema.partition(".")[0] in columns]
+        firsts = [c.dictionary_page_offset or c.data_page_offset for c in wanted]
+        ends = [first + c.total_compressed_size for first, c in zip(firsts, wanted, strict=True)]
+        return min(firsts, default=0), max(ends, default=0)
+
+
 @contextmanager
-def parquet_file(storage: Storage, name: str, crc32_per_64_kib: str) -> Iterator[pq.ParquetFile]:
+def parquet_file(
+    storage: Storage, name: str, crc32_per_64_kib: str, size: int | None = None, footer: pq.FileMetaData | None = None
+) -> Iterator[CheckedTable]:
     """Open a Parquet object of a set; no byte of it is decoded unchecked.
+
+    Parameters
+    ----------
+    size : int, optional
+        Its promised bytes, which need not be asked for then.
+    footer : FileMetaData, optional
+        Its footer, if it was read before.
 
     Raises
     ------
@@ -117,15 +175,12 @@ def parquet_file(storage: Storage, name: str, crc32_per_64_kib: str) -> Iterator
     """
     try:
         with (
-            storage.open(name) as file,
-            pq.ParquetFile(CheckedFile(file, crc32_per_64_kib), page_checksum_verification=True) as table,
+            CheckedFile(storage.open(name, size), crc32_per_64_kib) as file,
+            pq.ParquetFile(file, metadata=footer, page_checksum_verification=True) as table,
         ):
-            yield table
+            yield CheckedTable(file, table)
     except (OSError, pa.ArrowException) as error:
-        raise DatasetError(
-            f"{storage.location}/{name} cannot be read ({error}); `siggen verify {storage.location}` finds all "
-            "damaged files; delete them, and `siggen generate` with the set's config.yaml makes them again"
-        ) from error
+        raise DatasetError(f"{storage.location}/{name} cannot be read ({error}); {HOW_TO_GO_ON}") from error
 
 
 def _crc(block: bytes) -> str:

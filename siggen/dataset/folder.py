@@ -11,6 +11,8 @@ from siggen.config import parse, yaml_text
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.inventory import Inventory
 from siggen.dataset.manifest import CONFIG, MANIFEST, read_manifest
+from siggen.dataset.object_name import CHECKSUMS
+from siggen.dataset.shard_index import promised_files
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
 
@@ -50,8 +52,13 @@ def _has_every_file(storage: Storage) -> bool:
     except VerificationError:
         return False
     if not isinstance(facts, Inventory):
-        read_manifest(storage)  # says why it is not touched
-    return all(sizes.get(name) == file.bytes for name, file in facts.files.items())
+        facts = read_manifest(storage)  # says why it is not touched
+    if any(sizes.get(name) != file.bytes for name, file in facts.files.items()):
+        return False
+    try:
+        return all(sizes.get(name) == file.bytes for name, file in promised_files(storage, facts.files[CHECKSUMS]))
+    except DatasetError:
+        return False
 
 
 def _refuse_strangers(storage: Storage) -> None:

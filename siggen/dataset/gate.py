@@ -16,8 +16,8 @@ from typing import Any, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from siggen.columns.versions import READ_VERSIONS
-from siggen.dataset.inventory import HashedFiles, Inventory, ListedShard, SidecarFacts
-from siggen.dataset.object_name import data_name, internals_name, sidecar_name
+from siggen.dataset.inventory import HashedFiles, Inventory, SidecarFacts
+from siggen.dataset.object_name import CHECKSUMS, INDEX, data_name, internals_name, sidecar_name
 from siggen.dataset.seal import DIGEST, check_seal
 from siggen.errors import VerificationError
 
@@ -96,33 +96,16 @@ def _refuse(name: str, problems: list[str]) -> None:
 
 
 def _unfit(facts: Inventory) -> Iterator[str]:
-    """Yield how a manifest contradicts itself."""
-    for shard in facts.shards:
-        yield from _unfit_listing(facts, shard)
-    if len({shard.shard for shard in facts.shards}) != len(facts.shards):
-        yield "shards: received one twice; allowed: every shard once"
-    for split in sorted({*facts.splits, *(shard.split for shard in facts.shards)}):
-        listed = sum(shard.rows for shard in facts.shards if shard.split == split)
-        counted = facts.splits[split].rows if split in facts.splits else "no split"
-        if listed != counted:
-            yield f"splits.{split}: received {counted}; allowed: {listed} rows, as in its shards"
-    if not facts.shards or sum(shard.rows for shard in facts.shards) != facts.rows:
-        yield f"rows: received {facts.rows}; allowed: those of all shards, of which there is at least one"
+    """Yield how a manifest contradicts itself; `shard_index` compares it with the shards."""
+    for name in (INDEX, CHECKSUMS):
+        if name not in facts.files or facts.files[name].crc32_per_64_kib is None:
+            yield f"files: received none named {name} with checksums of its blocks; every finished set has it"
+    if not facts.splits or sum(split.rows for split in facts.splits.values()) != facts.rows:
+        yield f"rows: received {facts.rows}; allowed: those of all splits, of which there is at least one"
     if not facts.channels or len({channel.column for channel in facts.channels}) != len(facts.channels):
         yield "channels: received none, or two of one column; allowed: every channel once"
     if facts.fs_hz * facts.duration_s > MOST_SAMPLES:
         yield f"duration_s: received {facts.duration_s:g}; allowed: at most {MOST_SAMPLES} samples"
-
-
-def _unfit_listing(facts: Inventory, shard: ListedShard) -> Iterator[str]:
-    yield from _unfit_shard(shard.shard, shard.split, shard.file, shard.internals or "")
-    if bool(shard.internals) != bool(facts.internals):
-        yield f"{shard.shard}: internals: allowed: in all shards, with the quantities named in the manifest, or in none"
-    if shard.environment >= len(facts.environments):
-        yield f"{shard.shard}: environment: received {shard.environment}; allowed: below {len(facts.environments)}"
-    for file in filter(None, (shard.file, shard.internals, sidecar_name(shard.shard))):
-        if file not in facts.files:
-            yield f"files: received none named {file}; allowed: every file of a shard"
 
 
 def _unfit_shard(shard: str, split: str, data: str, internals: str) -> Iterator[str]:

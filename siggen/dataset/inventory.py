@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
@@ -50,14 +51,14 @@ class PromisedFile:
 class ListedShard:
     """A shard of a finished set: its files, its inclusive ranges of ids, the number of its environment."""
 
-    shard: ShardName
-    split: Split
-    file: ObjectName
-    rows: Count
-    specimens: Ranges
-    records: Ranges
-    environment: Count
-    internals: ObjectName | None = None
+    shard: str
+    split: str
+    file: str
+    rows: int
+    specimens: Sequence[Range]
+    records: Sequence[Range]
+    environment: int
+    internals: str | None = None
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -137,8 +138,8 @@ class Inventory(HashedFiles):
     fs_hz: Quantity
     duration_s: Quantity
     splits: dict[Split, ListedSplit]
+    rows_per_group: Annotated[int, Field(ge=1, le=LARGEST)]
     channels: tuple[Channel, ...]
-    shards: tuple[ListedShard, ...]
     environments: tuple[Environment, ...]
     failures: tuple[RecordFailure, ...]
     internals: tuple[ListedQuantity, ...] = ()

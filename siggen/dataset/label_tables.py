@@ -49,7 +49,7 @@ def _label_batches(storage: Storage, sidecar: Sidecar, columns: Sequence[str]) -
     # read again, since a run does not keep the checksums of all shards
     facts = read_sidecar(storage, sidecar.shard).data
     with parquet_file(storage, facts.name, facts.crc32_per_64_kib) as file:
-        yield from file.read(columns=list(columns), use_threads=False).to_batches()
+        yield from file.read(columns).to_batches()
 
 
 def _damage_batches(

@@ -1,4 +1,4 @@
-"""manifest.json, written last: what every other file of a finished set must be."""
+"""manifest.json, written last: what a finished set is; `shard_index` has its shards."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from siggen.columns.versions import READ_VERSIONS, SCHEMA_VERSION, SIMULATION_VE
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.inventory import Inventory
 from siggen.dataset.shard import FileFacts
+from siggen.dataset.shard_index import write_index
 from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError, VerificationError
@@ -25,6 +26,7 @@ INJECTED = "injected.json"
 """In a set of recordings with injected damage, as `siggen-diagnostics calibrate --inject` writes it."""
 METADATA_FOLDER = "metadata"
 DAMAGE_FOLDER = "damage"
+LIFE_FOLDER = "life"
 SPLITS = ("train", "validation", "test")
 
 
@@ -35,7 +37,7 @@ def build_manifest(
     tables: Sequence[FileFacts],
     written: Sequence[str],
 ) -> dict[str, Any]:
-    """Return the manifest of a set whose other files are all stored.
+    """Write the index of a set whose other files are all stored, and return its manifest.
 
     Parameters
     ----------
@@ -45,19 +47,21 @@ def build_manifest(
     sidecars : sequence of Sidecar
         All shards, by split and number; their data files were hashed when they were committed or taken over.
     tables : sequence of FileFacts
-        The tables of labels and of damage.
+        The tables of labels, of damage and of lives.
     written : sequence of str
-        Names of all other files but the sidecars; hashed here.
+        Names of all other files but those of the shards; hashed here.
     """
-    environments = sorted({json.dumps(dict(sidecar.environment), sort_keys=True) for sidecar in sidecars})
-    files = {file.name: {"bytes": file.bytes, "sha256": file.sha256} for sidecar in sidecars for file in sidecar.files}
-    for table in tables:
+    makers = [json.dumps(dict(sidecar.environment), sort_keys=True) for sidecar in sidecars]
+    environments = sorted(set(makers))
+    own = write_index(storage, sidecars, [environments.index(maker) for maker in makers])
+    files = {}
+    for table in (*own, *tables):
         files[table.name] = {
             "bytes": table.bytes,
             "sha256": table.sha256,
             "crc32_per_64_kib": table.crc32_per_64_kib,
         }
-    for name in (*written, *(sidecar.name for sidecar in sidecars)):
+    for name in written:
         files[name] = {"bytes": storage.size(name), "sha256": sha256(storage, name)}
     return {
         "format": "siggen data set",
@@ -67,22 +71,8 @@ def build_manifest(
         "splits": _splits(sidecars),
         "rows": sum(sidecar.data.rows for sidecar in sidecars),
         "failures": [asdict(failure) for sidecar in sidecars for failure in sidecar.failures],
-        "shards": [_shard(sidecar, environments) for sidecar in sidecars],
         "environments": [json.loads(text) for text in environments],
         "files": files,
-    }
-
-
-def _shard(sidecar: Sidecar, environments: Sequence[str]) -> dict[str, Any]:
-    return {
-        **({} if sidecar.internals is None else {"internals": sidecar.internals.name}),
-        "shard": sidecar.shard,
-        "split": sidecar.split,
-        "file": sidecar.data.name,
-        "rows": sidecar.data.rows,
-        "specimens": sidecar.specimens,
-        "records": sidecar.records,
-        "environment": environments.index(json.dumps(dict(sidecar.environment), sort_keys=True)),
     }
 
 

@@ -57,6 +57,12 @@ class ObjectFile(io.RawIOBase):
         self._place = end
         return found
 
+    def expect(self, first: int, end: int) -> None:
+        """Fetch a stretch at once, of which all is going to be read piece by piece."""
+        first, end = max(first, 0), min(end, self._size)
+        if first < end and not self._kept_at <= first <= end <= self._kept_at + len(self._kept):
+            self._kept_at, self._kept = first, self._fetch(first, end)
+
     def _keep(self, end: int) -> None:
         """Fetch from the place on, at least to `end`."""
         in_a_row = self._kept_at <= self._place <= self._kept_at + len(self._kept) and self._kept != b""

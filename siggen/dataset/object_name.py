@@ -10,6 +10,9 @@ import re
 from siggen.errors import DatasetError
 
 MOST_CHARACTERS = 500
+INDEX, CHECKSUMS = "index.parquet", "checksums.parquet"
+"""One row per shard each (`shard_index`)."""
+
 DATA_FOLDER, INTERNALS_FOLDER, SIDECAR_FOLDER = "data", "internals", "shards"
 
 PART = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+=@-]{0,219}")

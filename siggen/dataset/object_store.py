@@ -84,17 +84,15 @@ class ObjectStore:
         """
         return self._fetch(name, None)
 
-    def open(self, name: str) -> BinaryIO:
-        """Open the object for reading; pieces are fetched as they are asked for.
+    def open(self, name: str, size: int | None = None) -> BinaryIO:
+        """Open the object for reading; pieces are fetched as they are asked for, its size only if it is not promised.
 
         Raises
         ------
         DatasetError
             If it is missing or cannot be reached.
         """
-        size = self._size(name)
-        if size is None:
-            raise self._missing(name)
+        size = self.size(name) if size is None else size
         return cast("BinaryIO", ObjectFile(size, lambda first, end: self._fetch(name, (first, end))))
 
     def size(self, name: str) -> int:

@@ -1,43 +1,38 @@
-"""What the manifest of a finished set promises of its files, as a reader checks it: sizes, hashes, checksums."""
+"""What a finished set promises of its files, as a reader checks it: sizes, hashes, checksums of blocks."""
 
 from __future__ import annotations
 
 import hashlib
+from collections import OrderedDict
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-from siggen.dataset.gate import sidecar_facts
+import pyarrow.parquet as pq
+
+from siggen.dataset.checked_file import CheckedTable, parquet_file
 from siggen.dataset.inventory import Inventory, PromisedFile
-from siggen.dataset.object_name import sidecar_name
-from siggen.dataset.storage import Storage
-from siggen.errors import DatasetError, VerificationError
+from siggen.dataset.shard_index import ShardIndex
+from siggen.dataset.storage import HOW_TO_GO_ON, Storage
+from siggen.errors import DatasetError
+
+MOST_FOOTERS = 256
+"""Footers of files that are kept, each about 50 kB: a row of a shard that was read before is one request."""
 
 
 class Promises:
-    """The files of a set: the manifest holds the checksums of the tables, each sidecar those of its shard.
+    """The files of a set: the manifest promises the small ones and the tables, the index those of the shards.
 
     Parameters
     ----------
     storage : Storage
     inventory : Inventory
+    index : ShardIndex
     """
 
-    def __init__(self, storage: Storage, inventory: Inventory) -> None:
+    def __init__(self, storage: Storage, inventory: Inventory, index: ShardIndex) -> None:
         self._storage = storage
-        self._files = inventory.files
-        self._owners = {name: one.shard for one in inventory.shards for name in (one.file, one.internals) if name}
-        self._of_shard: dict[str, dict[str, str]] = {}
-
-    def check_sizes(self) -> None:
-        """Compare the size of every file that is there; a missing one is named when it is read.
-
-        Raises
-        ------
-        DatasetError
-            Naming the first file of another size.
-        """
-        sizes = self._storage.sizes()
-        for name, facts in self._files.items():
-            if name in sizes and sizes[name] != facts.bytes:
-                raise self._broken(name, f"it has {sizes[name]} bytes instead of {facts.bytes}")
+        self._files, self._index = inventory.files, index
+        self._footers: OrderedDict[str, pq.FileMetaData] = OrderedDict()
 
     def content(self, name: str) -> bytes:
         """Return a small file whole.
@@ -52,43 +47,34 @@ class Promises:
             raise self._broken(name, "SHA-256 differs")
         return content
 
-    def crc32(self, name: str) -> str:
-        """Return the checksums of a file's blocks.
+    @contextmanager
+    def table(self, name: str) -> Iterator[CheckedTable]:
+        """Open a Parquet file of the set; what makes it unreadable becomes a message that says how to go on.
 
         Raises
         ------
         DatasetError
-            If its sidecar is missing or not what the manifest promises, or nothing promises the blocks.
+            If it is missing, or not what is promised of it.
         """
         promised = self._promised(name)
-        if promised.crc32_per_64_kib is not None:
-            return promised.crc32_per_64_kib
-        if name not in self._owners:
+        if promised.crc32_per_64_kib is None:
             raise self._broken(name, "it has no checksums")
-        return self._of_its_shard(name)
+        footer = self._footers.get(name)
+        with parquet_file(self._storage, name, promised.crc32_per_64_kib, promised.bytes, footer) as table:
+            self._keep(name, table.footer)
+            yield table
+
+    def _keep(self, name: str, footer: pq.FileMetaData) -> None:
+        self._footers[name] = footer
+        self._footers.move_to_end(name)
+        if len(self._footers) > MOST_FOOTERS:
+            self._footers.popitem(last=False)
 
     def _promised(self, name: str) -> PromisedFile:
-        if name not in self._files:
-            raise self._broken(name, "the manifest does not name it")
-        return self._files[name]
-
-    def _of_its_shard(self, name: str) -> str:
-        shard = self._owners[name]
-        if shard not in self._of_shard:
-            sidecar = sidecar_name(shard)
-            try:
-                facts = sidecar_facts(sidecar, self.content(sidecar))
-            except VerificationError as error:
-                raise self._broken(sidecar, str(error)) from error
-            tables = (facts.data, facts.internals) if facts.internals else (facts.data,)
-            self._of_shard[shard] = {table.name: table.crc32_per_64_kib for table in tables}
-        if name not in self._of_shard[shard]:
-            raise self._broken(name, "the sidecar of its shard does not name it")
-        return self._of_shard[shard][name]
+        promised = self._files.get(name) or self._index.promised(name)
+        if promised is None:
+            raise self._broken(name, "neither the manifest nor the index names it")
+        return promised
 
     def _broken(self, name: str, why: str) -> DatasetError:
-        where = self._storage.location
-        return DatasetError(
-            f"{where}/{name} is not the file that the manifest promises ({why}); `siggen verify {where}` finds all "
-            "damaged files; delete them, and `siggen generate` with the set's config.yaml makes them again"
-        )
+        return DatasetError(f"{self._storage.location}/{name} is not the promised file ({why}); {HOW_TO_GO_ON}")

@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.parquet as pq
 import yaml
 
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
-from siggen.dataset.checked_file import parquet_file
-from siggen.dataset.id_ranges import in_ranges
-from siggen.dataset.inventory import Inventory, ListedShard
-from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
+from siggen.dataset.checked_file import CheckedTable
+from siggen.dataset.inventory import Inventory, ListedShard, PromisedFile
+from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
+from siggen.dataset.object_name import CHECKSUMS
 from siggen.dataset.promises import Promises
+from siggen.dataset.shard_index import ShardIndex, promised_files
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
 from siggen.keys.column import Column
+
+if TYPE_CHECKING:
+    from siggen.config.names import Names
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
@@ -46,9 +49,11 @@ class Dataset:
     path : Path
         For a set in an object store a path that is none of this machine: s3://bucket/set.
     manifest : dict
-        Content of manifest.json: identity, counts, failures, shards, environments, hashes.
+        Content of manifest.json: identity, counts, failures, environments, hashes.
     inventory : Inventory
         The same as typed facts.
+    index : ShardIndex
+        The shards, one by one.
     config : dict
         Content of config.yaml.
     splits : tuple of str
@@ -61,7 +66,8 @@ class Dataset:
     Raises
     ------
     DatasetError
-        If there is no finished set, or a file does not have the size that the manifest promises.
+        If there is no finished set, or manifest, index or configuration are not what is promised. Other files are
+        compared when they are read.
     """
 
     def __init__(self, storage: Storage) -> None:
@@ -69,8 +75,8 @@ class Dataset:
         self.path: PurePath = storage.path
         self.inventory: Inventory = read_manifest(storage)
         self.manifest: dict[str, Any] = self.inventory.content
-        self._promises = Promises(storage, self.inventory)
-        self._promises.check_sizes()
+        self.index = ShardIndex(storage, self.inventory)
+        self._promises = Promises(storage, self.inventory, self.index)
         self.config: dict[str, Any] = self._read_config()
         self.splits: tuple[str, ...] = tuple(s for s in SPLITS if s in self.inventory.splits)
         self.channels: tuple[Channel, ...] = self.inventory.channels
@@ -85,6 +91,12 @@ class Dataset:
         channels = counted(len(self.channels), "channel")
         return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
 
+    def names(self) -> tuple[Names, dict[str, str]]:
+        """Return the user's names of gears, shafts and meshes, and the program's name of columns with an own one."""
+        from siggen.dataset.set_names import set_names
+
+        return set_names(self.config)
+
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.
 
@@ -98,6 +110,20 @@ class Dataset:
     def damage(self, split: str | None = None) -> pa.Table:
         """Return one row per single damage of every record of a split, or of all splits."""
         return self._table(DAMAGE_FOLDER, split, None)
+
+    def life(self, table: str, split: str | None = None) -> pa.Table:
+        """Return a table of a set that runs to failure: units, inspections, teeth, pits or outlook; as `labels`.
+
+        Raises
+        ------
+        UsageError
+            If the set holds no such table, or the split does not exist.
+        """
+        known = sorted({name.split("/")[1] for name in self.inventory.files if name.startswith(f"{LIFE_FOLDER}/")})
+        if table not in known:
+            allowed = ", ".join(known) or "none: the set's configuration has no section life"
+            raise UsageError(f"{self.path}: received the table {table!r} of life/; allowed: {allowed}")
+        return self._table(f"{LIFE_FOLDER}/{table}", split, None)
 
     def records(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None
@@ -118,7 +144,7 @@ class Dataset:
         UsageError
             If the split or a column does not exist.
         """
-        yield from self._batches([shard.file for shard in self._shards(split)], columns, batch_rows)
+        yield from self._batches((shard.file for shard in self._shards(split)), columns, batch_rows)
 
     def row_groups(self, split: str | None = None) -> tuple[RowGroup, ...]:
         """Return the row groups of a split, or of all splits, in the order of the labels; `row_group` reads one.
@@ -128,12 +154,13 @@ class Dataset:
         UsageError
             If the split does not exist.
         """
-        found = []
-        for shard in self._shards(split):
-            with self._parquet(shard.file) as file:
-                footer = file.metadata
-                found += [RowGroup(shard.file, k, footer.row_group(k).num_rows) for k in range(file.num_row_groups)]
-        return tuple(found)
+        size = self.inventory.rows_per_group
+        files = (one for name in self._splits(split) for one in self.index.rows_of_files(name))
+        return tuple(
+            RowGroup(file, number, min(size, rows - number * size))
+            for file, rows in files
+            for number in range(-(-rows // size))
+        )
 
     def row_group(self, group: RowGroup, columns: Sequence[str] | None = None) -> pa.RecordBatch:
         """Return the rows of one row group with signals, by any process and in any order.
@@ -143,9 +170,12 @@ class Dataset:
         UsageError
             If a column does not exist.
         """
-        with self._parquet(group.file) as file:
-            self._check_columns(file.schema_arrow, columns)
-            table = file.read_row_group(group.number, columns=_as_list(columns), use_threads=False)
+        with self._promises.table(group.file) as file:
+            self._check_columns(file.schema, columns)
+            footer = file.footer
+            if group.number >= footer.num_row_groups or footer.row_group(group.number).num_rows != group.rows:
+                raise DatasetError(f"{self.path}/{group.file}: row group {group.number} is not the one that is listed")
+            table = file.group(group.number, columns)
         return table.combine_chunks().to_batches()[0]
 
     def internals(
@@ -159,7 +189,7 @@ class Dataset:
             If the set stores none, or the split or a column does not exist.
         """
         self._check_internals()
-        yield from self._batches([shard.internals or "" for shard in self._shards(split)], columns, batch_rows)
+        yield from self._batches((shard.internals or "" for shard in self._shards(split)), columns, batch_rows)
 
     def record_internals(self, record_id: int) -> dict[str, np.ndarray] | None:
         """Return name -> float32 (n,) of one record, or None if the set does not store those of this record.
@@ -170,11 +200,9 @@ class Dataset:
             If the set stores none at all.
         """
         self._check_internals()
-        for shard in self._shards(None):
-            if shard.internals is not None and in_ranges(record_id, shard.records):
-                row = self._row(shard.internals, record_id)
-                return None if row is None else as_internals(row)
-        return None
+        shard = self.index.owner(record_id)
+        row = None if shard is None or shard.internals is None else self._row(shard.internals, record_id)
+        return None if row is None else as_internals(row)
 
     def _check_internals(self) -> None:
         if not self.internal_columns:
@@ -184,15 +212,14 @@ class Dataset:
             )
 
     def _batches(
-        self, names: Sequence[str], columns: Sequence[str] | None, batch_rows: int | None
+        self, names: Iterable[str], columns: Sequence[str] | None, batch_rows: int | None
     ) -> Iterator[pa.RecordBatch]:
         """Yield the rows of all files, a row group at a time."""
         for name in names:
-            with self._parquet(name) as file:
-                self._check_columns(file.schema_arrow, columns)
-                for group in range(file.num_row_groups):
-                    table = file.read_row_group(group, columns=_as_list(columns), use_threads=False).combine_chunks()
-                    yield from table.to_batches(max_chunksize=batch_rows)
+            with self._promises.table(name) as file:
+                self._check_columns(file.schema, columns)
+                for group in file.groups(columns):
+                    yield from group.combine_chunks().to_batches(max_chunksize=batch_rows)
 
     def record(self, record_id: int) -> dict[str, Any]:
         """Return one record: labels as Python values, channels as float32 (n,), `tacho_s` as float64 (k,).
@@ -204,34 +231,29 @@ class Dataset:
         UsageError
             If no row has this id; the message says whether the record failed or was never planned.
         """
-        for shard in self._shards(None):
-            if in_ranges(record_id, shard.records) and (row := self._row(shard.file, record_id)) is not None:
-                return as_record(row)
-        raise UsageError(self._why_no_record(record_id))
+        shard = self.index.owner(record_id)
+        row = None if shard is None else self._row(shard.file, record_id)
+        if row is None:
+            raise UsageError(self._why_no_record(record_id))
+        return as_record(row)
 
     def _row(self, name: str, record_id: int) -> pa.Table | None:
-        with self._parquet(name) as file:
+        with self._promises.table(name) as file:
             return row_of(file, record_id)
 
     def _why_no_record(self, record_id: int) -> str:
         for failure in self.inventory.failures:
             if failure.record_id == record_id:
                 return f"record {record_id} could not be simulated: {failure.status} ({failure.reason})"
-        planned = [id_range for shard in self._shards(None) for id_range in shard.records]
-        last = max((last for _, last in planned), default=-1)
-        return f"{self.path} has no record {record_id}; it has records 0 to {last}"
+        return f"{self.path} has no record {record_id}; it has records 0 to {int(self.index.records.last.max())}"
 
     def _table(self, folder: str, split: str | None, columns: Sequence[str] | None) -> pa.Table:
         tables = []
         for name in self._splits(split):
-            with self._parquet(f"{folder}/{name}.parquet") as file:
-                self._check_columns(file.schema_arrow, columns)
-                tables.append(file.read(columns=_as_list(columns), use_threads=False))
+            with self._promises.table(f"{folder}/{name}.parquet") as file:
+                self._check_columns(file.schema, columns)
+                tables.append(file.read(columns))
         return pa.concat_tables(tables)
-
-    def _parquet(self, name: str) -> AbstractContextManager[pq.ParquetFile]:
-        """Open a file of the set; what makes it unreadable becomes a message that says how to go on."""
-        return parquet_file(self._storage, name, self._promises.crc32(name))
 
     def _splits(self, split: str | None) -> tuple[str, ...]:
         if split is None:
@@ -242,7 +264,12 @@ class Dataset:
 
     def _shards(self, split: str | None) -> Iterator[ListedShard]:
         for name in self._splits(split):
-            yield from (shard for shard in self.inventory.shards if shard.split == name)
+            yield from self.index.shards(name)
+
+    @cached_property
+    def files(self) -> dict[str, PromisedFile]:
+        """Every file of the set but the manifest, by name, and what is promised of it."""
+        return {**self.inventory.files, **dict(promised_files(self._storage, self.inventory.files[CHECKSUMS]))}
 
     def _check_columns(self, schema: pa.Schema, columns: Sequence[str] | None) -> None:
         unknown = [column for column in columns or () if column not in schema.names]
@@ -260,12 +287,12 @@ class Dataset:
             raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
 
 
-def row_of(file: pq.ParquetFile, record_id: int) -> pa.Table | None:
+def row_of(file: CheckedTable, record_id: int) -> pa.Table | None:
     """Return the row of a record in a table whose first column is `record_id`; None if there is none."""
-    for group in range(file.num_row_groups):
-        statistics = file.metadata.row_group(group).column(0).statistics
+    for group in range(file.footer.num_row_groups):
+        statistics = file.footer.row_group(group).column(0).statistics
         if statistics is None or not statistics.has_min_max or statistics.min <= record_id <= statistics.max:
-            table = file.read_row_group(group, use_threads=False)
+            table = file.group(group)
             row = table.filter(pc.equal(table["record_id"], record_id))
             if row.num_rows:
                 return row
@@ -291,10 +318,6 @@ def as_internals(row: pa.Table | pa.RecordBatch) -> dict[str, np.ndarray]:
     """Return the first row of internal quantities: name -> float32 (n,)."""
     series = [field.name for field in row.schema if pa.types.is_fixed_size_list(field.type)]
     return {name: signal_matrix(row.column(name))[0] for name in series}
-
-
-def _as_list(columns: Sequence[str] | None) -> list[str] | None:
-    return None if columns is None else list(columns)
 
 
 def open(path: PurePath | str) -> Dataset:

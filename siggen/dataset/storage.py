@@ -19,6 +19,10 @@ LEFTOVER_SUFFIX = ".siggen-part"
 """Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
 
 READ_BYTES = 1 << 20
+HOW_TO_GO_ON = (
+    "`siggen verify` finds all damaged files of a set; delete them, and `siggen generate` with the set's config.yaml "
+    "makes them again"
+)
 UNWRITABLE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO}
 """What the user of a disk can mend: it is full, at its quota, read-only, not theirs, or broken."""
 
@@ -43,8 +47,11 @@ class Storage(Protocol):
     def get(self, name: str) -> bytes:
         """Return the whole object."""
 
-    def open(self, name: str) -> BinaryIO:
-        """Open an object for reading with seek (what a Parquet reader needs)."""
+    def open(self, name: str, size: int | None = None) -> BinaryIO:
+        """Open an object for reading with seek (what a Parquet reader needs).
+
+        A promised size saves a store one request. Whoever gives it compares what is read with checksums.
+        """
 
     def size(self, name: str) -> int:
         """Return the object's size in bytes."""
@@ -145,19 +152,23 @@ class LocalFolder:
         with self.open(name) as file:
             return file.read()
 
-    def open(self, name: str) -> BinaryIO:
+    def open(self, name: str, size: int | None = None) -> BinaryIO:
         """Open the file for reading.
 
         Raises
         ------
         DatasetError
-            If there is no such file, it cannot be read, is no regular file, or a link leads out of the folder.
+            If there is no such file, it cannot be read, is no regular file, has another size than the promised one,
+            or a link leads out of the folder.
         """
         path = self._file(name)
         self._check_links(path)
         try:
-            if not stat.S_ISREG(path.stat().st_mode):  # a pipe would wait for ever, a device give without end
+            found = path.stat()
+            if not stat.S_ISREG(found.st_mode):  # a pipe would wait for ever, a device give without end
                 raise DatasetError(f"{path} is no regular file; a set has no others")
+            if size not in (None, found.st_size):
+                raise DatasetError(f"{path} has {found.st_size} bytes instead of {size}; {HOW_TO_GO_ON}")
             return path.open("rb")
         except FileNotFoundError as error:
             raise DatasetError(f"{path} is missing; generating the same set again restores it") from error

@@ -9,8 +9,7 @@ from functools import partial
 from typing import Any
 
 from siggen.engines.orphan import end_with, ending_with_this
-from siggen.engines.protocol import Result, Results, Task
-from siggen.engines.task_failure import task_error
+from siggen.engines.protocol import Result, Results, Task, task_error
 from siggen.engines.window import windowed
 from siggen.engines.worker import ONE_THREAD, RAISED, answer
 from siggen.errors import EngineError, UsageError

@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import wait
 from typing import Any
 
-from siggen.engines.protocol import Result, Results, Task, Unfinished
-from siggen.engines.task_failure import task_error
+from siggen.engines.protocol import Result, Results, Task, Unfinished, task_error
 from siggen.engines.window import WINDOW_PER_WORKER
 from siggen.engines.worker import DONE, OUT_OF_MEMORY, RAISED, READY, Worker
 from siggen.errors import EngineError, UsageError

@@ -17,8 +17,7 @@ from typing import Any
 from siggen.engines import orphan
 from siggen.engines.orphan import end_with
 from siggen.engines.processes import TASK_ATTEMPTS
-from siggen.engines.protocol import Result, Results, Task
-from siggen.engines.task_failure import task_error
+from siggen.engines.protocol import Result, Results, Task, task_error
 from siggen.engines.window import windowed
 from siggen.engines.worker import ONE_THREAD, RAISED, answer
 from siggen.errors import EngineError, UsageError

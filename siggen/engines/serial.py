@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from siggen.engines.protocol import Result, Results, Task, Unfinished
-from siggen.engines.task_failure import failure_text, task_error
+from siggen.engines.protocol import Result, Results, Task, Unfinished, failure_text, task_error
 from siggen.errors import EngineError
 
 

@@ -103,7 +103,7 @@ def answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
 
     A process that is refused memory ends, so that its task runs again in another one.
     """
-    from siggen.engines.task_failure import failure_text
+    from siggen.engines.protocol import failure_text
 
     try:
         return DONE, function(task)

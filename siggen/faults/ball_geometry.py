@@ -11,15 +11,15 @@ from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.keys.number import Number, Within, constant
 from siggen.keys.section import Section, Whole
 
+DIAMETERS = "of a ball; of the circle of the balls' centres"
+
 
 class BallGeometry(Section):
     """Numbers of a ball bearing: those of a 6205, with the clearance of its normal class (memory: ISO 5753-1)."""
 
     balls: Annotated[Whole, Field(ge=3, le=100)] = Field(default=9, description="number of balls")
-    ball_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=7.94, description="of a ball")
-    pitch_diameter_mm: Annotated[Number, Within(above=0)] = Field(
-        default=39.04, description="of the circle of the balls' centres"
-    )
+    ball_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=7.94, description=DIAMETERS)
+    pitch_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=39.04, description=DIAMETERS)
     contact_angle_deg: Annotated[Number, Within(least=0, most=45)] = Field(
         default=0.0, description="of the balls' contacts against the plane of the bearing"
     )

@@ -27,6 +27,9 @@ from siggen.seeding import Stage, named_uniforms
 KEYS = {"length_m": "length_mm", "depth_m": "depth_mm"}
 """Key that a problem of the drawn spall is about."""
 
+LOADED_DEG = 0.0
+"""Place of a spall on the outer race from the direction of the bearing's load: where races break."""
+
 
 class BearingSpalls(Fault):
     """A spall in one of the two bearings of a shaft: `dynamics.<shaft>.bearing`; where that is null, its defaults."""
@@ -56,11 +59,6 @@ class BearingSpalls(Fault):
     depth_mm: Annotated[Number, Within(above=0)] = Field(
         default=0.1, description="how far a ball may sink in (memory: 0.05 to 0.3)"
     )
-    from_load_deg: Annotated[Number | None, Within(least=-180, most=180, words=(None,))] = Field(
-        default=None,
-        description="place on the outer race from the direction of the bearing's load, along the turn of the shaft; "
-        "null: 0, where races break",
-    )
 
     @property
     def position(self) -> str:
@@ -79,10 +77,8 @@ class BearingSpalls(Fault):
         return "length_mm" if low < low_before or high <= high_before else None
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:  # noqa: ARG002
-        """Yield what cannot be in a bearing, whatever the gears."""
-        if self.from_load_deg is not None and self.element != "outer":
-            allowed = "allowed: null, or element: outer; inner races and balls turn"
-            yield Problem("from_load_deg", f"{self.from_load_deg} with element: {self.element}", allowed)
+        """Yield nothing: no gear has it."""
+        return iter(())
 
     def problems_in(self, bearing: BallBearing) -> Iterator[Problem]:
         """Yield the first of what does not fit its element of a bearing."""
@@ -109,12 +105,11 @@ class BearingSpalls(Fault):
 
     def _spall(self, bearing: BallBearing, turn: float) -> BearingSpall:
         """Return the drawn spall; those of what turns stand at a share of a turn."""
-        place_deg = 0.0 if self.from_load_deg is None else constant(self.from_load_deg)
         return BearingSpall(
             place=self.bearing,
             element=self.element,
             length_m=MM * constant(self.length_mm),
             depth_m=MM * constant(self.depth_mm),
             bearing=bearing,
-            place_rad=radians(place_deg if self.element == "outer" else 360.0 * turn),
+            place_rad=radians(LOADED_DEG if self.element == "outer" else 360.0 * turn),
         )

@@ -24,16 +24,17 @@ from siggen.keys.wording import AllowedText
 
 GearName: TypeAlias = Literal["pinion", "gear"]
 GEAR_TEXT = AllowedText(
-    "one of pinion, gear, either; of a further stage NAME.pinion, NAME.gear, NAME.either; of planetary sets sun, planet"
+    "one of pinion, gear, either; of a further stage NAME.pinion, NAME.gear, NAME.either; of planetary sets sun, "
+    "planet, ring"
 )
 AnyGear: TypeAlias = Annotated[
-    str, Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)|sun|planet)$"), GEAR_TEXT
+    str, Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)|sun|planet|ring)$"), GEAR_TEXT
 ]
 """`either`: drawn per gearbox, the same for all of its states; before a dot the name of a further stage."""
 
 DAMAGED_GEAR = (
     "damaged gear: pinion, gear, or either, drawn per gearbox, one gear in all states; of a further stage with its "
-    "name, such as slow.pinion; of a planetary set sun or planet, which is the first one"
+    "name, such as slow.pinion; of a planetary set sun, ring, or planet, which is the first one"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
@@ -54,10 +55,13 @@ READING = (
     "how heights above the base circle, and lengths of spalls along the profile, are measured: along the tooth's axis, "
     "along the radius, along the flank"
 )
-MIDDLE_HEIGHT = "height of the middle above the base circle"
+MIDDLE_HEIGHT = (
+    "height of the middle above the base circle, or pitch; irregular spalls also below_pitch: half way along the flank "
+    "from the lowest point of single contact to the pitch line, where the full load meets negative sliding"
+)
 FACE_CENTRE = "middle across the face; null: of the face"
 PROFILE_LENGTH = "length along the profile; of irregular spalls the mean"
-DEPTH = "depth normal to the tooth's middle plane"
+DEPTH = "depth normal to the tooth's middle plane; of irregular spalls null: 0.05 of the root of both lengths (assumed)"
 FLOOR = "flat floor, or a dish that is deepest in the middle"
 
 MM = 1e-3
@@ -128,10 +132,10 @@ def axial_heights_m(gear: SpurGear, values_m: FloatArray, reading: str) -> Float
     """
     if reading == "axial":
         return values_m
-    tip = read_m(gear, float(gear.height_m(gear.tip_roll_rad)), reading)
-    ratio = np.clip(values_m, 0.0, tip) / gear.base_radius_m
+    end = read_m(gear, float(gear.height_m(gear.last_roll_rad)), reading)
+    ratio = np.clip(values_m, 0.0, end) / gear.base_radius_m
     roll = np.sqrt(ratio * (ratio + 2.0)) if reading == "radial" else np.sqrt(2.0 * ratio)
-    beyond = np.maximum(values_m - tip, 0.0) * math.cos(gear.tip_roll_rad - gear.base_half_angle_rad)
+    beyond = np.maximum(values_m - end, 0.0) * math.cos(gear.last_roll_rad - gear.base_half_angle_rad)
     below = values_m * math.cos(gear.base_half_angle_rad)
     return np.where(values_m < 0.0, below, gear.height_m(roll) + beyond)
 

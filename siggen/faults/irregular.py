@@ -19,8 +19,10 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
+    DEPTH,
     FACE_CENTRE,
     FLOOR,
+    MIDDLE_HEIGHT,
     MM,
     MODULE,
     PROBE_M,
@@ -55,6 +57,8 @@ from siggen.keys.number import Number, Within, at, bounds, constant, number_text
 from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
 
+FLOOR_ROUGHNESS = 0.15
+"""Rms of the depth from strip to strip across the face, over it (assumed)."""
 PER_10MM = 0.1
 """mm of arc per 10 mm of face as a slope."""
 WAVE_SHARE = 0.1
@@ -81,8 +85,7 @@ class IrregularSpalls(Fault):
     stages: Stages = Field(default=1.0, description=STAGES)
     centre_height_mm: Middle = Field(
         default=START,
-        description="height of the middle above the base circle; pitch; or below_pitch: half way along the flank from "
-        "the lowest point of single contact to the pitch line, where the full load meets negative sliding",
+        description=MIDDLE_HEIGHT,
     )
     height_reading: HeightReading = Field(default="arc", description=READING)
     profile_length_mm: Length = Field(description=PROFILE_LENGTH)
@@ -101,12 +104,9 @@ class IrregularSpalls(Fault):
     )
     depth_mm: OptionalLength = Field(
         default=None,
-        description="depth normal to the tooth's middle plane; null: 0.05 of the root of its two lengths, assumed",
+        description=DEPTH,
     )
     floor: FloorShape = Field(default="dish", description=FLOOR)
-    floor_roughness: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.15, description="rms of the depth from strip to strip across the face, over it; assumed"
-    )
 
     @model_validator(mode="after")
     def _a_stage_for_each_tooth(self) -> IrregularSpalls:
@@ -216,7 +216,7 @@ def _rough(size: IrregularSpalls, growth: Growth, name: str, face_m: FloatArray,
     """Return the depth of the strips between stations over the mean one (k - 1,): uniform, of the rms asked for."""
     draws = growth.shape(size.gear, IrregularSpalls, f"{name}.floor").random(STRIPS)
     strip = np.clip((0.5 * (face_m[1:] + face_m[:-1]) / width_m * STRIPS).astype(int), 0, STRIPS - 1)
-    return np.asarray(1.0 + constant(size.floor_roughness) * sqrt(3.0) * (2.0 * draws[strip] - 1.0))
+    return np.asarray(1.0 + FLOOR_ROUGHNESS * sqrt(3.0) * (2.0 * draws[strip] - 1.0))
 
 
 def _problems(pair: GearPair, size: IrregularSpalls) -> Iterator[Problem]:
@@ -300,7 +300,7 @@ def _heights_m(pair: GearPair, size: IrregularSpalls) -> list[float]:
 
 
 def _deepest_m(pair: GearPair, size: IrregularSpalls) -> float:
-    rough = 1.0 + sqrt(3.0) * bounds(size.floor_roughness)[1]
+    rough = 1.0 + sqrt(3.0) * FLOOR_ROUGHNESS
     if size.depth_mm is not None:
         return MM * bounds(size.depth_mm)[1] * rough
     area = bounds(size.profile_length_mm)[1] * _longest_face_mm(size, pair.face_width_m / MM)

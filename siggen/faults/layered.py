@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
 from pydantic import Field
 
 from siggen.errors import Problem
@@ -13,7 +12,6 @@ from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
     FACE_CENTRE,
-    MODULE,
     READING,
     AnyGear,
     Height,
@@ -32,10 +30,11 @@ from siggen.gears.damage.part import Parts
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, Within, bounds
-from siggen.keys.scaling import Grows
+from siggen.keys.number import bounds
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
+
+SPACING = "between pits of a row, and between rows"
 
 
 class LayeredPits(PitSize, Fault):
@@ -51,11 +50,8 @@ class LayeredPits(PitSize, Fault):
     pits_per_layer: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="pits in a row, across the face")
     first_height_mm: Height = Field(default="pitch", description="height of the first row above the base circle")
     height_reading: HeightReading = Field(default="axial", description=READING)
-    spacing_face_mm: LengthAcross = Field(default=1.0, description="between pits of a row")
-    spacing_profile_mm: Length = Field(default=0.4, description="between rows")
-    jitter_mm: Annotated[Number, Within(least=0), Grows(MODULE)] = Field(
-        default=0.0, description="every pit is moved by up to this, along both directions"
-    )
+    spacing_face_mm: LengthAcross = Field(default=1.0, description=SPACING)
+    spacing_profile_mm: Length = Field(default=0.4, description=SPACING)
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
@@ -105,23 +101,21 @@ class LayeredPits(PitSize, Fault):
             middle,
             between=between,
         )
-        shifts = 2.0 * growth.rng(f"{self.gear}.{tooth}.jitter").random((heights.size, 2)) - 1.0
-        moved = np.stack([heights, faces], axis=1) + length_m(self, "jitter_mm", uniform) * shifts
+        centres = zip(heights.tolist(), faces.tolist(), strict=True)
         slots = [(i, j) for i in range(self.layers) for j in range(self.pits_per_layer)]
         taken = {(i, j) for m in milder for i in range(m.layers) for j in range(m.pits_per_layer)}
-        return [(float(h), float(w)) for slot, (h, w) in zip(slots, moved, strict=True) if slot not in taken]
+        return [centre for slot, centre in zip(slots, centres, strict=True) if slot not in taken]
 
     def _places(self, pair: GearPair) -> Iterator[PitPlace]:
-        """Yield the outermost pits of the first and of the last row, moved outwards as far as jitter may move them."""
-        jitter_m = bounds(self.jitter_mm)[1] / 1e3
+        """Yield the outermost pits of the first and of the last row."""
         centres_m = (
             [pair.face_width_m / 2] if self.face_centre_mm is None else [x / 1e3 for x in bounds(self.face_centre_mm)]
         )
-        reach_m = (self.pits_per_layer - 1) / 2 * bounds(self.spacing_face_mm)[1] / 1e3 + jitter_m
+        reach_m = (self.pits_per_layer - 1) / 2 * bounds(self.spacing_face_mm)[1] / 1e3
         climb_m = (self.layers - 1) * bounds(self.spacing_profile_mm)[1] / 1e3
         face_key = "spacing_face_mm" if self.pits_per_layer > 1 else "face_centre_mm"
         for first_m in heights_m(pair, self.gear, self.first_height_mm, self.height_reading):
-            for row, height_m in ((1, first_m - jitter_m), (self.layers, first_m + climb_m + jitter_m)):
+            for row, height_m in ((1, first_m), (self.layers, first_m + climb_m)):
                 for face_m in (centres_m[0] - reach_m, centres_m[-1] + reach_m):
                     remark = f"outermost pit of row {row} of {self.layers}: "
                     yield PitPlace(self.gear, height_m, face_m, self, "first_height_mm", face_key, "depth_mm", remark)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -10,7 +11,9 @@ from pydantic import Field, model_validator
 from siggen.errors import Problem
 from siggen.faults.fault import Fault, HitTeeth
 from siggen.faults.flank_place import (
+    FACE_CENTRE,
     FACE_WIDTH,
+    MIDDLE_HEIGHT,
     MM,
     READING,
     GearName,
@@ -20,6 +23,7 @@ from siggen.faults.flank_place import (
     heights_m,
 )
 from siggen.faults.growth import Growth
+from siggen.faults.listed_irregular import ListedIrregular
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
 from siggen.faults.single_spall import SpallSize, largest_spall, spall_on_tooth, spall_problems
 from siggen.gears.damage.part import Parts
@@ -39,10 +43,8 @@ class ListedPit(PitSize):
 
     gear: GearName = Field(default="pinion", description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
-    height_mm: Height = Field(default="pitch", description="height of the centre above the base circle")
-    face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(
-        description="centre across the face, from one end of the tooth"
-    )
+    height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
+    face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(description=FACE_CENTRE)
 
 
 class ListedSpall(SpallSize):
@@ -62,36 +64,47 @@ class ListedPits(Fault):
     height_reading: HeightReading = Field(default="axial", description=READING)
     pits: tuple[ListedPit, ...] = Field(default=(), description="the pits")
     spalls: tuple[ListedSpall, ...] = Field(default=(), description="the spalls")
+    outlines: tuple[ListedIrregular, ...] = Field(default=(), description="irregular spalls by their very edges")
 
     @model_validator(mode="after")
     def _not_empty(self) -> ListedPits:
-        if not (self.pits or self.spalls):
+        if not (self.pits or self.spalls or self.outlines):
             raise refusal([Problem("pits", "no pits and no spalls", "allowed: at least 1 pit or spall")])
         return self
 
     @classmethod
     def default_word(cls, read: Callable[[str], object]) -> str:
         """Return spalling for a list of spalls alone."""
-        return "spalling" if read("spalls") and not read("pits") else "pitting"
+        return "spalling" if (read("spalls") or read("outlines")) and not read("pits") else "pitting"
 
     @property
     def own_words(self) -> tuple[str, ...]:
         """Whatever is listed may be called pitting, and with a spall spalling."""
-        return self.words if self.spalls else ("pitting",)
+        return self.words if self.spalls or self.outlines else ("pitting",)
 
     def hit_teeth(self) -> HitTeeth:
         """Yield every listed tooth."""
         yield from ((f"pits.{number}.tooth", pit.gear, (pit.tooth,)) for number, pit in enumerate(self.pits))
         yield from ((f"spalls.{number}.tooth", spall.gear, (spall.tooth,)) for number, spall in enumerate(self.spalls))
+        yield from ((f"outlines.{number}.tooth", one.gear, (one.tooth,)) for number, one in enumerate(self.outlines))
+
+    @property
+    def own_edge_radius(self) -> tuple[str, Number] | None:
+        """Those of irregular spalls have one each, of which the largest is told."""
+        if not self.outlines:
+            return None
+        number = max(range(len(self.outlines)), key=lambda i: self.outlines[i].edge_radius_mm)
+        return f"outlines.{number}.edge_radius_mm", self.outlines[number].edge_radius_mm
 
     def straight_edges(self, face_width_mm: float) -> tuple[bool, bool] | None:
         """Return whether all listed spalls are rectangles, and whether one may go through the face; None without."""
-        found = [spall.parallel(face_width_mm) for spall in self.spalls]
+        found = [spall.parallel(face_width_mm) for spall in self.spalls] + [(False, False)] * len(self.outlines)
         return (all(parallel for parallel, _ in found), any(through for _, through in found)) if found else None
 
     def drawn(self, growth: Growth) -> Parts:
         """Return what is listed."""
-        return (*self._pits(growth), *self._spalls(growth))
+        listed = (one.spall(growth.pair, self.height_reading) for one in self.outlines)
+        return (*self._pits(growth), *self._spalls(growth), *listed)
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with each of them."""
@@ -102,6 +115,8 @@ class ListedPits(Fault):
                     yield from pit_place_problems(pair, PitPlace(pit.gear, height_m, face_mm / 1e3, pit, *keys))
         for index, spall in enumerate(self.spalls):
             yield from spall_problems(pair, spall, self.height_reading, f"spalls.{index}.")
+        for index, outline in enumerate(self.outlines):
+            yield from outline.problems(pair, self.height_reading, f"outlines.{index}.")
 
     def widest(self, pair: GearPair) -> Damage:
         """Return all of them, as large as they may be."""
@@ -118,7 +133,12 @@ class ListedPits(Fault):
             if pit.tooth < pair.member(pit.gear).teeth
         )
         spalls = [s for s in self.spalls if s.tooth < pair.member(s.gear).teeth]
-        return (*pits, *(largest_spall(pair, s, self.height_reading, s.tooth) for s in spalls))
+        outlined = (one for one in self.outlines if one.tooth < pair.member(one.gear).teeth)
+        return (
+            *pits,
+            *(largest_spall(pair, s, self.height_reading, s.tooth) for s in spalls),
+            *(replace(one.spall(pair, self.height_reading), strip_depths_m=one.probe_depths_m) for one in outlined),
+        )
 
     def _pits(self, growth: Growth) -> Iterator[Pit]:
         for index, pit in enumerate(self.pits):

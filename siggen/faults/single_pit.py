@@ -28,12 +28,14 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import at, bounds
 from siggen.keys.section import Section
 
+SEMI_AXES = "half the length across the face, and along the profile"
+
 
 class PitSize(Section):
     """Size and floor of a pit."""
 
-    semi_axis_face_mm: Length = Field(description="half the length across the face")
-    semi_axis_profile_mm: Length = Field(description="half the length along the profile")
+    semi_axis_face_mm: Length = Field(description=SEMI_AXES)
+    semi_axis_profile_mm: Length = Field(description=SEMI_AXES)
     depth_mm: Length = Field(description=DEPTH)
     floor: FloorShape = Field(default="flat", description=FLOOR)
 

@@ -1,13 +1,12 @@
-"""Wear of both gears: keys of its depth or its cycles, and of the load under which it grew."""
+"""Wear of both gears: keys of its depth, and of the load under which it grew."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
 import pyarrow as pa
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from siggen.errors import Problem
 from siggen.faults.fault import Fault, HitTeeth
@@ -15,12 +14,11 @@ from siggen.faults.flank_place import MODULE
 from siggen.faults.growth import Growth
 from siggen.gears.contact.table_options import reference_force_n
 from siggen.gears.damage.part import Parts
-from siggen.gears.damage.wear import LABEL_POINTS, POINTS, Wear, turn_factors, worn_until
+from siggen.gears.damage.wear import LABEL_POINTS, Wear, worn_until
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.column import MICROMETRE, Column, list_of
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, bounds, constant, number_text
-from siggen.keys.problems import refusal
 from siggen.keys.scaling import Grows
 
 DEEPEST_SHARE = 0.1
@@ -50,15 +48,8 @@ class FlankWear(Fault):
     needs_pairs: ClassVar[bool] = True
 
     kind: Literal["wear"] = "wear"
-    depth_um: Annotated[Number | None, Within(above=0, words=(None,)), Grows(MODULE)] = Field(
-        default=None,
-        description="largest depth on any flank, usually at the root of the pinion; null: by cycles",
-    )
-    cycles: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None, description="turns of the pinion since the flanks were new; null: by depth_um"
-    )
-    coefficient_m2_per_n: Annotated[Number, Within(above=0)] = Field(
-        default=COEFFICIENT_M2_PER_N, description="Archard's wear coefficient, depth per pressure and way (cycles)"
+    depth_um: Annotated[Number, Within(above=0), Grows(MODULE)] = Field(
+        description="largest depth on any flank, usually at the root of the pinion"
     )
     torque_nm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None,
@@ -66,26 +57,15 @@ class FlankWear(Fault):
         "between steel flanks in the middle of the path",
     )
 
-    @model_validator(mode="after")
-    def _depth_or_cycles(self) -> FlankWear:
-        if (self.depth_um is None) == (self.cycles is None):
-            received = "null, as is cycles" if self.depth_um is None else f"{number_text(self.depth_um)}, beside cycles"
-            raise refusal([Problem("depth_um", received, "allowed: either depth_um or cycles")])
-        return self
-
     def hit_teeth(self) -> HitTeeth:
         """Yield nothing: no tooth is named."""
         return iter(())
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
-        """Return the key of a depth or of cycles that never pass those of the milder state."""
+        """Return the key of a depth that never passes that of the milder state."""
         if not isinstance(milder, FlankWear):
             return None
-        for key in ("depth_um", "cycles"):
-            own, before = getattr(self, key), getattr(milder, key)
-            if own is not None and before is not None and bounds(own)[1] <= bounds(before)[0]:
-                return key
-        return None
+        return "depth_um" if bounds(self.depth_um)[1] <= bounds(milder.depth_um)[0] else None
 
     def drawn(self, growth: Growth) -> Parts:
         """Return the worn flanks of this state; what is nowhere less deep takes the place of milder wear."""
@@ -94,9 +74,8 @@ class FlankWear(Fault):
         worn = worn_until(
             pair,
             growth.load_at_rest(_force_n(pair, torque)),
-            constant(own.coefficient_m2_per_n),
-            depth_m=np.inf if own.depth_um is None else 1e-6 * constant(own.depth_um),
-            turns=np.inf if own.cycles is None else constant(own.cycles),
+            COEFFICIENT_M2_PER_N,
+            depth_m=1e-6 * constant(own.depth_um),
         )
         return Wear("pinion", tuple(worn.pinion_m.tolist())), Wear("gear", tuple(worn.gear_m.tolist()))
 
@@ -104,21 +83,8 @@ class FlankWear(Fault):
         """Yield wear that may go deeper than a share of the module."""
         allowed_um = 1e6 * DEEPEST_SHARE * pair.pinion.module_m
         share = f"{DEEPEST_SHARE:g} of the module"
-        if self.depth_um is not None and bounds(self.depth_um)[1] > allowed_um:
+        if bounds(self.depth_um)[1] > allowed_um:
             yield Problem("depth_um", number_text(self.depth_um), f"allowed: up to {allowed_um:.6g} um, {share}")
-        if self.cycles is not None:
-            # No pair ever carries more than all of them: its depth stays below this one.
-            most = 1e6 * bounds(self.cycles)[1] * self._most_per_turn_m(pair)
-            if most > allowed_um:
-                received = f"{number_text(self.cycles)}, which may wear {most:.4g} um"
-                yield Problem("cycles", received, f"allowed: at most {allowed_um:.6g} um, {share}; fewer cycles")
-
-    def _most_per_turn_m(self, pair: GearPair) -> float:
-        """Return the largest depth by one turn of the pinion if one pair carried everything [m]."""
-        ends = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
-        torque = None if self.torque_nm is None else bounds(self.torque_nm)[1]
-        largest = max(float(factor.max()) for factor in turn_factors(pair, ends, bounds(self.coefficient_m2_per_n)[1]))
-        return largest * _force_n(pair, torque)
 
 
 def _force_n(pair: GearPair, torque_nm: float | None) -> float:

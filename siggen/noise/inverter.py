@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, at
 from siggen.noise.lines import LinesPart
 from siggen.noise.source import Draws, NoisyChannel, Part, Source
@@ -13,6 +14,8 @@ from siggen.sensing.tones import carrier_lines
 
 CARRIER_SIDEBANDS = 2
 """On either side of the carrier of an inverter (assumed)."""
+MODULATION_HZ = Uniform(low=45.0, high=50.0)
+"""Electrical frequency of the motor (assumed)."""
 
 
 class Inverter(Source):
@@ -22,12 +25,11 @@ class Inverter(Source):
     about: ClassVar[str] = ""
     meaning: ClassVar[str] = "RMS of the inverter's lines at"
 
-    carrier_hz: Annotated[Number, Within(above=0)] = Field(description="switching frequency, drawn per gearbox")
-    modulation_hz: Annotated[Number, Within(above=0)] = Field(
-        default=50.0, description="electrical frequency of the motor, drawn per record"
+    carrier_hz: Annotated[Number, Within(above=0)] = Field(
+        description="switching frequency, drawn per gearbox; its k-th sidebands have 1/(1 + k) of the amplitude"
     )
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="of the carrier, drawn per record and axis; the k-th sidebands have 1/(1 + k) of it"
+        description="amplitude of a line, drawn per record and axis"
     )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> Part:
@@ -36,6 +38,6 @@ class Inverter(Source):
         amplitude = at(self.amplitude_m_s2, draws.level("inverter.amplitude_m_s2", rng))
         carrier_hz = at(self.carrier_hz, draws.specimen("inverter.carrier_hz"))
         # the electrical frequency belongs to the record: all sensors see the same motor
-        modulation_hz = at(self.modulation_hz, draws.shared("inverter.modulation_hz"))
+        modulation_hz = at(MODULATION_HZ, draws.shared("inverter.modulation_hz"))
         lines = carrier_lines(carrier_hz, modulation_hz, amplitude, CARRIER_SIDEBANDS, rng)
         return LinesPart(lines, channel, sensed=True)

@@ -21,10 +21,14 @@ class Mains(Source):
     meaning: ClassVar[str] = "RMS of mains hum in"
 
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="of the fundamental, drawn per record and axis; harmonic h has 1/h of it"
+        description="amplitude of a line, drawn per record and axis"
     )
-    frequency_hz: Annotated[Number, Within(above=0)] = Field(default=50.0, description="drawn per gearbox")
-    harmonics: Annotated[Whole, Field(ge=1, le=40)] = Field(default=3, description="highest harmonic")
+    frequency_hz: Annotated[Number, Within(above=0)] = Field(
+        default=50.0, description="frequency, drawn per gearbox for every line"
+    )
+    harmonics: Annotated[Whole, Field(ge=1, le=40)] = Field(
+        default=3, description="highest harmonic; harmonic h has 1/h of the amplitude"
+    )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> Part:
         """Return its lines."""

@@ -7,35 +7,60 @@ from math import pi
 from typing import Annotated, ClassVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.errors import Problem
+from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, at
-from siggen.keys.section import Section
-from siggen.noise.density import Density
+from siggen.keys.problems import refusal
+from siggen.keys.section import Real, Section
 from siggen.noise.source import Draws, MeasuredPart, NoisyChannel, Part, Source
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
 from siggen.sensing.sensor_response import high_pass_response
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 
+
+class Density(Section):
+    """A one-sided density over frequency, straight between its knots in log-log, constant beyond them.
+
+    In a file `file: NAME.csv` stands for both lists: its columns are frequency_hz and density. Its numbers become part
+    of the configuration when it is loaded, so that the set needs no file.
+    """
+
+    frequency_hz: Annotated[tuple[Real, ...], Field(min_length=2)] = Field(description="knots, ascending, above 0")
+    density: Annotated[tuple[Real, ...], Field(min_length=2)] = Field(description="one above 0 for each knot")
+
+    @model_validator(mode="after")
+    def _knots(self) -> Density:
+        if len(self.frequency_hz) != len(self.density):
+            received = f"{len(self.frequency_hz)} frequencies, {len(self.density)} densities"
+            raise refusal([Problem("density", received, "allowed: as many as frequencies")])
+        rising = all(a < b for a, b in zip(self.frequency_hz, self.frequency_hz[1:], strict=False))
+        if not rising or self.frequency_hz[0] <= 0.0:
+            raise refusal([Problem("frequency_hz", str(list(self.frequency_hz)), "allowed: ascending, above 0")])
+        if min(self.density) <= 0.0:
+            raise refusal([Problem("density", f"{min(self.density):g}", "allowed: numbers above 0")])
+        return self
+
+
 SPECTRUM_TAPS = 16_384
 """Of the filter of a sensor's noise: at 25.6 kHz densities are smoothed over 1.6 Hz."""
+
+LEVEL_TIME_MS = Uniform(low=1.0, high=8.0)
+"""Correlation time of the random level (measured: the level changes within 10 ms)."""
+DEPTHS = "of the power, once per turn of that shaft; 1/√2 and 1/√3 of it twice and three times"
 
 
 class NoiseModulation(Section):
     """Strength over time M = G exp(s U - s²/2) of noise: by the turning shafts, and by chance; of mean 1."""
 
-    pinion_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(
-        default=0.0, description="of the power, once per turn of the pinion; 1/√2 and 1/√3 of it twice and three times"
-    )
-    gear_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description="the same of the gear")
+    pinion_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
+    gear_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
     level_std: Annotated[Number, Within(least=0, most=2)] = Field(
         default=0.0, description="s of the random level; kurtosis of the noise 3 exp(s²)"
-    )
-    level_time_ms: Annotated[Number, Within(least=0.1, most=1000)] = Field(
-        default=3.0, description="correlation time of the level"
     )
 
 
@@ -88,13 +113,14 @@ class NoiseStrength:
         rng = draws.record("noise_spectrum.modulation")
         numbers = {
             name: at(getattr(section, name), draws.level(f"noise_spectrum.modulation.{name}", rng))
-            for name in ("pinion_depth", "gear_depth", "level_std", "level_time_ms")
+            for name in ("pinion_depth", "gear_depth", "level_std")
         }
+        time_ms = at(LEVEL_TIME_MS, draws.level("noise_spectrum.modulation.level_time_ms", rng))
         self._phasors = []
         for shaft, order in (("pinion", 1.0), ("gear", gear_order)):
             uniforms = [draws.specimen(f"noise_spectrum.modulation.{shaft}.{k}") for k in range(SHAFT_LINES)]
             self._phasors.append((order, shaft_phasors(numbers[f"{shaft}_depth"], 2.0 * pi * np.array(uniforms))))
-        self._level = LevelCourse(numbers["level_std"], 1e-3 * numbers["level_time_ms"] * fs_hz, rng)
+        self._level = LevelCourse(numbers["level_std"], 1e-3 * time_ms * fs_hz, rng)
 
     def take(self, angle_rad: FloatArray) -> FloatArray:
         """Return M (k,) at the next samples, whose pinion angles (k,) are given."""

@@ -22,8 +22,10 @@ class Tones(Source):
     meaning: ClassVar[str] = "RMS of the tones of other machines at"
 
     count: Annotated[Whole, Field(ge=1, le=40)] = Field(default=3, description="number of tones")
-    frequency_hz: Annotated[Number, Within(above=0)] = Field(description="drawn per gearbox and tone")
-    amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(description="drawn per record, axis and tone")
+    frequency_hz: Annotated[Number, Within(above=0)] = Field(description="frequency, drawn per gearbox for every line")
+    amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
+        description="amplitude of a line, drawn per record and axis"
+    )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> Part:
         """Return its lines behind the sensor."""

@@ -12,14 +12,38 @@ from typing import Any
 
 from siggen.config import Config
 from siggen.planning.drawn_parts import with_drawn_parts
+from siggen.planning.lived import Lived, lived, lived_states
 from siggen.rig.carried_over import carried_over
 from siggen.seeding import Stage, generator
 
 
 def gearbox_config(config: Config, specimen_id: int) -> Config:
     """Return the configuration of one gearbox; depends on configuration and index alone, and is itself its own."""
+    return _drawn(config, specimen_id) if config.life is None else _inspected(config, specimen_id)
+
+
+def _drawn(config: Config, specimen_id: int) -> Config:
     index = pair_of(config, specimen_id)
     return with_drawn_parts(config if index is None else pair_config(config, index), specimen_id)
+
+
+@lru_cache(maxsize=16)
+def _inspected(config: Config, specimen_id: int) -> Config:
+    """Return the configuration of a gearbox whose inspections are states, as if a user had listed all outlines."""
+    assert config.life is not None
+    states = lived_states(config.life, gearbox_life(config, specimen_id))
+    return _drawn(config, specimen_id).model_copy(update={"life": None, "states": states})
+
+
+@lru_cache(maxsize=1024)
+def gearbox_life(config: Config, specimen_id: int) -> Lived:
+    """Return the life of a gearbox of a set with a section `life`."""
+    return lived(_drawn(config, specimen_id), config.gears, specimen_id)
+
+
+def inspection_count(config: Config, specimen_id: int) -> int:
+    """Return how many states a gearbox has: all, or with `life` as many inspections as it lives to see."""
+    return config.state_count if config.life is None else len(gearbox_life(config, specimen_id).ages_h)
 
 
 @lru_cache(maxsize=64)

@@ -13,10 +13,17 @@ from siggen.config import Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within
+from siggen.keys.section import Section
 
 IRON_SHARE = 0.6
 """Of gearboxes of any material (assumed)."""
 Drawn = Annotated[Number, Within()]
+
+
+class FootNumbers(Section):
+    """Of the four bolts under the corners of the floor: their share in the damping of a mode's energy (assumed)."""
+
+    damping_ratio: Drawn = Uniform(low=0.03, high=0.07)
 
 
 class PlateNumbers(PlateHousing):
@@ -47,6 +54,7 @@ class PlateNumbers(PlateHousing):
     bolt_inset: Drawn = Uniform(low=0.08, high=0.2)
     ribbed: Drawn = Uniform(low=0.0, high=1.0)
     rib_height: Drawn = Uniform(low=2.0, high=5.0)
+    feet: FootNumbers = FootNumbers()
 
 
 def drawn_housing(section: Housing, uniform: Callable[[str], float]) -> PlateNumbers | ModalHousing | RigidHousing:

@@ -10,11 +10,11 @@ from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import overload
 
 from siggen.config import BLOCK, Config, Splits
-from siggen.planning.gearbox import pair_of
+from siggen.planning.gearbox import inspection_count, pair_of
 from siggen.seeding import Stage, generator
 
 SPLITS = ("train", "validation", "test")
@@ -64,17 +64,22 @@ class ShardPlan:
     number: int
     specimens: Sequence[int]
     records_per_specimen: int
+    counts: Sequence[int] = ()
+    """Records of each specimen where they have fewer than that, as of a life that ends; ids after it stay free."""
 
     @property
     def record_count(self) -> int:
         """Number of records."""
-        return len(self.specimens) * self.records_per_specimen
+        return sum(self.counts) if self.counts else len(self.specimens) * self.records_per_specimen
 
     @property
     def record_ids(self) -> Iterator[int]:
         """Ids of all records, ascending."""
-        per_specimen = self.records_per_specimen
-        return (i for one in self.specimens for i in range(one * per_specimen, (one + 1) * per_specimen))
+        stride = self.records_per_specimen
+        counts = self.counts or [stride] * len(self.specimens)
+        return (
+            i for one, own in zip(self.specimens, counts, strict=True) for i in range(one * stride, one * stride + own)
+        )
 
     @property
     def key(self) -> str:
@@ -87,7 +92,10 @@ class Records(Sequence[PlannedRecord]):
 
     def __init__(self, config: Config) -> None:
         self._config = config
-        self._ids = range(config.specimens * config.records_per_specimen)
+        self._ids: Sequence[int] = range(config.specimens * config.records_per_specimen)
+        if config.life is not None:
+            of_each = (record_ids_of(config, one) for one in range(config.specimens))
+            self._ids = tuple(chain.from_iterable(of_each))
 
     def __len__(self) -> int:
         return len(self._ids)
@@ -151,15 +159,16 @@ def planned_record(config: Config, record_id: int) -> PlannedRecord:
         raise IndexError(f"record {record_id}: indices begin at 0")
     rest, repeat = divmod(record_id, config.repeats)
     rest, operating_point_id = divmod(rest, len(config.operating_points))
-    specimen_id, state_id = divmod(rest, len(config.states))
+    specimen_id, state_id = divmod(rest, config.state_count)
     split = split_of(config, specimen_id)
     return PlannedRecord(record_id, specimen_id, state_id, operating_point_id, repeat, split)
 
 
 def record_ids_of(config: Config, specimen_id: int) -> range:
-    """Return the indices of a specimen's records."""
-    per_specimen = config.records_per_specimen
-    return range(specimen_id * per_specimen, (specimen_id + 1) * per_specimen)
+    """Return the indices of a specimen's records; with `life` the rest of its indices stays free."""
+    first = specimen_id * config.records_per_specimen
+    own = inspection_count(config, specimen_id)
+    return range(first, first + own * len(config.operating_points) * config.repeats)
 
 
 def split_of(config: Config, specimen_id: int) -> str:
@@ -219,7 +228,14 @@ def shards(config: Config, split: str, earlier: Sequence[int] = ()) -> tuple[Sha
     for first, end in pairwise((0, *earlier, config.specimens)):
         own = members[bisect_left(members, first) : bisect_left(members, end)]
         groups += [own[start : start + size] for start in range(0, len(own), size)]
-    return tuple(ShardPlan(split, number, group, config.records_per_specimen) for number, group in enumerate(groups))
+    return tuple(
+        ShardPlan(split, number, group, config.records_per_specimen, _counts(config, group))
+        for number, group in enumerate(groups)
+    )
+
+
+def _counts(config: Config, specimens: Sequence[int]) -> tuple[int, ...]:
+    return () if config.life is None else tuple(len(record_ids_of(config, one)) for one in specimens)
 
 
 def specimen_count(config: Config, split: str) -> int:
@@ -250,9 +266,8 @@ def estimated_bytes(config: Config) -> int:
         for sensor in config.sensors
         for _ in sensor.axes
     ]
-    every = 1 if config.internals is None else config.internals.every_specimen
-    internals = -(-config.specimens // every) * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
-    return config.specimens * config.records_per_specimen * _row_bytes(config) * sum(percents) // 100 + internals
+    internals = config.specimens * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
+    return plan(config).count * _row_bytes(config) * sum(percents) // 100 + internals
 
 
 def rows_per_group(config: Config) -> int:
@@ -268,7 +283,7 @@ def rows_per_group(config: Config) -> int:
 def has_internals(config: Config, record: PlannedRecord) -> bool:
     """Tell whether the set stores the internal quantities of a record; depends on configuration and index alone."""
     chosen = config.internals
-    if chosen is None or record.specimen_id % chosen.every_specimen:
+    if chosen is None:
         return False
     return chosen.records == "all" or (record.operating_point_id, record.repeat) == (0, 0)
 
@@ -278,7 +293,7 @@ def _internal_bytes(config: Config) -> int:
     chosen = config.internals
     if chosen is None:
         return 0
-    records = config.records_per_specimen if chosen.records == "all" else len(config.states)
+    records = config.records_per_specimen if chosen.records == "all" else config.state_count
     series = MANY_QUANTITIES if chosen.stores_all else len(chosen.quantities)
     return records * series * _row_bytes(config)
 

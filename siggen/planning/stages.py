@@ -12,7 +12,9 @@ from dataclasses import replace
 from typing import Any
 
 from siggen.config import Config, Gears, OperatingRange, Pair, PlainRotor, Rotor, Stage, State
-from siggen.config.planetary import in_pair
+from siggen.config.machine import Machine
+from siggen.config.planetary import RING, in_pair
+from siggen.config.short_form import mesh_alone
 from siggen.config.stages import turned
 from siggen.faults.fault import Fault
 from siggen.keys.distributions import Uniform
@@ -27,7 +29,8 @@ def first_mesh(config: Config) -> Config:
     """Return the configuration of the pair of `gears` alone; itself where there is no other mesh."""
     if not config.stages and config.planetary is None:
         return config
-    return config.model_copy(update={"stages": (), "planetary": None, "states": _states_on(config, "")})
+    own = {"stages": (), "planetary": None, "states": _states_on(config, ""), "machine": _machine(config, 0)}
+    return config.model_copy(update=own)
 
 
 def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
@@ -42,8 +45,20 @@ def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
         update={
             "seed": _seed(config.seed, name), "gears": own.gears, "dynamics": own.dynamics, "stages": (),
             "stiffness": own.stiffness, "operating_points": points, "states": _states_on(config, name),
+            "machine": _machine(config, index + 1),
         }
     )  # fmt: skip
+
+
+def ring_config(config: Config) -> Config:
+    """Return the configuration of a planetary set's planets in their ring, as if that were its pair."""
+    alone = {"seed": _seed(config.seed, RING), "planetary": None, "states": _states_on(config, RING)}
+    return config.model_copy(update=alone)
+
+
+def planet_config(config: Config, number: int) -> Config:
+    """Return the configuration of one pair, of the planet of a number in a set; the first one has that of the pair."""
+    return config if number == 0 else config.model_copy(update={"seed": _seed(config.seed, f"planet_{number}")})
 
 
 def first_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -76,6 +91,11 @@ def _rotors(stage: Stage) -> dict[str, Rotor]:
     return {"pinion": Rotor(), "gear": Rotor.model_construct(**own)}
 
 
+def ring_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return valid sections of a planetary set as those of its planets in their ring alone."""
+    return _sections_on(sections, RING)
+
+
 def _sections_on(sections: Mapping[str, Any], name: str) -> dict[str, Any]:
     states: Mapping[int, State] = sections.get("states", {})
     own = {index: state.model_copy(update={"damage": _own(state, name)}) for index, state in states.items()}
@@ -100,8 +120,13 @@ def stage_point(point: OperatingPoint, turning: float) -> OperatingPoint:
 
 
 def stage_of(damage: Fault) -> str:
-    """Return the name of the further stage that a damage is on; empty for the first mesh and for what is on no gear."""
-    return str(getattr(damage, "gear", "")).rpartition(DOT)[0]
+    """Return the name of the further stage that a damage is on, or `ring`; empty for the first mesh and no gear."""
+    gear = str(getattr(damage, "gear", ""))
+    return RING if gear == RING else gear.rpartition(DOT)[0]
+
+
+def _machine(config: Config, number: int) -> Machine | None:
+    return None if config.machine is None else mesh_alone(config.machine, number)
 
 
 def _states_on(config: Config, name: str) -> tuple[State, ...]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from siggen.config.planetary import NAMES
+from siggen.config.planetary import NAMES, RING
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -47,8 +47,10 @@ def class_names(config: Config) -> dict[str, tuple[str, ...]]:
 def _faulty_gears(config: Config) -> tuple[str, ...]:
     """Return what `faulty_gear` may say of the gearboxes of a set."""
     none, *gears = FAULTY_GEARS
+    if config.machine is not None:
+        return (none, *(own for _, own in config.names.gears), "several")
     if config.planetary is not None:
-        return (none, *(NAMES.get(gear, gear) for gear in gears))
+        return (none, *(NAMES.get(gear, gear) for gear in gears), RING, "several")
     behind = tuple(f"{stage.name}.{gear}" for stage in config.stages for gear in gears)
     return (none, *gears, *behind, *(("several",) if behind else ()))
 

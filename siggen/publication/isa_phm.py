@@ -80,7 +80,7 @@ def _study(
         "factors": [
             {
                 "@id": f"#factor/{key}",
-                "factorName": name,
+                "factorName": config.names.text(name),
                 "factorType": _term(f"factor_type/{key}", kind),
                 "comments": [],
             }
@@ -159,13 +159,15 @@ def _samples(config: Config, state: State) -> Iterator[dict[str, Any]]:
 
 def _characteristics(config: Config) -> dict[str, tuple[str, float | str, str]]:
     """Return key -> name, value, unit of what a reader has to know of the pair; ranges where a set has several."""
-    gears = config.gears
+    gears, names = config.gears, config.names
     widths = _span([pair.face_width_mm for pair in gears.pairs]) or _range(gears.face_width_mm)
     # numbers without a unit are texts: isatools 0.14 does not load them otherwise
     return {
         "gearboxes": ("Number of gearboxes", str(config.specimens), ""),
-        "teeth_pinion": ("Teeth of the pinion", str(_span(gears.teeth_of("pinion"))), ""),
-        "teeth_gear": ("Teeth of the gear", str(_span(gears.teeth_of("gear"))), ""),
+        **{
+            names.column(f"teeth_{gear}"): (names.text(f"Teeth of the {gear}"), str(_span(gears.teeth_of(gear))), "")
+            for gear in ("pinion", "gear")
+        },
         "module": ("Normal module", _span([pair.module_mm for pair in gears.pairs]) or _range(gears.module_mm), "mm"),
         "face_width": ("Face width", widths, "mm"),
     }

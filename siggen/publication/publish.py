@@ -86,7 +86,7 @@ def publication(
     found = _audit_file(Path(path), audit)
     config = _config(dataset)
     _check_recordings(path, config, with_recordings=with_recordings)
-    files = dataset.inventory.files
+    files = dataset.files
     copied = tuple(name for name in files if name not in (CARD, CROISSANT, DATACITE) and not name.startswith(PREVIEWS))
     size = sum(files[name].bytes for name in copied)
     return Publication(_texts(dataset, config, facts, found, size), copied, size, found)
@@ -128,11 +128,11 @@ def publish(
     dataset = open_set(path)
     with target.writing():
         for name in made.copied:
-            copy_object(source, name, target, dataset.inventory.files[name].sha256)
+            copy_object(source, name, target, dataset.files[name].sha256)
         own = {**made.texts, **_previews(dataset)}
         for name, content in own.items():
             target.put(name, content)
-        files = {name: dataset.manifest["files"][name] for name in made.copied}
+        files = {name: file for name, file in dataset.manifest["files"].items() if name in made.copied}
         files |= {name: {"bytes": len(text), "sha256": hashlib.sha256(text).hexdigest()} for name, text in own.items()}
         target.put(MANIFEST, sealed({**dataset.manifest, "files": files}))
     return made
@@ -193,7 +193,7 @@ def _texts(
 
 
 def _signal_files(dataset: Dataset) -> list[str]:
-    return [shard.file for shard in dataset.inventory.shards]
+    return [shard.file for shard in dataset.index.shards()]
 
 
 def _schemas(dataset: Dataset) -> dict[str, pa.Schema]:
@@ -216,7 +216,7 @@ def _counts(dataset: Dataset, views: tuple[str, ...]) -> dict[str, dict[str, tup
         found[view] = {}
         for split in dataset.splits:
             begin = (f"{FOLDERS[view]}/{split}.", f"{FOLDERS[view]}/{split}-")
-            size = sum(file.bytes for name, file in dataset.inventory.files.items() if name.startswith(begin))
+            size = sum(file.bytes for name, file in dataset.files.items() if name.startswith(begin))
             found[view][split] = (_rows(dataset, view, split), size)
     return found
 

@@ -1,12 +1,11 @@
 """The background of one record: forces over time of everything beside the meshing teeth, and what channels see of them.
 
-Levels belong to the gearbox (or to the record, `background.redraw`), the courses of noise to the record. Lines keep
+Levels belong to the gearbox, the courses of noise to the record. Lines keep
 their phase against the pinion's angle, so that all states of a gearbox share them.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -14,7 +13,6 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.dynamics.drive.comb import Comb, turns_of
-from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
@@ -25,14 +23,13 @@ from siggen.record.rubbing import RubbingForce
 from siggen.sensing.force_density import contact_filter, rising_floor
 from siggen.sensing.inputs import BACKGROUND, Input
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-from siggen.specimen.background import AXES, MACHINES, SpecimenBackground, bearings_of_shafts
+from siggen.specimen.background import AXES, MACHINES, SpecimenBackground
 from siggen.specimen.background_numbers import (
     FOREIGN_LINES,
     BackgroundNumbers,
     ForeignNumbers,
     MachineNumbers,
     ShaftNumbers,
-    background_numbers,
 )
 
 MACHINE_TAPS = 8192
@@ -56,8 +53,7 @@ class BackgroundBlocks:
     ) -> None:
         self._of_record = (config, specimen, record)
         self._next, self._length = first, length
-        assert config.background is not None
-        self._background = with_levels(background_numbers(config.background), background, self._course(1))
+        self._background = background
         self._rubbing: RubbingForce | None = None
         self._bearings: BearingVelocities | None = None
         self._machines: dict[str, ShapedNoise] = {}
@@ -105,16 +101,6 @@ def machine_noise(machines: MachineNumbers, course: Course) -> dict[str, ShapedN
 
     taps = shape_taps(shape, MACHINE_TAPS, course.fs_hz)
     return {name: ShapedNoise(taps, course.fs_hz, course.of_record(f"background.machines.{name}")) for name in MACHINES}
-
-
-def with_levels(section: BackgroundNumbers, drawn: SpecimenBackground, course: Course) -> SpecimenBackground:
-    """Return what was drawn for the gearbox, its noise drawn anew if levels belong to the record."""
-    if section.redraw == "gearbox":
-        return drawn
-    levels = draw(section, course.level, "background")
-    own = drawn.section.model_copy(update={"rubbing": levels.rubbing, "machines": levels.machines})
-    bearings = bearings_of_shafts(section, course.level)
-    return replace(drawn, section=own, bearings=bearings)
 
 
 def line_forces(

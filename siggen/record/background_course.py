@@ -28,8 +28,7 @@ class Course:
 
     Or at a part of them, `history` samples from its first one to that of the record. `turns` are exp(i order Θ)
     (length,) of both shafts, `orders` their turns per turn of the pinion. `asperity_share` is that of the mean load at
-    the pitch point. `level` gives uniforms of what noise levels belong to, `uniform` those of the gearbox, `of_gearbox`
-    and `of_record` generators.
+    the pitch point. `uniform` gives uniforms of the gearbox, `of_gearbox` and `of_record` generators.
     """
 
     angle_rad: FloatArray
@@ -41,7 +40,6 @@ class Course:
     point: OperatingPoint
     asperity_share: float
     uniform: Callable[[str], float]
-    level: Callable[[str], float]
     of_gearbox: Callable[[str], np.random.Generator]
     of_record: Callable[[str], np.random.Generator]
 
@@ -90,14 +88,13 @@ def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: 
         point,
         asperity_share(specimen.dynamics.friction, pair, point),
         named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id),
-        noise_levels(config, record) or named_uniforms(config.seed, Stage.BACKGROUND_NOISE, *owner),
         lambda name: named_generator(config.seed, Stage.BACKGROUND, record.specimen_id, name=name),
         lambda name: named_generator(config.seed, Stage.BACKGROUND_NOISE, *owner, name=name),
     )
 
 
 def noise_levels(config: Config, record: PlannedRecord) -> Callable[[str], float] | None:
-    """Return name -> uniform of a noise level that belongs to the gearbox; None where records have their own."""
-    if config.background is None or config.background.redraw == "record":
+    """Return name -> uniform of a noise level of the gearbox; None without background, where records have their own."""
+    if config.background is None:
         return None
     return named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id)

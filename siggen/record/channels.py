@@ -16,19 +16,44 @@ from siggen.config import Config
 from siggen.config.stages import shaft_turns
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
-from siggen.noise.source import NoisyChannel
+from siggen.noise.source import Draws, NoisyChannel
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.channel_facts import channel_draws, channel_labels, lost_gaps, white_noise
-from siggen.record.disturbance import ChannelDisturbance
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.transducer import Running
 from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.instrument import Instrument, specimen_instrument
+from siggen.specimen.instrument import ChannelInstrument, Instrument, specimen_instrument
+
+
+class ChannelDisturbance:
+    """What the sources of a channel add to it behind its amplifier, part after part, and the labels of it."""
+
+    def __init__(self, channel: ChannelInstrument, about: NoisyChannel, draws: Draws) -> None:
+        sources, suffix = channel.sensor.sources, channel.sensor.quantity.suffix
+        self._parts = {one.column(channel.name, suffix): one.part(about, draws) for one in sources}
+        self.follows_angle = any(one.follows_angle for one in sources)
+
+    def take(self, first: int, angle_rad: FloatArray) -> FloatArray | None:
+        """Return what is added (k,) from sample `first` on, at angles of the pinion (k,); None for nothing.
+
+        Unless it `follows_angle`, angles count by their number alone.
+        """
+        if not self._parts:
+            return None
+        signal = np.zeros(angle_rad.size)
+        for part in self._parts.values():
+            signal += part.take(first, angle_rad)
+        return signal
+
+    @property
+    def labels(self) -> dict[str, object]:
+        """The labels, complete when all was taken."""
+        return {column: part.label for column, part in self._parts.items()}
 
 
 def measured_channels(

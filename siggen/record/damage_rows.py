@@ -6,16 +6,17 @@ from functools import lru_cache
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
 from siggen.config import Config
-from siggen.config.planetary import NAMES
+from siggen.config.planetary import NAMES, RING
 from siggen.gears.damage.part import Part, Parts
 from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.planning.stages import DOT, stage_config
+from siggen.planning.stages import DOT, ring_config, stage_config
 from siggen.planning.state_config import state_config
 from siggen.specimen.bearing_spalls import drawn_labels
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.planetary_numbers import planets_in_ring
 
 
 def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
@@ -34,8 +35,10 @@ def _row(config: Config, part: Part, stage: str) -> dict[str, object]:
     """Return the row of a part, whose gear has the name of its stage before it, or that in a planetary set."""
     row = part.table_row()
     if config.planetary is not None:
-        return {**row, "gear": NAMES.get(str(row["gear"]), row["gear"])}
-    return {**row, "gear": f"{stage}{DOT}{row['gear']}"} if stage else row
+        return {**row, "gear": stage or NAMES.get(str(row["gear"]), row["gear"])}
+    gear = f"{stage}{DOT}{row['gear']}" if stage else str(row["gear"])
+    bearing = {"bearing": config.names.place(str(row["bearing"]))} if "bearing" in row else {}
+    return {**row, **bearing, "gear": config.names.gear(gear)}
 
 
 @lru_cache(maxsize=8)  # records of one specimen and state come one after the other
@@ -43,6 +46,9 @@ def _damage(config: Config, specimen_id: int, state_id: int) -> tuple[dict[str, 
     """Return the damage of a state by stage, and in sets that store edges those of damage that states none itself."""
     specimen = draw_specimen(state_config(config, specimen_id, state_id), specimen_id)
     damage = {"": state_damage(config, specimen_id, gear_pair(specimen.gears), state_id)}
+    if specimen.planetary is not None:
+        _, inner = planets_in_ring(specimen)
+        damage[RING] = state_damage(ring_config(config), specimen_id, inner, state_id)
     for index, stage in enumerate(specimen.stages):
         own = stage_config(config, specimen, index)
         damage[stage.name] = state_damage(own, specimen_id, gear_pair(stage.gears), state_id)

@@ -71,7 +71,8 @@ def state_labels(config: Config, state_id: int) -> dict[str, object]:
     """Return the labels of `siggen.columns.state_columns`."""
     sham = {"sham": config.states[state_id].sham} if has_sham(config) else {}
     keys = {CHANGED_COLUMN.name: [one.path for _, one in config.changes_of(state_id)]} if has_changes(config) else {}
-    shown, words = shown_words(config, state_id), combined_words(config)
+    words = combined_words(config)
+    shown = shown_words(config, state_id) if words else ()
     primary = {PRIMARY_COLUMN.name: config.states[state_id].primary_fault} if words else {}
     return {**sham, **keys, **primary, **{f"has_{word}": word in shown for word in words}}
 

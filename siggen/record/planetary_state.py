@@ -1,59 +1,52 @@
-"""State and labels of a planetary set: those of sun and first planet, seen as a pair, and what the others add."""
+"""Labels of a planetary set: those of sun and first planet, seen as a pair, and what the ring and the others add."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
-from siggen.columns.planetary_columns import RENAMED
+from siggen.columns.planetary_columns import renamed
 from siggen.config import Config
-from siggen.config.planetary import NAMES
-from siggen.gears.damage.tooth_damage import on_teeth
-from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
-from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
+from siggen.config.planetary import NAMES, RING
 from siggen.planning.specimen import Specimen
-from siggen.specimen.contact import largest_force_n, tooth_tables
-from siggen.specimen.made_gears import MadeGears
-from siggen.specimen.motion import SpecimenMesh
-from siggen.specimen.planetary_meshes import with_planets
+from siggen.record.stage_labels import ADDED, LARGEST, LOSS
 from siggen.specimen.planetary_numbers import pin_errors_m, planetary_teeth
 from siggen.specimen.static_mesh import StaticMesh
 
-LOSS = "mesh_stiffness_loss_as_simulated"
 
+def with_ring_labels(first: Mapping[str, Any], ring: Mapping[str, Any]) -> dict[str, object]:
+    """Return the labels of a state by those of its sun and first planet, and those of that planet in the ring.
 
-def planetary_mesh(
-    config: Config, specimen: Specimen, made: MadeGears, state_id: int, first: SpecimenMesh, options: StiffnessOptions
-) -> SpecimenMesh:
-    """Return all meshes of a set by that of the sun with its first planet, in a state."""
-    damage = on_teeth(made.damage(state_id))
-    of_sun = tuple(one for one in damage if one.gear == "pinion")
-    if len(of_sun) == len(damage):
-        return with_planets(config, specimen, first, first, options)
-    teeth = tooth_tables(
-        specimen.dynamics, first.pair, of_sun, options, TABLE_POINTS,
-        largest_force_n(config.operating_points, first.pair),
-    )  # fmt: skip
-    other = replace(first, tables=teeth.tables, coupling_m_per_n=teeth.coupling_m_per_n, contact=teeth.contact)
-    return with_planets(config, specimen, first, other, options)
+    Counts and areas add up; of shares, lengths and losses the largest counts.
+    """
+    gears = [str(one) for one in (NAMES.get(first["faulty_gear"], first["faulty_gear"]),) if one != "none"]
+    gears += [RING] * (ring["faulty_gear"] != "none")
+    return {
+        **first,
+        **{key: first[key] + ring[key] for key in ADDED},
+        **{key: max(first[key], ring[key]) for key in LARGEST},
+        "faulty_gear": "several" if len(gears) > 1 else next(iter(gears), "none"),
+        "faulty_teeth_ring": ring["faulty_teeth_gear"],
+    }
 
 
 def planetary_labels(
-    config: Config, specimen: Specimen, labels: Mapping[str, Any], static: StaticMesh
+    config: Config, specimen: Specimen, labels: Mapping[str, Any], meshes: tuple[StaticMesh, ...]
 ) -> dict[str, object]:
-    """Return the labels of a set by those of its sun and first planet as a pair; each planet carries its share."""
+    """Return the labels of a set by those of its sun and first planet as a pair; each planet carries its share.
+
+    `meshes` are those of the first planet with the sun and with the ring, at rest.
+    """
     if specimen.planetary is None:
         return dict(labels)
     teeth, sun_hz = planetary_teeth(specimen), float(labels["pinion_shaft_hz"])
-    carrier_hz = sun_hz / (1.0 + teeth.ring / teeth.sun)
-    found = {RENAMED[name][0] if name in RENAMED else name: value for name, value in labels.items()}
+    carrier_hz, of_each = sun_hz / (1.0 + teeth.ring / teeth.sun), float(labels["torque_nm"]) / len(teeth.places)
+    torques = (of_each, of_each * teeth.planet / teeth.sun)
     return {
-        **found,
-        "faulty_gear": NAMES.get(str(labels["faulty_gear"]), labels["faulty_gear"]),
+        **{renamed(name): value for name, value in labels.items()},
         "planet_hz": carrier_hz * teeth.ring / teeth.planet,
         "mesh_hz": carrier_hz * teeth.ring,
-        LOSS: static.largest_loss(float(labels["torque_nm"]) / len(teeth.places)),
+        LOSS: max(mesh.largest_loss(torque) for mesh, torque in zip(meshes, torques, strict=True)),
         "teeth_ring": teeth.ring,
         "planet_positions_deg": [360.0 * float(place) for place in teeth.places],
         "carrier_hz": carrier_hz,

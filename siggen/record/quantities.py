@@ -7,6 +7,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, bearing_force_name
 from siggen.config import Config
+from siggen.config.names import Names
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
@@ -57,7 +58,9 @@ def internal_quantities(specimen: Specimen, response: Response) -> dict[str, Flo
 
 def is_asked_for(config: Config, name: str) -> bool:
     """Return whether the section `internals` stores a quantity."""
-    return config.internals is not None and (config.internals.stores_all or name in config.internals.quantities)
+    return config.internals is not None and (
+        config.internals.stores_all or config.names.column(name) in config.internals.quantities
+    )
 
 
 def pinion_angle_rad(drive: Rotation, fs_hz: float, first: int, count: int) -> FloatArray:
@@ -65,15 +68,15 @@ def pinion_angle_rad(drive: Rotation, fs_hz: float, first: int, count: int) -> F
     return np.asarray(np.mod(drive.angle_rad(np.arange(first, first + count) / fs_hz), 2.0 * np.pi))
 
 
-def quantity_column(name: str) -> Column:
-    """Return name, unit and meaning of a quantity as a column."""
+def quantity_column(name: str, names: Names) -> Column:
+    """Return name, unit and meaning of a quantity as a column, in the user's words."""
     import pyarrow as pa
 
     unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
     meaning = MEANINGS.get(name) or name.replace("_", " ")
     if is_of_contact_alone(name):
         meaning += "; NaN while the pair does not touch on its drive flank"
-    return Column(name, pa.float32(), unit, meaning)
+    return Column(names.column(name), pa.float32(), unit, names.text(meaning))
 
 
 def transmission_error_m(approach_m: FloatArray, specimen: Specimen) -> FloatArray:

@@ -9,11 +9,13 @@ from functools import lru_cache
 import numpy as np
 
 from siggen.checks.quantity_names import acceleration_name
+from siggen.columns.own_columns import own_labels
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
+from siggen.dynamics.time.transient import both_settled_s
 from siggen.errors import SolverFailure
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
@@ -31,7 +33,7 @@ from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import FORCE, SHAFT
 from siggen.sensors.sensor import needs
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
-from siggen.specimen.instrument import Instrument, history_s, settle_s
+from siggen.specimen.instrument import Instrument, history_s
 from siggen.specimen.step_choice import stepped_motion
 from siggen.specimen.structure import structure
 
@@ -111,9 +113,8 @@ def _stream(
 
 
 def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
-    """Return the least time before the record; a motion that starts near its end needs its history behind it."""
-    before_s = history_s(config, specimen)
-    return before_s + motion.transient_s if motion.starts_settled else settle_s(config, specimen)
+    """Return the least time before the record, in which motion and filters forget the start."""
+    return both_settled_s(motion.transient_s, history_s(config, specimen))
 
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
@@ -162,8 +163,10 @@ def simulated(
         "contact_loss_share": response.contact_loss_share,
         "status": "ok",
         **channel_labels,
-    }, state.static)  # fmt: skip
-    internals = response.quantities() if isinstance(response, StreamedInternals) else None
+    }, state.at_rest)  # fmt: skip
+    internals = None
+    if isinstance(response, StreamedInternals):
+        internals = {config.names.column(name): values for name, values in response.quantities().items()}
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
     return Record(planned, labels, channels, tacho_s, internals)
 
@@ -201,9 +204,9 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record
             state = state_of(record.state_id)
             made = simulated(machine.config, machine.specimen, machine.instrument, state, record)
             labels = {**made.labels, **machine.labels, **state_labels(whole, record.state_id)}
-            yield replace(made, labels=labels)
+            yield replace(made, labels=own_labels(whole, labels))
         except SolverFailure as failure:
-            yield RecordFailure(record.record_id, failure.status, failure.reason)
+            yield RecordFailure(record.record_id, failure.status, whole.names.text(failure.reason))
 
 
 def _staged_state(machine: Machine, state_id: int) -> SpecimenState:

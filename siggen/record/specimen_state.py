@@ -17,7 +17,7 @@ from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
 from siggen.planning.stages import turns
 from siggen.record.labels import damage_labels
-from siggen.record.planetary_state import planetary_mesh
+from siggen.record.planetary_state import with_ring_labels
 from siggen.record.stage_labels import stage_labels
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_uniforms
@@ -25,19 +25,20 @@ from siggen.specimen.back_flanks import with_back_flanks, with_static_back
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
-from siggen.specimen.gears import stiffness_options
+from siggen.specimen.gears import mesh_options, stiffness_options
 from siggen.specimen.lost_mass import MeshPlace
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import MeshBehind, SpecimenMesh
+from siggen.specimen.planetary_meshes import made_meshes, with_planets
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
-from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
 class SpecimenState:
     """Everything that all records of one specimen and state share; built once for them.
 
-    `behind` are the same of the further meshes, whose labels are in `labels` already.
+    `behind` are the same of the further meshes, whose labels are in `labels` already; `ring` that of the first planet
+    in the ring of a planetary set.
     """
 
     pair: GearPair
@@ -48,6 +49,12 @@ class SpecimenState:
     static: StaticMesh
     parts: Parts = ()
     behind: tuple[SpecimenState, ...] = ()
+    ring: SpecimenState | None = None
+
+    @property
+    def at_rest(self) -> tuple[StaticMesh, ...]:
+        """Return the static mesh, and behind it that of the ring where there is one."""
+        return (self.static,) if self.ring is None else (self.static, self.ring.static)
 
     @property
     def parts_behind(self) -> list[tuple[GearPair, Parts, MeshPlace]]:
@@ -82,7 +89,8 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
     SolverFailure
         If what was drawn cannot be built (named in the reason).
     """
-    pair, options = made.pair, stiffness_options(specimen.stiffness)
+    pair = made.pair
+    options = mesh_options(pair, stiffness_options(specimen.stiffness))
     with refused_as("impossible_damage"):
         parts = made.damage(state_id)
         damage = on_teeth(parts)
@@ -105,14 +113,21 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     """
     made = made or MadeGears(config, specimen)
     with refused_as("outside_model"):
-        assembled = structure(config, specimen)
-    first = _mesh_state(made, state_id, assembled)
+        assembled = made.structure
     if specimen.planetary is not None:
-        mesh = planetary_mesh(config, specimen, made, state_id, first.mesh, first.options)
-        return replace(first, mesh=mesh)
+        return _planetary_state(config, made, state_id, assembled)
+    first = _mesh_state(made, state_id, assembled)
     if not specimen.stages:
         return first
     return _with_stages(config, specimen, first, tuple(_mesh_state(one, state_id, assembled) for one in made.stages))
+
+
+def _planetary_state(config: Config, made: MadeGears, state_id: int, assembled: Structure) -> SpecimenState:
+    """Return the state of a planetary set: that of the sun with its first planet, with all meshes behind it."""
+    states = [_mesh_state(one, state_id, assembled) for one in made_meshes(made, config)]
+    first, ring = states[0], states[len(states) // 2]
+    mesh = with_planets(config, made.specimen, [one.mesh for one in states])
+    return replace(first, mesh=mesh, labels=with_ring_labels(first.labels, ring.labels), ring=ring)
 
 
 def _with_stages(
@@ -144,8 +159,9 @@ def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> Specime
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
             made.shares(state_id), sham=config.states[state_id].sham,
         )  # fmt: skip
-        before = made.missing_before_chips(state_id)
-        mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
+        if specimen.planetary is None:  # which carries no torque below 0
+            before = made.missing_before_chips(state_id)
+            mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
     return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
 
 

@@ -102,7 +102,7 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
 
 def _housing(size: float) -> dict[str, float]:
     lengths = ("length_mm", "height_mm", "width_mm", "wall_mm", "bolts.positions_mm")
-    stiffnesses = (f"{bolts}.{way}_stiffness_n_per_m" for bolts in ("feet", "bolts") for way in ("shear", "axial"))
+    stiffnesses = (f"bolts.{way}_stiffness_n_per_m" for way in ("shear", "axial"))
     return {**dict.fromkeys((*lengths, *stiffnesses), size), "mass_kg": size**3, "inertia_kg_m2": size**5}
 
 

@@ -22,8 +22,17 @@ from siggen.sensing.sensor_response import high_pass_response, resonance_respons
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
 from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, PLATES, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity
-from siggen.sensors.resonance import Resonance
 from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
+
+
+class Resonance(Section):
+    """A second-order low-pass with a peak: a mass on a spring."""
+
+    frequency_hz: Annotated[Number, Within(above=0)] = Field(description="natural frequency")
+    damping_ratio: Annotated[Number, Within(above=0, most=1)] = Field(
+        default=0.05, description="the peak is 1 / (2 damping_ratio) high"
+    )
+
 
 POSITION = AllowedText(
     "two numbers in mm, from a casing's centre of gravity or the middle of a plate; a distribution is drawn per gearbox"
@@ -33,7 +42,9 @@ POSITION = AllowedText(
 class NoiseFloor(Section):
     """White noise of a given size; a distribution is drawn for every record and axis."""
 
-    floor_m_s2: Annotated[Number, Within(least=0)] = Field(description="standard deviation of the noise")
+    floor_m_s2: Annotated[Number, Within(least=0)] = Field(
+        description="standard deviation of the white noise, drawn per record and axis"
+    )
 
 
 class Accelerometer(SourceKeys, Sensor):
@@ -61,7 +72,7 @@ class Accelerometer(SourceKeys, Sensor):
         "horizontal and axial, wall: horizontal and vertical, ends: vertical and axial; null: up to 15 mm, drawn",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential", "axial"], ...], Field(min_length=1)] = Field(
-        default=("vertical",), description="directions it measures, one channel each"
+        default=("vertical",), description="what it measures, one channel each"
     )
     noise: Annotated[NoiseFloor | None, AllowedText("null, or a mapping with floor_m_s2")] = Field(
         default=None, description="added before clipping and quantisation"

@@ -30,10 +30,10 @@ class ForceWasher(Sensor):
         description="whose bearings, NAME_bearing: of the shaft of NAME.gear; not with dynamics.model: torsional",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal"], ...], Field(min_length=1)] = Field(
-        default=("vertical",), description="directions of the force, one channel each"
+        default=("vertical",), description="what it measures, one channel each"
     )
     floor_n: Annotated[Number, Within(least=0)] = Field(
-        default=0.0, description="standard deviation of its white noise, drawn for every record and axis"
+        default=0.0, description="standard deviation of the white noise, drawn per record and axis"
     )
     range_n: Annotated[Real, Field(gt=0)] = Field(description="readings are clipped at plus and minus this")
 

@@ -30,10 +30,10 @@ class TorqueSensor(Sensor):
         description="motor to pinion, or last gear to load; not with dynamics.model: 6dof",
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
-        default=("rotation",), description="what it measures"
+        default=("rotation",), description="what it measures, one channel each"
     )
     floor_nm: Annotated[Number, Within(least=0)] = Field(
-        default=0.0, description="standard deviation of its white noise, drawn for every record"
+        default=0.0, description="standard deviation of the white noise, drawn per record and axis"
     )
     range_nm: Annotated[Real, Field(gt=0)] = Field(description="readings are clipped at plus and minus this")
 

@@ -45,7 +45,7 @@ class Encoder(Sensor):
         description="what it turns with, NAME.gear of stages too; motor and load not with dynamics.model: 6dof",
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
-        default=("rotation",), description="what it measures"
+        default=("rotation",), description="what it measures, one channel each"
     )
     pulses_per_turn: Annotated[Whole, Field(ge=1, le=100_000)] = Field(
         default=1024, description="marks of the disc, as the counter counts them"
@@ -60,7 +60,7 @@ class Encoder(Sensor):
         default=5e-4, description="of the disc over the radius of its marks, in a direction drawn per gearbox"
     )
     bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
-        default=None, description="of what is stored; null: not quantised beyond the counter"
+        default=None, description="of the converter; null: not quantised"
     )
 
     def model_problems(self, places: Places) -> Iterator[Problem]:

@@ -22,6 +22,10 @@ from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
 
 PHASES = ("phase_a", "phase_b", "phase_c")
+BREAKDOWN_OVER_RATED = 5.0
+"""Slip of the largest torque over that of the rated one (assumed): the largest torque is 2.6 times the rated one."""
+MAGNETISING_OVER_ACTIVE = 0.5
+"""Amplitude of the magnetising current over the active one at the rated torque: a power factor of 0.89 (assumed)."""
 
 
 class MotorCurrent(Sensor):
@@ -38,24 +42,18 @@ class MotorCurrent(Sensor):
     kind: Literal["motor_current"] = Field(description="current of a phase of the induction motor that drives")
     place: Literal["motor"] = Field(default="motor", description="the motor; not with dynamics.model: 6dof")
     axes: Annotated[tuple[Literal["phase_a", "phase_b", "phase_c"], ...], Field(min_length=1)] = Field(
-        default=("phase_a",), description="phases, one channel each"
+        default=("phase_a",), description="what it measures, one channel each"
     )
     pole_pairs: Annotated[Whole, Field(ge=1, le=50)] = Field(default=2, description="of the motor")
     rated_torque_nm: Annotated[Number, Within(above=0)] = Field(description="torque at the rated slip")
     rated_slip: Annotated[Number, Within(above=0, most=0.2)] = Field(
         default=0.03, description="slip at the rated torque; slip follows torque"
     )
-    breakdown_slip: Annotated[Number, Within(above=0, most=1)] = Field(
-        default=0.15, description="slip of the largest torque; sets how fast torque follows slip"
-    )
     active_a: Annotated[Number, Within(above=0)] = Field(
         default=10.0, description="amplitude of the active current at the rated torque"
     )
-    magnetising_a: Annotated[Number, Within(least=0)] = Field(
-        default=5.0, description="amplitude of the magnetising current, whatever the load"
-    )
     floor_a: Annotated[Number, Within(least=0)] = Field(
-        default=0.0, description="standard deviation of its white noise, drawn for every record and phase"
+        default=0.0, description="standard deviation of the white noise, drawn per record and axis"
     )
     range_a: Annotated[Real, Field(gt=0)] = Field(
         default=100.0, description="readings are clipped at plus and minus this"
@@ -87,16 +85,15 @@ class MotorCurrent(Sensor):
     def transducer(self, axis: str, draw: AxisDraws) -> Transducer:
         """Return the winding of a phase; all phases are those of one motor."""
         numbers = {
-            key: draw.of_sensor(getattr(self, key), key)
-            for key in ("rated_torque_nm", "rated_slip", "breakdown_slip", "active_a", "magnetising_a")
+            key: draw.of_sensor(getattr(self, key), key) for key in ("rated_torque_nm", "rated_slip", "active_a")
         }
         motor = InductionMotor(
             pole_pairs=self.pole_pairs,
             rated_torque_nm=numbers["rated_torque_nm"],
             rated_slip=numbers["rated_slip"],
             rated_active_a=numbers["active_a"],
-            breakdown_slip=numbers["breakdown_slip"],
-            magnetising_a=numbers["magnetising_a"],
+            breakdown_slip=BREAKDOWN_OVER_RATED * numbers["rated_slip"],
+            magnetising_a=MAGNETISING_OVER_ACTIVE * numbers["active_a"],
         )
         return Winding(self.name, motor, 2.0 * pi / 3.0 * PHASES.index(axis))
 
@@ -128,7 +125,7 @@ class Winding:
         if not (steady + added < largest).all():
             raise SolverFailure(
                 "unreadable",
-                f"sensor {self.sensor}: the slip would pass breakdown_slip ({motor.breakdown_slip:g}), beyond which a "
+                f"sensor {self.sensor}: the slip would pass {motor.breakdown_slip:g}, five times rated_slip, where a "
                 "motor stalls; lower the torque or the variation of the speed in a record, or raise rated_torque_nm",
             )
         return phase_current(motor, steady + added, 2.0 * pi * line_hz * seconds + running.line_rad, self.behind_rad)

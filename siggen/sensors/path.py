@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, JsonValue
 from pydantic_core import CoreSchema, core_schema
 
 from siggen.errors import Problem
@@ -40,6 +40,8 @@ class TextParser:
 
 OneOrMore = Annotated[str | tuple[str, ...], TextParser()]
 
+FILLED_IN: dict[str, JsonValue] = {"readOnly": True}
+"""Of keys that siggen writes into the file of a set; no user has to."""
 
 KIND = AllowedText("measured; a sensor on a place of a housing of plates needs no path")
 
@@ -56,10 +58,14 @@ class MeasuredPath(Section):
         "gearbox draws one: sensors with as many files the same number, since what one number says belongs together",
     )
     sha256: str | None = Field(
-        default=None, description="of a single file, filled in when it is read; if given, the file must have it"
+        default=None,
+        description="of a single file, filled in when it is read; if given, the file must have it",
+        json_schema_extra=FILLED_IN,
     )
     response: OneOrMore | None = Field(
-        default=None, description="the numbers of `file`, filled in when they are read, so that the set needs no file"
+        default=None,
+        description="the numbers of `file`, filled in when they are read, so that the set needs no file",
+        json_schema_extra=FILLED_IN,
     )
 
     @property

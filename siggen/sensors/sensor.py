@@ -81,9 +81,7 @@ class Sensor(Section):
         description="part of the channel's name"
     )
     place: str = Field(description="where it is mounted")
-    axes: Annotated[tuple[str, ...], Field(min_length=1)] = Field(
-        description="directions it measures, one channel each"
-    )
+    axes: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="what it measures, one channel each")
     gain: Annotated[Number | tuple[Number, ...], Within(above=0, many=True)] = Field(
         default=1.0,
         description="reading per true value, drawn per specimen and axis; a list: one number per axis",

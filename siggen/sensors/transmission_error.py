@@ -21,6 +21,7 @@ from siggen.sensors.transducer import Running, Transducer
 
 LARGEST_UM = 1e6
 MICROMETRES = 1e6
+ENCODER = "name of an encoder of the set on its pinion or the motor in front, and on its gear or the load behind"
 
 
 class TransmissionError(Sensor):
@@ -39,12 +40,12 @@ class TransmissionError(Sensor):
     kind: Literal["transmission_error"] = Field(description="difference of two encoders on the line of action")
     place: Literal["mesh"] = Field(default="mesh", description="between both encoders")
     axes: Annotated[tuple[Literal["line_of_action"], ...], Field(min_length=1)] = Field(
-        default=("line_of_action",), description="along which it counts"
+        default=("line_of_action",), description="what it measures, one channel each"
     )
-    pinion_encoder: str = Field(description="name of an encoder of the set on its pinion, or on the motor in front")
-    gear_encoder: str = Field(description="name of an encoder of the set on its gear, or on the load behind")
+    pinion_encoder: str = Field(description=ENCODER)
+    gear_encoder: str = Field(description=ENCODER)
     bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
-        default=None, description="of what is stored; null: not quantised beyond the counter"
+        default=None, description="of the converter; null: not quantised"
     )
 
     def model_problems(self, places: Places) -> Iterator[Problem]:  # noqa: ARG002

@@ -110,7 +110,7 @@ def promised(config: Config, storage: Storage, shard: ShardPlan) -> Sidecar | st
 
 def _fitting(config: Config, shard: ShardPlan, sidecar: Sidecar) -> Sidecar | str:
     """Return a sidecar whose counts can be those of the shard, or why they cannot."""
-    states = {state.name for state in config.states}
+    states = set(config.state_names)
     rows = sum(sidecar.rows_per_state.values())
     counts = (rows, rows + len(sidecar.failures), set(sidecar.rows_per_state), sidecar.records)
     if counts != (sidecar.data.rows, shard.record_count, states, tuple(ranges(shard)[1])):

@@ -73,13 +73,13 @@ class LossLimit:
         """
         self.failures[shard] = failures
         lost = Counter(planned_record(self.config, one.record_id).state_id for one in chain(*self.failures.values()))
-        each = self.records // len(self.config.states)
+        each = self.records // self.config.state_count
         for state, count in sorted(lost.items()):
             if count > self.share * each:
                 raise LossError(self._message(state, count, each))
 
     def _message(self, state: int, count: int, each: int) -> str:
-        name, config = self.config.states[state].name, self.config
+        name, config = self.config.state_names[state], self.config
         of_state = (
             one for one in chain(*self.failures.values()) if planned_record(config, one.record_id).state_id == state
         )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from siggen.dataset.chunk import Simulate
 from siggen.dataset.label_tables import DamageRows
+from siggen.dataset.life_tables import LifeRows
 from siggen.keys.column import Column
 
 if TYPE_CHECKING:
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
 
 def _nothing(config: Config) -> Sequence[CompilationPart]:  # noqa: ARG001 - as every physics
     return ()
+
+
+def _no_life(config: Config, specimen_id: int) -> Mapping[str, Sequence[Mapping[str, object]]]:  # noqa: ARG001
+    return {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +34,8 @@ class Physics:
         (config, ids of one specimen's records) -> records or failures.
     damage_rows
         (config, record_id) -> rows of `damage/`.
+    life_rows
+        (config, specimen) -> rows of the tables of `life/`, by table.
     quantities
         config -> columns of `internals/`; asked only where a set stores some.
     to_compile
@@ -39,6 +46,7 @@ class Physics:
     damage_rows: DamageRows
     quantities: Callable[[Config], Sequence[Column]]
     to_compile: Callable[[Config], Sequence[CompilationPart]] = _nothing
+    life_rows: LifeRows = _no_life
 
     def stored(self, config: Config) -> tuple[Column, ...]:
         """Return the columns of `internals/` of a set; none where it stores none."""
@@ -50,6 +58,7 @@ def physics() -> Physics:
     from siggen.record.compilation import to_compile
     from siggen.record.damage_rows import damage_rows
     from siggen.record.internals import stored_quantities
+    from siggen.record.life_rows import life_rows
     from siggen.record.simulation import simulate_specimen
 
-    return Physics(simulate_specimen, damage_rows, stored_quantities, to_compile)
+    return Physics(simulate_specimen, damage_rows, stored_quantities, to_compile, life_rows)

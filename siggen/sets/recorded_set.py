@@ -95,6 +95,7 @@ def write_recorded_set(
         "specimens": len({row["specimen_id"] for row in rows}),
         "fs_hz": float(config.fs_hz),
         "duration_s": samples / float(config.fs_hz),
+        "rows_per_group": GROUP_ROWS,
         "channels": [asdict(channel) for channel in channels(config)],
     }
     storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, INJECTED])))

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from siggen.columns.internals import internals_schema
-from siggen.columns.record import RecordFailure, record_schema
+from siggen.columns.record import RecordFailure, channels, record_schema
 from siggen.dataset.card import card
+from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.environment import environment, fingerprint
 from siggen.dataset.extensions import EXTENSIONS
 from siggen.dataset.folder import config_bytes
 from siggen.dataset.label_tables import write_damage, write_metadata
+from siggen.dataset.life_tables import write_life
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
 from siggen.dataset.object_name import sidecar_name
 from siggen.dataset.pieces import Maker, Pieces
@@ -24,18 +26,35 @@ from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
 from siggen.keys.column import Column
-from siggen.planning.plan import ShardPlan, shards
+from siggen.planning.plan import ShardPlan, rows_per_group, shards
 from siggen.sets import physics as contents
 from siggen.sets.earlier_shards import Again, EarlierShards
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import LossLimit
-from siggen.sets.manifest_facts import manifest_facts
 from siggen.sets.run_facts import run_facts
 from siggen.sets.run_journal import Events, RunJournal
 from siggen.sets.shard_making import ShardMaking, ranges
 
 if TYPE_CHECKING:
     from siggen.config import Config
+
+
+def manifest_facts(config: Config, quantities: Sequence[Column]) -> dict[str, Any]:
+    """Return the facts; `quantities` are the columns of `internals/`, none where a set stores none."""
+    internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in quantities]
+    return {
+        **({"internals": internals} if internals else {}),
+        "name": config.name,
+        "identity": config.identity,
+        "seed": config.seed,
+        "specimens": config.specimens,
+        "fs_hz": float(config.fs_hz),
+        "duration_s": float(config.duration_s),
+        "rows_per_group": rows_per_group(config),
+        "channels": [asdict(channel) for channel in channels(config)],
+        **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
+    }
+
 
 Progress = Callable[[int, int], None]
 """(records done, records of the set); called after every chunk."""
@@ -235,6 +254,7 @@ class SetRun:
             if of_split:
                 tables.append(write_metadata(self.storage, self.config, split, of_split))
                 tables.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows))
+                tables += write_life(self.storage, self.config, split, of_split, self.physics.life_rows)
             self.interruption.check()
         self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
         written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -143,7 +144,7 @@ class ShardMaking:
         """Write the rows of a shard as they come, then commit it with its sidecar."""
         begun_s = self.journal.seconds
         failures: list[RecordFailure] = []
-        rows_per_state = dict.fromkeys((state.name for state in self.config.states), 0)
+        rows_per_state = dict.fromkeys(self.config.state_names, 0)
         with self._data(shard) as data, self._internals(shard) as internals:
             for result in self._results(shard, made):
                 self.interruption.check()
@@ -204,6 +205,8 @@ class ShardMaking:
 
 def ranges(shard: ShardPlan) -> tuple[IdRanges, IdRanges]:
     """Return the ranges of specimens and of records of a planned shard."""
+    if shard.counts:
+        return IdRanges(shard.specimens), IdRanges(array("q", shard.record_ids))
     return IdRanges(shard.specimens), IdRanges(shard.specimens, shard.records_per_specimen)
 
 

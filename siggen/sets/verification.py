@@ -12,21 +12,22 @@ from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
 from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts, sidecar_facts
-from siggen.dataset.id_ranges import in_ranges
 from siggen.dataset.inventory import HashedFiles, Inventory, PromisedFile
 from siggen.dataset.manifest import (
     CONFIG,
     DAMAGE_FOLDER,
     INJECTED,
+    LIFE_FOLDER,
     MANIFEST,
     METADATA_FOLDER,
     PHYSICS,
     RUN,
     read_manifest,
 )
-from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, SIDECAR_FOLDER, sidecar_name
+from siggen.dataset.object_name import CHECKSUMS, DATA_FOLDER, INDEX, INTERNALS_FOLDER, SIDECAR_FOLDER, sidecar_name
 from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import unsealed
+from siggen.dataset.shard_index import ShardIndex, promised_files
 from siggen.dataset.storage import Storage, sha256
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
@@ -38,7 +39,7 @@ from siggen.sets.record_comparison import result_difference
 if TYPE_CHECKING:
     from siggen.config import Config
 
-OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, SIDECAR_FOLDER)
+OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, LIFE_FOLDER, SIDECAR_FOLDER)
 
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
@@ -115,11 +116,9 @@ def verify(
         manifest = manifest_facts(MANIFEST, storage.get(MANIFEST))
     except VerificationError as error:
         return Verification(storage.location, 1, storage.size(MANIFEST), (), "none", (Mismatch(MANIFEST, str(error)),))
-    mismatches = [
-        *_file_mismatches(storage, manifest.files),
-        *_strangers(storage, manifest.files),
-        *_run(storage),
-    ]
+    mismatches = [*_file_mismatches(storage, manifest.files), *_run(storage)]
+    files, shard_mismatches = _with_shards(storage, manifest, mismatches)
+    mismatches += shard_mismatches
     if not mismatches and isinstance(manifest, Inventory):
         mismatches += _sidecar_mismatches(storage, manifest)
     records: tuple[int, ...] = ()
@@ -131,8 +130,8 @@ def verify(
     elif sample:
         records, comparison, different = _simulate_again(storage, sample, engine, workers)
         mismatches += different
-    total = sum(facts.bytes for facts in manifest.files.values())
-    count = len(manifest.files) + 2
+    total = sum(facts.bytes for facts in files.values())
+    count = len(files) + 2
     environments = manifest.environments if isinstance(manifest, Inventory) else ()
     versions = tuple(dict.fromkeys(version_text(one) for one in environments)), version_text(environment())
     return Verification(storage.location, count, total, records, comparison, tuple(mismatches), *versions)
@@ -162,20 +161,49 @@ def _file_mismatches(storage: Storage, files: Mapping[str, PromisedFile]) -> Ite
             yield Mismatch(name, problem)
 
 
+def _with_shards(
+    storage: Storage, manifest: HashedFiles, found: Sequence[Mismatch]
+) -> tuple[Mapping[str, PromisedFile], list[Mismatch]]:
+    """Return all files that are promised, and what is wrong with those of the shards.
+
+    Where the table that promises them is damaged, they are neither compared nor called strangers.
+    """
+    files = dict(manifest.files)
+    if CHECKSUMS in files:  # a manifest of an earlier version names all files
+        if any(one.what == CHECKSUMS for one in found):
+            return files, []
+        try:
+            promised = dict(promised_files(storage, files[CHECKSUMS]))
+        except DatasetError as error:
+            return files, [Mismatch(CHECKSUMS, str(error))]
+        files |= promised
+        return files, [*_file_mismatches(storage, promised), *_strangers(storage, files)]
+    return files, list(_strangers(storage, files))
+
+
 def _sidecar_mismatches(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
-    """Yield the sidecars that say something else than the manifest, which a stranger may have sealed around them."""
-    for shard in manifest.shards:
+    """Yield the sidecars that say something else than the index, which a stranger may have sealed around them."""
+    try:
+        index = ShardIndex(storage, manifest)
+    except DatasetError as error:
+        yield Mismatch(INDEX, str(error))
+        return
+    for shard in index.shards():
         name = sidecar_name(shard.shard)
         try:
             facts = sidecar_facts(name, storage.get(name))
         except (VerificationError, DatasetError) as error:
             yield Mismatch(name, str(error))
             continue
-        tables = {table.name: (table.bytes, table.sha256) for table in (facts.data, facts.internals) if table}
-        promised = {table: (manifest.files[table].bytes, manifest.files[table].sha256) for table in shard.tables}
+        tables = {
+            table.name: PromisedFile(bytes=table.bytes, sha256=table.sha256, crc32_per_64_kib=table.crc32_per_64_kib)
+            for table in (facts.data, facts.internals)
+            if table
+        }
+        promised = {table: index.promised(table) for table in shard.tables}
         listed = (shard.specimens, shard.records, shard.rows, manifest.environments[shard.environment])
         if tables != promised or listed != (facts.specimens, facts.records, facts.data.rows, facts.environment):
-            yield Mismatch(name, "says something else than the manifest")
+            yield Mismatch(name, "says something else than the index")
 
 
 def _content_problem(storage: Storage, name: str, promised: str) -> str:
@@ -211,7 +239,7 @@ def _simulate_again(
         return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
     ids = _sample(dataset, sample)
     here = fingerprint(environment())
-    exact = {record_id: fingerprint(_environment(dataset.inventory, record_id)) == here for record_id in ids}
+    exact = {record_id: fingerprint(_environment(dataset, record_id)) == here for record_id in ids}
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
     function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
@@ -250,9 +278,9 @@ def _sample(dataset: Dataset, count: int) -> list[int]:
     return sorted(Random(dataset.inventory.identity).sample(ids, min(count, len(ids))))
 
 
-def _environment(manifest: Inventory, record_id: int) -> Mapping[str, str]:
-    owners = (shard for shard in manifest.shards if in_ranges(record_id, shard.records))
-    return next((manifest.environments[shard.environment] for shard in owners), {})
+def _environment(dataset: Dataset, record_id: int) -> Mapping[str, str]:
+    owner = dataset.index.owner(record_id)
+    return {} if owner is None else dataset.inventory.environments[owner.environment]
 
 
 def problem_lines(mismatches: Sequence[Mismatch]) -> list[str]:

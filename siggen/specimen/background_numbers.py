@@ -23,17 +23,18 @@ SomeSection = TypeVar("SomeSection", bound=Section)
 
 
 class BaseNumbers(Base):
-    """Of the base on its mounts: `mount_hz`, drawn for each motion, and rubber's damping (assumed)."""
+    """Of the base: natural frequencies on its mounts, and rubber's damping (assumed)."""
 
-    horizontal_hz: Drawn
-    vertical_hz: Drawn
-    rocking_hz: Drawn
+    horizontal_hz: Drawn = LogUniform(low=10.0, high=60.0)
+    vertical_hz: Drawn = LogUniform(low=10.0, high=60.0)
+    rocking_hz: Drawn = LogUniform(low=10.0, high=60.0)
     damping_ratio: Drawn = Uniform(low=0.05, high=0.15)
 
 
 class BurstNumbers(Bursts):
-    """Time constant, and rise over the rms of the rubbing (assumed)."""
+    """Mean number per second (Poisson), time constant, and rise over the rms of the rubbing (assumed)."""
 
+    rate_hz: Drawn = LogUniform(low=0.2, high=5.0)
     decay_ms: Drawn = Uniform(low=2.0, high=10.0)
     peak: Drawn = LogUniform(low=1.0, high=4.0)
 
@@ -46,8 +47,8 @@ class RubbingNumbers(Rubbing):
     Across the face roughness averages over face/correlation (assumed). La is the asperities' share of the load; p
     (assumed). M with a power of the sliding speed of a pair (assumed). The shafts modulate it: runout moves the load
     and the film between teeth and across the face (assumed; machines had 0.1 to 0.5 and 0.06 to 0.42 of all noise), and
-    a share of its power returns with every turn of pinion and gear, half each (measured). The level changes within 10
-    ms (measured).
+    a share of its power returns with every turn of pinion and gear, half each (measured). The level is exp(s U -
+    s²/2), s `level_std`: kurtosis 3 exp(s²) (measured: 0.1 to 0.6; assumed beyond). It changes within 10 ms (measured).
     """
 
     correlation_mm: Drawn = LogUniform(low=0.05, high=1.0)
@@ -57,6 +58,7 @@ class RubbingNumbers(Rubbing):
     sliding_exponent: Drawn = Uniform(low=0.5, high=1.0)
     pinion_depth: Drawn = LogUniform(low=0.2, high=0.9)
     gear_depth: Drawn = LogUniform(low=0.1, high=0.45)
+    level_std: Drawn = LogUniform(low=0.1, high=1.25)
     level_time_ms: Drawn = LogUniform(low=1.0, high=8.0)
     replayed_share: Drawn = LogUniform(low=0.01, high=0.08)
     bursts: BurstNumbers | None
@@ -65,13 +67,18 @@ class RubbingNumbers(Rubbing):
 class BearingNumbers(Bearings):
     """Of both bearings of a shaft: rms velocities of the bands, and how the shaft modulates the noise (assumed).
 
-    The cage lags by a share that a record draws (assumed: 0.5 to 2 %). The level changes within 10 ms (measured).
+    Balls that pass the outer ring `ball_pass_order` times a turn (derived) move the shaft by `compliance_um` (assumed);
+    bearings of `dynamics.<shaft>.bearing` have their own. The cage lags by a share that a record draws (assumed: 0.5 to
+    2 %). The level is as of the rubbing, one course per shaft (measured).
     """
 
     low_um_s: Drawn
     middle_um_s: Drawn
     high_um_s: Drawn
+    compliance_um: Drawn = LogUniform(low=0.02, high=0.3)
+    ball_pass_order: Drawn = Uniform(low=3.0, high=5.5)
     shaft_depth: Drawn = LogUniform(low=0.03, high=0.4)
+    level_std: Drawn = LogUniform(low=0.1, high=0.6)
     level_time_ms: Drawn = LogUniform(low=1.0, high=8.0)
 
 
@@ -87,12 +94,13 @@ class MachineNumbers(Machines):
 
 
 class ShaftNumbers(ShaftLines):
-    """Forces of a coupling at 2x to 4x over 1x, and the balance of the rotor beside.
+    """Misalignment and run-out of a coupling (assumed), its forces at 2x to 4x over 1x, balance of the rotor beside.
 
     Measured: velocity at -22 to -4, -26 to -8 and -32 to -12 dB. Grades G2.5 to G16 of ISO 21940-11, at the rated speed
     of the pinion's shaft; the gear's by the ratio.
     """
 
+    offset_um: Drawn = LogUniform(low=10.0, high=100.0)
     second_db: Drawn = Uniform(low=-16.0, high=2.0)
     third_db: Drawn = Uniform(low=-16.5, high=1.5)
     fourth_db: Drawn = Uniform(low=-20.0, high=0.0)
@@ -152,14 +160,12 @@ class BackgroundNumbers(Background):
 
 def background_numbers(section: Background) -> BackgroundNumbers:
     """Return what a section says, and what no file says."""
-    base, rubbing = section.base, section.rubbing
-    mounts = {} if base is None else dict.fromkeys(("horizontal_hz", "vertical_hz", "rocking_hz"), base.mount_hz)
+    rubbing = section.rubbing
     bearings = section.bearings
     bands = {} if bearings is None else dict.fromkeys(BANDS, bearings.velocity_um_s)
     bursts = None if rubbing is None else _completed(BurstNumbers, rubbing.bursts)
     return BackgroundNumbers.model_construct(
-        redraw=section.redraw,
-        base=_completed(BaseNumbers, base, **mounts),
+        base=_completed(BaseNumbers, section.base),
         rubbing=_completed(RubbingNumbers, rubbing, bursts=bursts),
         bearings=_completed(BearingNumbers, section.bearings, **bands),
         machines=_completed(MachineNumbers, section.machines),

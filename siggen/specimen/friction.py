@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from math import hypot, pi
+from functools import lru_cache
+from math import copysign, hypot, pi
 
 from siggen.config import Friction
-from siggen.dynamics.friction.asperity_table import asperity_table
+from siggen.dynamics.friction.asperity_table import AsperityTable, asperity_table
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
 from siggen.dynamics.friction.friction import FrictionLaw, composite_friction, constant_friction
 from siggen.dynamics.friction.lubrication import LubricatedMesh
@@ -33,14 +34,29 @@ def specimen_friction(
         return constant_friction(constant(section.coefficient))
     mesh, force_n = lubricated_mesh(section, pair, point), mean_force_n(pair, point)
     healthy_m, pitted_m = composite_roughness_m(section)
-    table = asperity_table(
+    table = _table(
         mesh,
-        [healthy_m, pitted_m] if rough_pits else [healthy_m],
-        # Corners touch a little outside the path of contact; half-way to the base circles the radius is still finite.
-        (0.5 * pair.contact_start_m, 0.5 * (pair.contact_end_m + pair.line_of_action_m)),
+        (healthy_m, pitted_m) if rough_pits else (healthy_m,),
+        _places_m(pair),
         LARGEST_FORCE * force_n,
     )
     return composite_friction(table, slip_speed_m_s=slip_speed(mesh, pitch_point(pair, mesh), force_n, healthy_m))
+
+
+@lru_cache(maxsize=8)  # states of a gearbox share them
+def _table(
+    mesh: LubricatedMesh, roughness_m: tuple[float, ...], range_m: tuple[float, float], largest_force_n: float
+) -> AsperityTable:
+    return asperity_table(mesh, roughness_m, range_m, largest_force_n)
+
+
+def _places_m(pair: GearPair) -> tuple[float, float]:
+    """Return between which positions flanks may touch [m].
+
+    Corners touch a little outside the path of contact; half-way to the base circles the radius is still finite.
+    """
+    start, end, line = 0.5 * pair.contact_start_m, pair.contact_end_m, pair.line_of_action_m
+    return start, 0.5 * (end + line) if line > 0.0 else end + start  # no base circle lies behind a hollow flank
 
 
 def mean_force_n(pair: GearPair, point: OperatingPoint) -> float:
@@ -75,7 +91,8 @@ def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) ->
     return LubricatedMesh(
         line_m=pair.line_of_action_m,
         speed_1_rad_s=speed,
-        speed_2_rad_s=speed * pair.pinion.teeth / pair.gear.teeth,
+        # of a ring, which turns the same way, negative as its base radius
+        speed_2_rad_s=copysign(speed * pair.pinion.teeth / pair.gear.teeth, pair.gear.signed_base_radius_m),
         contact_length_m=pair.face_width_m,
         effective_modulus_pa=effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio),
         viscosity_pa_s=oil.viscosity_pa_s(temperature_c),

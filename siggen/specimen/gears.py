@@ -1,36 +1,17 @@
-"""From the units of the configuration (mm, degrees, GPa) to the SI objects of the physics."""
+"""Options of the stiffness model that a configuration names, and what to know about it."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
-from siggen.config import Config, Pair, Stiffness, Wheel
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.helical import transverse_gear
+from siggen.config import Config, Stiffness
+from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.drawing import corners
-from siggen.keys.number import constant
+from siggen.planning.gear_pair import gear_pair
 
-
-def gear_pair(gears: Pair) -> GearPair:
-    """Return the gear pair of a drawn section `gears`.
-
-    Raises
-    ------
-    TypeError
-        If a number of the section is still a distribution.
-    """
-    distance_mm = gears.centre_distance_mm
-    return GearPair(
-        pinion=_spur_gear(gears, gears.pinion),
-        gear=_spur_gear(gears, gears.gear),
-        face_width_m=constant(gears.face_width_mm) / 1e3,
-        youngs_modulus_pa=constant(gears.youngs_modulus_gpa) * 1e9,
-        poisson_ratio=constant(gears.poisson_ratio),
-        centre_distance_m=None if distance_mm is None else constant(distance_mm) / 1e3,
-        helix_rad=math.radians(constant(gears.helix_deg)),
-    )
+__all__ = ["gear_pair", "mesh_options", "model_notes", "stiffness_options"]
 
 
 def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
@@ -38,21 +19,13 @@ def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
     return StiffnessOptions(stiffness.beam, coupling=stiffness.coupled_by)
 
 
+def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
+    """Return the options of one pair of a gearbox: in a ring neighbours do not act on each other."""
+    return options if pair.tips_meet_flanks else replace(options, coupling="none")
+
+
 def model_notes(config: Config) -> tuple[str, ...]:
     """Return what to know about the stiffness model of a set, at the bounds of its gears, each sentence once."""
     options = stiffness_options(config.stiffness)
     notes = (note for corner in corners(config.gears) for note in stiffness_notes(gear_pair(corner), options))
     return tuple(dict.fromkeys(notes))
-
-
-def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
-    normal = SpurGear(
-        teeth=wheel.teeth,
-        module_m=constant(gears.module_mm) / 1e3,
-        pressure_angle_rad=math.radians(constant(gears.pressure_angle_deg)),
-        profile_shift=constant(wheel.profile_shift),
-        addendum_coefficient=constant(gears.addendum_coefficient),
-        clearance_coefficient=constant(gears.clearance_coefficient),
-        bore_radius_m=constant(wheel.bore_radius_mm) / 1e3,
-    )
-    return transverse_gear(normal, math.radians(constant(gears.helix_deg)))

@@ -115,12 +115,7 @@ def _height_m(drawn_m: float, contents: Contents, wall_m: float, plate: float) -
 
 
 def _bolt_n_per_m(numbers: PlateNumbers, centre_m: float) -> tuple[float, float]:
-    feet = numbers.feet
-    shear, axial = (
-        constant(own) * centre_m if given is None else constant(given)
-        for given, own in ((feet.shear_stiffness_n_per_m, numbers.shear), (feet.axial_stiffness_n_per_m, numbers.axial))
-    )
-    return shear, axial
+    return constant(numbers.shear) * centre_m, constant(numbers.axial) * centre_m
 
 
 def _wall_m(numbers: PlateNumbers, centre_m: float) -> float:

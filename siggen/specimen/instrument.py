@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial, reduce
 
 import numpy as np
+from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
@@ -14,7 +15,7 @@ from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms
-from siggen.sensing.block_filter import block_grid
+from siggen.sensing.block_filter import TOGETHER, BlockGrid, block_grid, limited
 from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input, Weight
 from siggen.sensing.spectral_filter import frequencies
 from siggen.sensors.path import MeasuredPath
@@ -27,11 +28,35 @@ from siggen.specimen.background import (
     drawn_background,
     specimen_background,
 )
-from siggen.specimen.block_responses import BlockResponses, block_responses
 from siggen.specimen.housing import housing_settle_s, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
 from siggen.specimen.sensor_mass import Loading, sensor_loading
 from siggen.specimen.specimen_housing import SpecimenHousing
+
+
+@dataclass(frozen=True, slots=True)
+class BlockResponses:
+    """Channel -> input -> spectrum (length // 2 + 1,) of the filter; no inputs that a channel does not feel."""
+
+    grid: BlockGrid
+    filters: Mapping[str, Mapping[Input, NDArray[np.complex64]]]
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """All inputs that a channel feels."""
+        return tuple(dict.fromkeys(one for filters in self.filters.values() for one in filters))
+
+
+def block_responses(grid: BlockGrid, ways: Mapping[str, Mapping[Input, ComplexArray]]) -> BlockResponses:
+    """Return the filters of responses (memory // 2 + 1,)."""
+    return BlockResponses(grid, {name: _filters(grid, found) for name, found in ways.items()})
+
+
+def _filters(grid: BlockGrid, ways: Mapping[Input, ComplexArray]) -> dict[Input, NDArray[np.complex64]]:
+    names, responses = tuple(ways), tuple(ways.values())
+    parts = (np.array(responses[k : k + TOGETHER]) for k in range(0, len(responses), TOGETHER))
+    return dict(zip(names, (row for part in parts for row in limited(part, grid)), strict=True))
+
 
 CHAIN_HISTORY_S = 0.02
 """History for the resonances of sensors without a path; those above 1 kHz with 1 % damping have 0.1 % left after it."""

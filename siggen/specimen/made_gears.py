@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache, cached_property
+from typing import NamedTuple, TypeVar
 
 from siggen.config import Config
+from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.face_shares import FaceShares
@@ -18,17 +22,56 @@ from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, lead_of, spe
 from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.motion import teeth_missing
+from siggen.specimen.structure import structure
+
+Made = TypeVar("Made", SpecimenErrors, SpecimenWaves)
+
+
+class Shared(NamedTuple):
+    """A gear in two meshes: what made it with its other mate, and what it is in both pairs."""
+
+    made: MadeGears
+    which: str
+
+    def put_into(self, own: Made, of: Callable[[MadeGears, int], Made | None], drawn_for: int) -> Made:
+        """Return what is `own` to a pair with that of the shared gear in its place."""
+        return replace(own, **{self.which: getattr(of(self.made, drawn_for), self.which)})
+
+
+class SameBody(NamedTuple):
+    """The gear of another pair, whose other flanks drive; its axis is `later_rad` on in the phase of errors."""
+
+    made: MadeGears
+    later_rad: float
+
+    def on_its_axis(self, own: SpecimenErrors, drawn_for: int) -> SpecimenErrors:
+        """Return errors whose pinion turns about the axis of this gear."""
+        other = self.made.errors(drawn_for)
+        assert other is not None  # both have the section
+        axis, phase = other.gear.errors.eccentricity_m, other.gear.errors.phase_rad + self.later_rad
+        errors = replace(own.pinion.errors, eccentricity_m=axis, phase_rad=phase)
+        return replace(own, pinion=replace(own.pinion, errors=errors))
 
 
 class MadeGears:
     """Errors, waves, missing material and damage by state; `stages` are the same of the further meshes.
 
+    `pair`: that of `gears` unless it is given; `shared`: the gear that it has in common with another one; `body`: the
+    other flanks of its pinion.
     What is made by `manufacture.draw: specimen` is one for all states; damage is drawn on that of the milder state.
     """
 
-    def __init__(self, config: Config, specimen: Specimen) -> None:
-        self.pair: GearPair = gear_pair(specimen.gears)
-        self._config, self._specimen = first_mesh(config), specimen
+    def __init__(
+        self,
+        config: Config,
+        specimen: Specimen,
+        pair: GearPair | None = None,
+        shared: Shared | None = None,
+        body: SameBody | None = None,
+    ) -> None:
+        self.pair: GearPair = gear_pair(specimen.gears) if pair is None else pair
+        self._whole, self._config, self._specimen = config, first_mesh(config), specimen
+        self._shared, self._body = shared, body
         self.stages = tuple(
             MadeGears(stage_config(config, specimen, i), stage_specimen(specimen, i))
             for i in range(len(specimen.stages))
@@ -49,6 +92,17 @@ class MadeGears:
     def specimen(self) -> Specimen:
         """The gearbox with this pair as its first one."""
         return self._specimen
+
+    @cached_property
+    def structure(self) -> Structure:
+        """The structure of the whole gearbox, which damage leaves as it is.
+
+        Raises
+        ------
+        ValueError
+            As `structure`.
+        """
+        return structure(self._whole, self._specimen)
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
         """Return the errors; None for perfect gears.
@@ -90,6 +144,8 @@ class MadeGears:
         return self._damage(state_id)
 
     def _drawn_damage(self, state_id: int) -> Parts:
+        if self._shared is not None:
+            return tuple(one for one in self._shared.made.damage(state_id) if one.gear == self._shared.which)
         return grown_damage(self._config, self._specimen.specimen_id, self.pair, state_id, self.damage)
 
     def _drawn_for(self, state_id: int) -> int:
@@ -97,10 +153,14 @@ class MadeGears:
         return state_id if section is not None and section.draw == "state" else 0
 
     def _computed_errors(self, drawn_for: int) -> SpecimenErrors | None:
-        return specimen_errors(self._config, self.pair, self._specimen.specimen_id, drawn_for)
+        own = specimen_errors(self._config, self.pair, self._specimen.specimen_id, drawn_for)
+        if own is not None and self._shared is not None:
+            own = self._shared.put_into(own, MadeGears.errors, drawn_for)
+        return own if own is None or self._body is None else self._body.on_its_axis(own, drawn_for)
 
     def _computed_waves(self, drawn_for: int) -> SpecimenWaves | None:
-        return specimen_waves(self._config, self.pair, self._specimen.specimen_id, drawn_for)
+        own = specimen_waves(self._config, self.pair, self._specimen.specimen_id, drawn_for)
+        return own if own is None or self._shared is None else self._shared.put_into(own, MadeGears.waves, drawn_for)
 
     def _computed_missing(self, drawn_for: int, losses: Losses, reach: float) -> WavyTeeth:
         pair = self.pair

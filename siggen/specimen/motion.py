@@ -56,15 +56,19 @@ class TeethUnderTorque(Protocol):
 class MeshBehind(NamedTuple):
     """One mesh of a gearbox, its pinion's turns per turn of the first one, and base pitches turned when that has none.
 
-    `turned_pitches` says how the teeth of its shafts stand to those in front.
+    `turned_pitches` says how the teeth of its shafts stand to those in front; `torque_share`: torque at its pinion over
+    that at the first shaft, None where it carries all power.
     """
 
     mesh: SpecimenMesh
     turning: float = 1.0
     turned_pitches: float = 0.0
+    torque_share: float | None = None
 
     def at(self, point: OperatingPoint) -> OperatingPoint:
         """Return an operating point of the first pinion as its own pinion has it."""
+        if self.torque_share is not None:
+            return OperatingPoint(point.speed_hz * self.turning, point.torque_nm * self.torque_share)
         return point if self.turning == 1.0 else stage_point(point, self.turning)
 
 
@@ -75,7 +79,7 @@ class SpecimenMesh:
     `shares`: of the load of slices of helical teeth.
     `sham`: in what has kinds of pairs of its own nothing is removed, so that no pair is a damaged one.
     `behind` are the further meshes, which carry no torque below 0. `turning`: turns of its first gear against the frame
-    of its structure per turn of the first shaft; `line_of_action_m`: of planets in their ring, else that of `pair`.
+    of its structure per turn of the first shaft; `torque_share` as of `MeshBehind`.
     `back` makes the same of the back flanks, which carry torques below 0: `pair` has the gear in front there.
     """
 
@@ -90,17 +94,12 @@ class SpecimenMesh:
     back: Callable[[], SpecimenMesh] | None = None
     behind: tuple[MeshBehind, ...] = ()
     turning: float = 1.0
-    line_of_action_m: float | None = None
+    torque_share: float | None = None
 
     @property
     def every(self) -> tuple[MeshBehind, ...]:
         """All meshes in the order of power, itself first."""
-        return (MeshBehind(self, self.turning), *self.behind)
-
-    @property
-    def action_m(self) -> float:
-        """Length of the line of action between the base tangent points [m]."""
-        return self.pair.line_of_action_m if self.line_of_action_m is None else self.line_of_action_m
+        return (MeshBehind(self, self.turning, torque_share=self.torque_share), *self.behind)
 
     def on(self, structure: Structure) -> SpecimenMesh:
         """Return the same teeth on another structure."""
@@ -198,7 +197,7 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, mass_kg:
     return pair_law(
         mesh.tables,
         mesh.missing.under(point.torque_nm),
-        MeshConstants(mesh.action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um), _spread(mesh)),
+        MeshConstants(mesh.pair.line_of_action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um), _spread(mesh)),
         damping_ratio=_damping_ratio(dynamics),
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
         film=film if section.squeeze_film == "on" else None,

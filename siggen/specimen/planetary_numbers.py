@@ -96,7 +96,7 @@ def _body(radius_m: float, inertias: tuple[float, float], stiffness: Number, rat
 
 
 def _ring(section: Planetary, inner: InternalPair, ratio: float) -> PlanetaryBody:
-    ring = inner.ring
+    ring = inner.gear
     root, outer = ring.root_radius_m, ring.root_radius_m + RIM_MODULES * ring.module_m
     steel_kg = STEEL_DENSITY_KG_M3 * pi * (outer**2 - root**2) * inner.face_width_m
     mass = steel_kg if section.ring_mass_kg is None else constant(section.ring_mass_kg)
@@ -108,8 +108,7 @@ def _ring(section: Planetary, inner: InternalPair, ratio: float) -> PlanetaryBod
 
 def _carrier(section: Planetary, pair: GearPair, ratio: float) -> PlanetaryBody:
     radius = pair.working_centre_distance_m
-    steel_kg = STEEL_DENSITY_KG_M3 * pi * radius**2 * pair.face_width_m
-    mass = steel_kg if section.carrier_mass_kg is None else constant(section.carrier_mass_kg)
+    mass = STEEL_DENSITY_KG_M3 * pi * radius**2 * pair.face_width_m
     return _body(radius, (mass, 0.5 * mass * radius**2), section.carrier_stiffness_n_per_m, ratio)
 
 

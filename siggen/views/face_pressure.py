@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, pi
 
 import numpy as np
@@ -173,8 +173,9 @@ def _solved(
     load, pressure, at_edge = _over_positions(solver, row, force, tilt)
     member = pair.member(gear)
     along = row.position_m if gear == "pinion" else pair.line_of_action_m - row.position_m
+    view = flank_view(pair, config.states[record.state_id].name, gear, tooth, pits_of(shown, gear, tooth))
     return FacePressure(
-        view=flank_view(pair, config.states[record.state_id].name, gear, tooth, pits_of(shown, gear, tooth)),
+        view=replace(view, gear=config.names.gear(gear)),
         point=point,
         roll_deg=np.degrees(roll),
         arc_mm=1e3 * along**2 / (2.0 * member.base_radius_m),

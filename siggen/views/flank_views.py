@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pyarrow as pa
@@ -12,6 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.columns.record import damage_schema
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
 from siggen.gears.geometry.gear_pair import GearPair
@@ -23,7 +24,17 @@ from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
-from siggen.views.damage_outline import outline_mm
+
+
+def outline_mm(outline: Outline, points: int = 181) -> FloatArray:
+    """Return the corners of a closed outline (n, 2): face coordinate and height above the base circle [mm].
+
+    The height is along the tooth's centre line, as in the configuration. Not clipped to the flank. A smooth outline is
+    a polygon on it; the first corner is not repeated.
+
+    Source: paper A, section 2.1 (ellipses); polygons derived.
+    """
+    return 1e3 * outline.drawn_m(points)[:, ::-1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +97,7 @@ def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) 
     """
     pair = gear_pair(draw_specimen(config, specimen_id).gears)
     return [
-        view
+        replace(view, gear=config.names.gear(view.gear))
         for index in _state_ids(config, state)
         for view in _views(pair, config.states[index].name, on_teeth(state_damage(config, specimen_id, pair, index)))
     ]

@@ -11,10 +11,9 @@ from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.time.modes import Modes, natural_modes
-from siggen.gears.stiffness.internal_stiffness import internal_tables
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.planning.specimen import Specimen, draw_specimen
-from siggen.specimen.gears import gear_pair, stiffness_options
+from siggen.specimen.gears import gear_pair, mesh_options, stiffness_options
 from siggen.specimen.planetary_numbers import planets_in_ring
 from siggen.specimen.structure import structure
 
@@ -53,7 +52,7 @@ def _mean_stiffness(specimen: Specimen) -> list[float]:
     options = stiffness_options(specimen.stiffness)
     if specimen.planetary is not None:
         pair, inner = planets_in_ring(specimen)
-        each = mesh_tables(pair, (), options), internal_tables(pair, inner, options)
+        each = [mesh_tables(one, (), mesh_options(one, options)) for one in (pair, inner)]
         count = len(specimen.planetary.positions_deg)
         return [mean_mesh_stiffness(tables) for tables in each for _ in range(count)]
     pairs = [gear_pair(gears) for gears in (specimen.gears, *(stage.gears for stage in specimen.stages))]

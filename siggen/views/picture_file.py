@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from siggen.config.names import NO_NAMES, Names
 from siggen.errors import UsageError
 from siggen.views.figure_style import figure_style
 
@@ -28,8 +29,8 @@ def check_picture_file(path: Path) -> Path:
     return path
 
 
-def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150) -> None:
-    """Draw a figure into a file, in the one look of all pictures.
+def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150, names: Names = NO_NAMES) -> None:
+    """Draw a figure into a file, in the one look of all pictures and with the user's `names` of gears.
 
     Raises
     ------
@@ -42,6 +43,10 @@ def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150) -> None:
 
         with mpl.rc_context(figure_style()):
             figure = draw()
+            from matplotlib.text import Text
+
+            for text in figure.findobj(Text) if names.gears else ():
+                text.set_text(names.text(text.get_text()))
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'siggen[diagnostics]'") from None
     try:

@@ -9,7 +9,6 @@ import numpy as np
 
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear, geometry_problems
 from siggen.gears.geometry.internal_pair import internal_problems, ring_ahead_pitches, ring_round
-from siggen.gears.stiffness.internal_stiffness import internal_mesh_stiffness
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
@@ -40,12 +39,12 @@ def planetary_meshes(sun: int, planet: int, ring: int) -> dict[str, float]:
     return {
         "contact_ratio_sun": pair.contact_ratio,
         "contact_ratio_ring": inner.contact_ratio,
-        "ring_profile_shift": inner.ring.profile_shift,
+        "ring_profile_shift": inner.gear.profile_shift,
         "ring_working_pressure_angle_deg": degrees(inner.working_pressure_angle_rad),
         "stiffness_sun_n_per_mm_um": PER_UM
         * float(mesh_stiffness(pair, 2.0 * pi / sun * places, options).mean()),
         "stiffness_ring_n_per_mm_um": PER_UM
-        * float(internal_mesh_stiffness(pair, inner, places, options).mean()),
+        * float(mesh_stiffness(inner, 2.0 * pi / planet * places, options).mean()),
         "ring_ahead_pitches": ring_ahead_pitches(pair, inner),
     }  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,8 @@ SHAFTS = (
     ("pinion_shaft_hz", "C3", "--"), ("gear_shaft_hz", "C2", ":"), ("carrier_hz", "C3", "--"), ("planet_hz", "C2", ":")
 )  # fmt: skip
 """Rotations whose sidebands are marked, as far as a record has them."""
+OWN = (("C3", "--"), ("C2", ":"))
+"""Of a machine with names of its own: the shafts of its first mesh."""
 
 
 def amplitude_spectrum(signal: np.ndarray, fs_hz: float) -> tuple[np.ndarray, np.ndarray]:
@@ -39,7 +42,7 @@ def record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float) -> 
     from matplotlib.figure import Figure
 
     signal = np.asarray(record[channel.column], dtype=float)
-    harmonics = [h for h in range(1, HARMONICS + 1) if h * record["mesh_hz"] < fs_hz / 2]
+    harmonics = [h for h in range(1, HARMONICS + 1) if h * _mesh_hz(record) < fs_hz / 2]
     figure = Figure(figsize=(11.0, 6.5), layout="constrained")
     figure.suptitle(_title(record, channel))
     parts = figure.subfigures(2, 1, squeeze=False)[:, 0]
@@ -76,8 +79,8 @@ def _draw_waveform(ax: Axes, signal: np.ndarray, fs_hz: float, label: str) -> No
 def _draw_harmonic(
     ax: Axes, frequency_hz: np.ndarray, amplitude: np.ndarray, record: Mapping[str, Any], harmonic: int
 ) -> None:
-    centre_hz = harmonic * record["mesh_hz"]
-    shafts = [one for one in SHAFTS if one[0] in record]
+    centre_hz = harmonic * _mesh_hz(record)
+    shafts = _shafts(record)
     half_width_hz = (SIDEBANDS + 0.5) * max(record[name] for name, *_ in shafts)
     shown = np.abs(frequency_hz - centre_hz) <= half_width_hz
     ax.semilogy(frequency_hz[shown], np.maximum(amplitude[shown], np.finfo(float).tiny), lw=0.9, color="C0")
@@ -92,6 +95,18 @@ def _draw_harmonic(
     ax.set_xlabel("frequency [Hz]")
     ax.set_title(f"mesh harmonic {harmonic}: {centre_hz:.1f} Hz", fontsize="medium")
     ax.margins(x=0)
+
+
+def _mesh_hz(record: Mapping[str, Any]) -> float:
+    """Return the frequency of the first mesh, whatever its name."""
+    return float(next(value for name, value in record.items() if re.fullmatch("mesh_(.*_)?hz", name)))
+
+
+def _shafts(record: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """Return column, colour and style of the rotations whose sidebands are marked."""
+    known = [one for one in SHAFTS if one[0] in record]
+    own = (name for name in record if name.endswith("_shaft_hz"))
+    return known or [(name, *style) for name, style in zip(own, OWN, strict=False)]
 
 
 def save_record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float, path: Path) -> None:

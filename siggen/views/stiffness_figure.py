@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from siggen.config.names import NO_NAMES, Names
 from siggen.views.picture_file import check_picture_file, save_figure
 from siggen.views.stiffness_curves import StiffnessCurve
 
@@ -110,7 +111,9 @@ def _stack(axis: Axes, curve: StiffnessCurve) -> None:
     axis.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
 
 
-def save_stiffness_figure(curves: Sequence[StiffnessCurve], path: Path, **options: Any) -> None:
+def save_stiffness_figure(
+    curves: Sequence[StiffnessCurve], path: Path, names: Names = NO_NAMES, **options: Any
+) -> None:
     """Draw the curves into a file; options as those of `stiffness_figure`.
 
     Raises
@@ -118,4 +121,4 @@ def save_stiffness_figure(curves: Sequence[StiffnessCurve], path: Path, **option
     UsageError
         If matplotlib is missing or the ending is none that it draws.
     """
-    save_figure(lambda: stiffness_figure(curves, **options), path)
+    save_figure(lambda: stiffness_figure(curves, **options), path, names=names)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pyarrow as pa
@@ -51,7 +51,9 @@ def gear_charts(config: Config, specimen_id: int = 0, state: str | None = None) 
         raise UsageError(
             f"{config.name}: its gears are perfect; give them errors, such as --set manufacture.accuracy_class=6"
         )
-    return _chart(pair, "pinion", errors.pinion), _chart(pair, "gear", errors.gear)
+    charts = _chart(pair, "pinion", errors.pinion), _chart(pair, "gear", errors.gear)
+    pinion, gear = (replace(one, gear=config.names.gear(one.gear)) for one in charts)
+    return pinion, gear
 
 
 def deviation_table(charts: tuple[GearChart, GearChart]) -> pa.Table:

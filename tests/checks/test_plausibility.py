@@ -13,7 +13,6 @@ SLIPS = {
     "torque in kN m": "operating_points.0.torque_nm=0.04",
     "torque in N mm": "operating_points.0.torque_nm=40000",
     "bearings in N/mm": "dynamics.pinion.bearing_stiffness_x_n_per_m=2e5",
-    "feet in N/mm": "housing.feet.shear_stiffness_n_per_m=8e4",
     "bolts in N/mm": "housing.bolts.axial_stiffness_n_per_m=8e4",
     "couplings in N mm": "dynamics.input_coupling.stiffness_nm_per_rad=6.3e6",
     "width in m": "gears.face_width_mm=0.02",

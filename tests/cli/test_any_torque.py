@@ -27,7 +27,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     )
     file = folder / "torques.yaml"
     file.write_text(yaml.safe_dump(raw), encoding="utf-8")
-    run("generate", str(file), "--out", str(folder / "set"))
+    run("generate", str(file), "--out", str(folder / "set"), "--engine", "serial")
     return file, folder / "set"
 
 

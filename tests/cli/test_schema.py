@@ -31,7 +31,6 @@ def test_the_schema_names_every_key_and_what_is_needed(schema):
         "name",
         "seed",
         "specimens",
-        "gears",
         "operating_points",
         "states",
         "sensors",

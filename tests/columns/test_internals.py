@@ -32,7 +32,7 @@ from tests.dataset.fake_set import (
 )
 
 ALL = {"internals": {}}
-SOME = {"internals": {"records": "first_of_state", "every_specimen": 2}}
+SOME = {"internals": {"records": "first_of_state"}}
 FILES = sorted(FAKE_FILES + [name.replace("data/", "internals/") for name in FAKE_FILES if name.startswith("data/")])
 
 
@@ -57,7 +57,7 @@ def test_every_shard_has_a_file_of_internals_that_the_card_names_once(reference:
     views = yaml.safe_load((reference / "README.md").read_text().split("---\n")[1])["configs"]
     assert [view["config_name"] for view in views] == ["signals", "labels", "damage", "internals"]
     matched = [p for view in views for file in view["data_files"] for p in reference.glob(file["path"])]
-    assert sorted(matched) == sorted(reference.rglob("*.parquet"))
+    assert sorted(matched) == sorted(reference.glob("*/*.parquet"))
     assert "| `mesh_force_n` | float[512] | N |" in (reference / "README.md").read_text()
 
 
@@ -117,11 +117,11 @@ def test_the_signals_are_those_of_the_set_without_internals(reference: Path, tmp
             np.testing.assert_array_equal(with_internals[name], value)
 
 
-def test_records_can_be_chosen_by_state_and_specimen(tmp_path: Path) -> None:
+def test_records_can_be_chosen_by_state(tmp_path: Path) -> None:
     chosen = config(SOME)
     write_fake_set(tmp_path, chosen)
     dataset = open_set(tmp_path)
-    expected = [i for i in range(30) if i // 6 % 2 == 0 and i % 2 == 0]
+    expected = [i for i in range(30) if i % 2 == 0]
     assert sorted(i for batch in dataset.internals() for i in batch["record_id"].to_pylist()) == expected
     assert [i for i in range(30) if has_internals(chosen, planned_record(chosen, i))] == expected
     assert dataset.record_internals(1) is None
@@ -225,8 +225,8 @@ def test_internals_count_in_the_size_of_a_shard() -> None:
 
 
 def test_mistakes_are_answered_with_what_is_allowed() -> None:
-    parsed = parse(minimal(internals={"quantities": "some", "records": "last", "every_specimen": 0}))
+    parsed = parse(minimal(internals={"quantities": "some", "records": "last"}))
     lines = [str(problem) for problem in parsed.problems]
-    assert len(lines) == 3
+    assert len(lines) == 2
     assert any("internals.quantities" in line and "[all], or a list" in line for line in lines)
     assert any("internals.records" in line and "first_of_state" in line for line in lines)

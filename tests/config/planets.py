@@ -36,6 +36,7 @@ def planets(**changes: Any) -> dict[str, Any]:
             {"name": "healthy"},
             {"name": "sun", "severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "sun"}},
             {"name": "planet", "severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "planet"}},
+            {"name": "ring", "severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "ring"}},
         ],
         "sensors": [{"name": "ring", "place": "ring", "axes": ["horizontal", "vertical"], "bits": None}],
     }

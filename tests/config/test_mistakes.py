@@ -121,7 +121,7 @@ MISTAKES = [
     ({"housing": None}, "housing", "null", "a mapping with the keys kind, material"),
     ({"housing__wall_mm": 0}, "housing.wall_mm", "0", "a number above 0 and of at most 10000"),
     ({"housing__damping_ratio": 0.5}, "housing.damping_ratio", "0.5", "a number above 0 and below 0.5"),
-    ({"housing__feet": {"damping_ratio": -1}}, "housing.feet.damping_ratio", "-1.0", "a number above 0"),
+    ({"housing__damping_ratio": -1}, "housing.damping_ratio", "-1.0", "a number above 0"),
     ({"housing__material": "wood"}, "housing.material", "'wood'", "one of any, grey_iron, steel"),
     ({"housing__mass_kg": 20.0}, "housing.mass_kg", "20.0", "known keys: kind, material"),
     ({"housing": {"kind": "rigid", "wall_mm": 8.0}}, "housing.wall_mm", "8.0", "known keys: kind, mass_kg"),

@@ -227,7 +227,7 @@ def fake_physics(simulation: Any = simulate) -> Iterator[None]:
 
 
 def write_fake_set(
-    path: Path,
+    path: Path | str,
     config: Config | None = None,
     *,
     workers: int = 0,
@@ -250,7 +250,7 @@ def verify_fake_set(path: Path, sample: int, *, workers: int = 0, simulation: An
 
 
 FAKE_FILES = sorted(
-    ["README.md", "config.yaml", "manifest.json", "run.json"]
+    ["README.md", "checksums.parquet", "config.yaml", "index.parquet", "manifest.json", "run.json"]
     + [f"{folder}/{split}.parquet" for folder in ("metadata", "damage") for split in ("train", "validation", "test")]
     + [
         f"data/{shard}.parquet"

@@ -32,7 +32,7 @@ def test_the_front_matter_names_every_parquet_file_exactly_once(folder: Path) ->
     assert list(views) == ["signals", "labels", "damage"]
     assert [view["config_name"] for view in facts["configs"] if view.get("default")] == ["signals"]
     matched = [path for files in views.values() for file in files for path in folder.glob(file["path"])]
-    assert sorted(matched) == sorted(folder.rglob("*.parquet"))
+    assert sorted(matched) == sorted(folder.glob("*/*.parquet"))
     for files in views.values():
         assert [file["split"] for file in files] == ["train", "validation", "test"]
         assert all(path.name.startswith(file["split"]) for file in files for path in folder.glob(file["path"]))

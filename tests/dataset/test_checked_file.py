@@ -75,7 +75,8 @@ READS: dict[str, Callable[[Dataset], object]] = {
     "damage/train.parquet": lambda dataset: dataset.damage("train"),
     "config.yaml": lambda dataset: None,
     "manifest.json": lambda dataset: None,
-    "shards/train-00000.json": lambda dataset: list(dataset.records("train")),
+    "index.parquet": lambda dataset: None,
+    "checksums.parquet": lambda dataset: list(dataset.records("train")),
 }
 
 
@@ -96,9 +97,9 @@ def test_a_flipped_bit_anywhere_in_a_file_is_refused_by_whoever_reads_it(
     READS[name](open_set(tmp_path / "set"))
 
 
-def test_a_file_of_another_size_is_refused_when_the_set_is_opened(folder: Path, tmp_path: Path) -> None:
+def test_a_file_of_another_size_is_refused_when_it_is_read(folder: Path, tmp_path: Path) -> None:
     shutil.copytree(folder, tmp_path / "set")
     with (tmp_path / "set/data/test-00000.parquet").open("ab") as file:
         file.write(b"x")
-    with pytest.raises(DatasetError, match=r"test-00000\.parquet is not the file .* bytes instead of"):
-        open_set(tmp_path / "set")
+    with pytest.raises(DatasetError, match=r"test-00000\.parquet has .* bytes instead of"):
+        list(open_set(tmp_path / "set").records("test"))

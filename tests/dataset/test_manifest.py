@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import siggen
 from siggen.dataset.manifest import read_manifest
 from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.storage import LocalFolder
@@ -48,11 +49,17 @@ def test_the_manifest_promises_every_other_file_but_run_json(tmp_path: Path) -> 
     manifest = read_manifest(LocalFolder(tmp_path)).content
     on_disk = sorted(p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*") if p.is_file())
     assert on_disk == FAKE_FILES
-    assert sorted(manifest["files"]) == [name for name in FAKE_FILES if name not in ("manifest.json", "run.json")]
+    own = [name for name in FAKE_FILES if name not in ("manifest.json", "run.json")]
+    assert sorted(manifest["files"]) == [name for name in own if not name.startswith(("data/", "shards/"))]
     for name, facts in manifest["files"].items():
         content = (tmp_path / name).read_bytes()
-        blocks = {"crc32_per_64_kib": checksum(content)} if name.startswith(("metadata/", "damage/")) else {}
+        blocks = {"crc32_per_64_kib": checksum(content)} if name.endswith(".parquet") else {}
         assert facts == {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest(), **blocks}
+    promised = siggen.open(tmp_path).files
+    assert sorted(promised) == own
+    for name, file in promised.items():
+        content = (tmp_path / name).read_bytes()
+        assert (file.bytes, file.sha256) == (len(content), hashlib.sha256(content).hexdigest())
 
 
 def test_counts_are_per_split_and_state_and_failures_are_listed(tmp_path: Path) -> None:

@@ -17,7 +17,6 @@ from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.geometry.internal_pair import InternalPair, ring_begins_pitches, ring_round
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
 from siggen.gears.geometry.planetary import PlanetarySet
-from siggen.gears.stiffness.internal_stiffness import internal_tables
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
 
@@ -38,7 +37,7 @@ def planetary_stage(planets: int = 3, sun: int = 24, planet: int = 27, ring: int
         centre_distance_m=pair.working_centre_distance_m,
         sun=PlanetaryBody(pair.pinion.base_radius_m, 0.3, 9e-5, 2e7, 400.0),
         planet=PlanetaryBody(pair.gear.base_radius_m, 0.36, 1.3e-4, 2e8, 300.0),
-        ring=PlanetaryBody(inner.ring.base_radius_m, 3.0, 2e-2, 5e8, 4000.0, 5e6, 30.0),
+        ring=PlanetaryBody(inner.gear.base_radius_m, 3.0, 2e-2, 5e8, 4000.0, 5e6, 30.0),
         carrier=PlanetaryBody(pair.working_centre_distance_m, 2.0, 5e-3, 2e8, 1000.0),
         places_turns=tuple(round(i * slots / planets) / slots for i in range(planets)),
         motor_inertia_kg_m2=1e-2,
@@ -76,7 +75,7 @@ def meshes(structure: Structure, teeth: PlanetarySet, late_m: float = 0.0, fault
     options, lag = StiffnessOptions(), ring_begins_pitches(pair, inner)
     tooth, count = (3,), len(teeth.places)
     of_sun = softer(mesh_tables(pair, (), options), tooth if faulty == "sun" else None, 0)
-    of_ring = softer(internal_tables(pair, inner, options), tooth if faulty == "ring" else None, 1)
+    of_ring = softer(mesh_tables(inner, (), options), tooth if faulty == "ring" else None, 1)
     kinds = [
         (of_sun, (teeth.sun, teeth.planet), teeth.sun_begins, 0.0, pair.line_of_action_m),
         (of_ring, (teeth.planet, teeth.ring), teeth.ring_begins, lag, inner.line_of_action_m),

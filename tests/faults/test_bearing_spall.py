@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.signal import hilbert
 
+import siggen.faults.bearing_spall as bearing_spall
 from siggen.checks.physical_problems import physical_problems
 from siggen.config import Config, parse
 from siggen.dynamics.bearings.bearing_spall import BearingSpall
@@ -83,13 +84,17 @@ def test_the_slip_of_a_record_is_its_own() -> None:
 
 
 @pytest.mark.parametrize("model", ["8dof", "casing"])
-def test_a_spall_of_the_outer_race_outside_of_the_zone_of_load_leaves_the_bytes_of_healthy(model: str) -> None:
-    made = [with_states(one, dynamics__model=model, duration_s=0.1) for one in ({**SPALL, "from_load_deg": 180}, None)]
+def test_a_spall_of_the_outer_race_outside_of_the_zone_of_load_leaves_the_bytes_of_healthy(
+    model: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bearing_spall, "LOADED_DEG", 180.0)
+    made = [with_states(one, dynamics__model=model, duration_s=0.1) for one in (SPALL, None)]
     (away,), (healthy,) = (simulate(one, [1]) for one in made)
     assert away.labels["fault"] == "bearing"
     assert away.channels["bearing_vertical"].tobytes() == healthy.channels["bearing_vertical"].tobytes()
     assert away.labels["start_angle_rad"] == healthy.labels["start_angle_rad"]
-    (inside,) = simulate(with_states({**SPALL, "from_load_deg": 45}, dynamics__model=model, duration_s=0.1), [1])
+    monkeypatch.setattr(bearing_spall, "LOADED_DEG", 45.0)
+    (inside,) = simulate(with_states(SPALL, dynamics__model=model, duration_s=0.1), [1])
     assert inside.channels["bearing_vertical"].tobytes() != healthy.channels["bearing_vertical"].tobytes()
 
 
@@ -233,7 +238,6 @@ def test_its_row_tells_the_slip_that_its_cage_has_in_this_record() -> None:
         ({"length_mm": 12.0}, {"dynamics__pinion__bearing": {"balls": 14}}, "length_mm", "the spacing of the balls"),
         ({"geometry": {"balls": 8}}, {}, "geometry", "known keys: "),
         ({"element": "cage"}, {}, "element", "outer"),
-        ({"element": "inner", "from_load_deg": 10}, {}, "from_load_deg", "element: outer"),
         ({}, {"dynamics__model": "torsional", "sensors": [{"name": "rim", "place": "pinion_rim"}]}, "kind", "casing"),
     ],
 )  # fmt: skip

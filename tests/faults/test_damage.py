@@ -62,7 +62,7 @@ def test_healthy_state_has_no_damage() -> None:
     [
         [{"kind": "clustered", "count": n, "spread_profile_mm": 0.3, **DRAWN_PIT} for n in (4, 9, 20)],
         [
-            {"kind": "layered", "layers": layers, "pits_per_layer": n, "jitter_mm": 0.1, **DRAWN_PIT}
+            {"kind": "layered", "layers": layers, "pits_per_layer": n, **DRAWN_PIT}
             for layers, n in ((1, 4), (1, 8), (3, 8))
         ],
         [

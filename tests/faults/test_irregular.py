@@ -26,7 +26,13 @@ GROWN = [
     {**SPALL, "profile_length_mm": 1.0, "face_share": 0.6},
     {**SPALL, "profile_length_mm": 1.6, "face_share": 1.0},
 ]
-STRAIGHT = {"waviness": 0.0, "skew_mm_per_10mm": 0.0, "floor_roughness": 0.0}
+STRAIGHT = {"waviness": 0.0, "skew_mm_per_10mm": 0.0}
+
+
+@pytest.fixture
+def smooth(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Floors without roughness."""
+    monkeypatch.setattr("siggen.faults.irregular.FLOOR_ROUGHNESS", 0.0)
 
 
 def holds(severe: IrregularSpall, mild: IrregularSpall) -> bool:
@@ -68,6 +74,7 @@ def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
         assert severe.depth_m >= moderate.depth_m >= slight.depth_m
 
 
+@pytest.mark.usefixtures("smooth")
 def test_neighbouring_teeth_are_in_stages_of_their_own_and_each_grows() -> None:
     full = {**SPALL, "teeth": 3, "depth_mm": 0.1, **STRAIGHT}
     config = config_with(
@@ -145,6 +152,7 @@ def test_skews_are_millimetres_of_arc_over_ten_of_face() -> None:
     assert one.profile_arc_m(pair.pinion) == pytest.approx(0.6e-3, rel=1e-9)
 
 
+@pytest.mark.usefixtures("smooth")
 @pytest.mark.parametrize("floor", ["flat", "dish"])
 def test_without_skew_waves_and_roughness_it_is_the_rectangle_in_labels_and_in_the_law(floor: str) -> None:
     same = {"profile_length_mm": 1.0, "depth_mm": 0.2, "centre_height_mm": "pitch"}
@@ -169,9 +177,10 @@ def test_it_takes_the_place_of_the_milder_one_and_leaves_pits_beside_it() -> Non
     assert [state.fault for state in config.states] == ["healthy", "pitting", "spalling", "spalling"]
 
 
+@pytest.mark.usefixtures("smooth")
 def test_depth_grows_with_the_area() -> None:
-    smooth = [{**damage, "floor_roughness": 0.0, "floor": "flat"} for damage in GROWN]
-    depths = [damage_of(config_with(*smooth), state)[0].depth_m for state in (1, 2, 3)]
+    flat = [{**damage, "floor": "flat"} for damage in GROWN]
+    depths = [damage_of(config_with(*flat), state)[0].depth_m for state in (1, 2, 3)]
     assert depths == pytest.approx([0.05e-3 * np.sqrt(a * b) for a, b in ((0.6, 5.0), (1.0, 12.0), (1.6, 20.0))])
 
 

@@ -21,7 +21,7 @@ from tests.publication.conftest import facts_file
 CONFIG = """
 extends: quickstart
 name: toy
-specimens: 4
+specimens: 2
 duration_s: 0.4
 repeats: 1
 splits: {train: 10, validation: 5, test: 5}

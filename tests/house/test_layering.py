@@ -17,8 +17,8 @@ SIGGEN_ROOMS = (
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.bearings", "dynamics.friction",
     "dynamics.mesh", "dynamics.time",
-    "sensing", "faults", "noise", "sensors", "config", "rig", "planning", "specimen", "checks", "columns", "record",
-    "dataset", "engines", "sets", "views", "publication", "cli",
+    "sensing", "faults", "noise", "sensors", "life", "config", "rig", "planning", "specimen", "checks", "columns",
+    "record", "dataset", "engines", "sets", "views", "publication", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",
@@ -29,7 +29,7 @@ PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")
 PHYSICS_MAY_IMPORT = {"numpy", "scipy", "numba", "siggen", "__future__", "collections", "dataclasses", "enum"} | {
     "fractions", "functools", "itertools", "math", "typing",
 }  # fmt: skip
-DOOR = {"siggen", "siggen.errors", "siggen.columns.record", "siggen.dataset.reading"}
+DOOR = {"siggen", "siggen.errors", "siggen.columns.record", "siggen.config.names", "siggen.dataset.reading"}
 SHARED = {"siggen.cli.option_groups", "siggen.cli.json_output"}
 """What both programs are built with; it knows no set."""
 TREE = {package: modules(package) for package in ROOMS}

@@ -31,8 +31,9 @@ def test_the_strength_has_mean_one_and_the_depths_that_were_asked_for() -> None:
         assert depth(strength, order) == pytest.approx(value, abs=0.01)
 
 
-def test_the_random_level_gives_the_kurtosis_of_its_closed_form() -> None:
-    asked = NoiseModulation(level_std=0.4, level_time_ms=1.0)
+def test_the_random_level_gives_the_kurtosis_of_its_closed_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("siggen.noise.spectrum.LEVEL_TIME_MS", 1.0)
+    asked = NoiseModulation(level_std=0.4)
     level = NoiseStrength(asked, draws(), GEAR_ORDER, FS_HZ).take(ANGLE_RAD)
     noise = np.random.default_rng(5).standard_normal(SAMPLES) * np.sqrt(level)
     kurtosis = np.mean(noise**4) / np.mean(noise**2) ** 2

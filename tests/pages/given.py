@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from nptdms import ChannelObject, TdmsWriter
@@ -22,6 +22,8 @@ SMALLER = {
     "runs/bench": ("configs/bench.yaml", "specimens=4", "duration_s=0.5"),
 }
 """Set -> its configuration and what is smaller."""
+SHORT = "duration_s=0.6"
+"""For pages that read or train, but judge nothing."""
 PAIRS = {"18/47": (4242, 3.0, 34.0, True), "25/56": (4243, 2.0, 22.0, False)}
 """Recorded pair -> seed, module [mm], speed [Hz], and whether there is a tacho."""
 FACTS = "publication.yaml"
@@ -36,18 +38,18 @@ class Given:
     def __init__(self, cache: Path, environment: Mapping[str, str]) -> None:
         self._cache, self._environment = cache, environment
 
-    def put(self, name: str, folder: Path) -> None:
-        """Copy a thing of this name into a folder.
+    def put(self, name: str, folder: Path, *more: str) -> None:
+        """Copy a thing of this name into a folder; `more` is smaller of a set than its pages with slow blocks need.
 
         Raises
         ------
         ValueError
             If nothing of this name is known.
         """
-        made = self._cache / name.replace("/", "_").replace(" ", "_")
+        made = self._cache / "_".join((name, *more)).replace("/", "_").replace(" ", "_")
         if name in SMALLER:
             if not made.exists():
-                self._generate(name, made)
+                self._generate(name, made, more)
             shutil.copytree(made, folder / name)
         elif name.startswith("recordings "):
             if not made.exists():
@@ -58,9 +60,10 @@ class Given:
         elif name != STORE:
             raise ValueError(f"nothing is known of the given {name!r}")
 
-    def _generate(self, name: str, out: Path) -> None:
-        config, *changes = SMALLER[name]
-        command = ["siggen", "generate", str(Path(__file__).parents[2] / config), "--out", str(out), "--workers", "1"]
+    def _generate(self, name: str, out: Path, more: Sequence[str]) -> None:
+        config, *changes = [*SMALLER[name], *more]
+        file = str(Path(__file__).parents[2] / config)
+        command = ["siggen", "generate", file, "--out", str(out), "--engine", "serial"]
         command += [word for change in changes for word in ("--set", change)]
         subprocess.run([*command, *SPLITS], check=True, env=dict(self._environment), capture_output=True)
 

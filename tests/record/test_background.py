@@ -27,16 +27,17 @@ from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import resonance_response
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background import ChannelWay, SpecimenBackground, drawn_background, specimen_background
-from siggen.specimen.background_numbers import BearingNumbers, RubbingNumbers
+from siggen.specimen.background_numbers import BaseNumbers, BearingNumbers, RubbingNumbers
 from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.minimal import minimal
+from tests.specimen.fixed_numbers import fix
 
 ON_LID = {"name": "lid", "place": "lid", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 LID = {**ON_LID, "place": "casing", "position_mm": [60.0, 50.0]}
 RIGID = {"kind": "rigid"}
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 ALL: dict[str, Any] = {
-    "base": {"mount_hz": 40.0},
+    "base": {},
     "rubbing": {"bursts": {}},
     "bearings": {},
     "machines": {},
@@ -44,6 +45,12 @@ ALL: dict[str, Any] = {
     "second_stage": {"order": 4.13},
     "auxiliary_drive": {"order": {"kind": "uniform", "low": 12, "high": 60}, "shaft_order": 0.7},
 }
+
+
+@pytest.fixture(autouse=True)
+def quick_mounts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mounts that ring for a short time."""
+    fix(monkeypatch, BaseNumbers, horizontal_hz=40.0, vertical_hz=40.0, rocking_hz=40.0)
 
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
@@ -68,12 +75,12 @@ def added(config: Config, record_id: int = 0) -> tuple[dict[str, np.ndarray], di
 
 
 def rubbed(keys: dict[str, float], changes: dict[str, float], duration_s: float) -> tuple[Config, RubbingNumbers]:
-    """Return a configuration with these keys, and what is drawn for its rubbing with some numbers changed."""
+    """Return a configuration with these keys, and its drawn rubbing at a still level, some of it changed."""
     config = loaded(background={"rubbing": keys}, duration_s=duration_s)
     drawn = drawn_background(config, 0)
     assert drawn is not None
     assert drawn.rubbing is not None
-    return config, drawn.rubbing.model_copy(update=changes)
+    return config, drawn.rubbing.model_copy(update={"level_std": 0.0, **changes})
 
 
 def background_ways(config: Config, specimen: Specimen) -> tuple[SpecimenBackground, np.ndarray]:
@@ -144,26 +151,16 @@ def test_states_share_levels_and_lines_but_not_the_course_of_the_noise() -> None
     assert all(other[name] != healthy[1][name] for name in healthy[1] if name not in alike)
 
 
-def test_levels_of_sensors_and_forces_belong_to_the_gearbox_unless_redrawn() -> None:
+def test_levels_of_sensors_and_forces_belong_to_the_gearbox_with_a_background() -> None:
     drawn = {"kind": "uniform", "low": 0.1, "high": 0.2}
     noisy = {**ON_LID, "noise": {"floor_m_s2": drawn}, "mains": {"amplitude_m_s2": drawn}}
     noisy |= {"pink_noise": {"density_m_s2_per_sqrt_hz": drawn}}
     names = ["noise_floor_lid_vertical_m_s2", "pink_noise_lid_vertical_m_s2_per_sqrt_hz", "mains_lid_vertical_m_s2"]
-    for background, shared in (({}, True), ({"redraw": "record"}, False), (None, False)):
+    for background, shared in (({}, True), (None, False)):
         config = loaded(noisy, background=background)
         first, second = record(config, 0), record(config, 1)
         assert [first.labels[n] == second.labels[n] for n in names] == [shared] * 3
         assert not np.allclose(first.channels["lid_vertical"], second.channels["lid_vertical"])
-    found = [added(loaded(background={**ALL, "redraw": "record"}), i)[1] for i in (0, 1)]
-    for name in ("rubbing_force_n", "bearing_velocity_pinion_um_s", "machine_force_n_per_sqrt_hz"):
-        assert found[0][name] != found[1][name]
-
-
-def test_redrawing_for_every_record_keeps_the_records_of_before() -> None:
-    drawn = {"kind": "uniform", "low": 0.1, "high": 0.2}
-    noisy = {**ON_LID, "noise": {"floor_m_s2": drawn}, "pink_noise": {"density_m_s2_per_sqrt_hz": drawn}}
-    before, after = loaded(noisy), loaded(noisy, background={"redraw": "record"})
-    assert record(before).channels["lid_vertical"].tobytes() == record(after).channels["lid_vertical"].tobytes()
 
 
 def test_adding_a_sensor_leaves_the_bytes_of_the_others() -> None:
@@ -176,7 +173,7 @@ def test_a_second_stage_turns_the_housing_and_pushes_it_nowhere() -> None:
     # a mesh inside presses on two seats with equal and opposite forces: far above all modes a = F arm x / I
     places = (0.0, 100.0, -200.0)
     lids = [{**LID, "name": f"lid{k}", "position_mm": [x, 0.0]} for k, x in enumerate(places)]
-    config = loaded(*lids, housing=RIGID, background={"second_stage": {"order": 4.13}, "redraw": "record"})
+    config = loaded(*lids, housing=RIGID, background={"second_stage": {"order": 4.13}})
     specimen = draw_specimen(config, 0)
     ways = response_ways(config, specimen)
     gears, casing = config.gears, specimen.housing
@@ -196,9 +193,10 @@ def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
             assert signal.tobytes() == found.channels[name].tobytes()
 
 
-def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass() -> None:
+def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass(monkeypatch: pytest.MonkeyPatch) -> None:
     shafts = {"coupling_stiffness_n_per_um": 0.0, "rotor_mass_kg": 10.0}
-    base = {"mass_kg": 1000.0, "gyration_m": 10.0, "mount_hz": 3.0}
+    base = {"mass_kg": 1000.0, "gyration_m": 10.0}
+    fix(monkeypatch, BaseNumbers, horizontal_hz=3.0, vertical_hz=3.0, rocking_hz=3.0)
     centre = {**LID, "position_mm": [0.0, 0.0]}
     config = loaded(centre, housing=RIGID, background={"base": base, "shafts": shafts}, duration_s=1.0)
     signal = added(config)[0]["lid_vertical"]
@@ -221,7 +219,7 @@ def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
     """0.4 µm over 20 mm at 0.2 mm, 4e8 N/m: 16 N before the contact's width and the film take their part."""
     changes = {"correlation_mm": 0.2, "asperity_exponent": 1.0, "pinion_depth": 0.0}
     changes |= {"gear_depth": 0.0, "sliding_exponent": 0.0, "roll_off_mm": 5.0, "hurst_exponent": 1.0}
-    config, rubbing = rubbed({"roughness_um": 0.4, "level_std": 0.0}, changes, 1.0)
+    config, rubbing = rubbed({"roughness_um": 0.4}, changes, 1.0)
     course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
     spectrum = force_spectrum(rubbing, course)
     assert spectrum.rough_n == pytest.approx(16.0 * course.asperity_share)
@@ -234,7 +232,7 @@ def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
 
 def test_the_spectrum_of_rough_flanks_moves_with_the_rolling_speed() -> None:
     """S_F(f; v) = S_F(f/a; v/a)/a at one film: waves of a surface pass in proportion to its speed (derived)."""
-    config, rubbing = rubbed({"level_std": 0.0}, {}, 0.1)
+    config, rubbing = rubbed({}, {}, 0.1)
     course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
     twice = replace(course, point=replace(course.point, speed_hz=2.0 * course.point.speed_hz))
     slow, fast = (force_spectrum(rubbing, one) for one in (course, twice))
@@ -286,7 +284,7 @@ def test_what_moves_slowly_between_shaft_and_seat_presses_on_nothing() -> None:
 
 def test_the_replayed_share_of_the_rubbing_returns_every_turn() -> None:
     changes = {"replayed_share": 0.5, "gear_depth": 0.0, "pinion_depth": 0.0, "sliding_exponent": 0.0}
-    config, rubbing = rubbed({"level_std": 0.0}, changes, 4.0)
+    config, rubbing = rubbed({}, changes, 4.0)
     course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
     force = RubbingForce(rubbing, course, course.length).take(course)
     turns, per_turn = 94, config.fs_hz / 30.0
@@ -315,12 +313,11 @@ def test_a_random_level_gives_the_noise_of_bearings_its_tails_and_no_power() -> 
     """Kurtosis 3 exp(s²) in closed form; both bearings of a shaft swell together, those of the other shaft do not."""
     found: dict[float, dict[str, np.ndarray]] = {}
     for std in (0.0, 0.7):
-        bearings = {"level_std": std, "compliance_um": 0.0}
-        config = loaded(background={"bearings": bearings}, duration_s=20.0)
+        config = loaded(background={"bearings": {}}, duration_s=20.0)
         specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
         background = specimen_instrument(config, specimen).background
         assert background is not None
-        quick = {"level_time_ms": 1.0, "shaft_depth": 0.0}
+        quick = {"level_time_ms": 1.0, "shaft_depth": 0.0, "level_std": std, "compliance_um": 0.0}
         own = {shaft: numbers.model_copy(update=quick) for shaft, numbers in background.bearings.items()}
         blocks = BackgroundBlocks(config, specimen, planned, replace(background, bearings=own), 0, config.samples)
         high = frequencies(config.samples, config.fs_hz) > 2000.0

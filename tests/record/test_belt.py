@@ -20,11 +20,12 @@ from siggen.record.simulation import simulate
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.inputs import MOTION, Input
 from siggen.specimen.background import ChannelWay, drawn_background, mean_mesh, specimen_background
-from siggen.specimen.background_numbers import BeltNumbers
+from siggen.specimen.background_numbers import BaseNumbers, BeltNumbers
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import specimen_body, structure
 from tests.config.minimal import minimal
 from tests.record.test_background import LID, RIGID, added
+from tests.specimen.fixed_numbers import fix
 
 SPEED_HZ = 30.0
 
@@ -141,8 +142,11 @@ def test_the_force_of_a_belt_shakes_the_housing_as_the_matrices_of_the_gearbox_s
     np.testing.assert_allclose(response(config, frequency), expected, rtol=1e-6)
 
 
-def test_a_channel_holds_the_lines_of_the_belt_behind_the_response_of_the_gearbox() -> None:
-    base = {"mass_kg": 200.0, "mount_hz": 40.0}
+def test_a_channel_holds_the_lines_of_the_belt_behind_the_response_of_the_gearbox(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    base = {"mass_kg": 200.0}
+    fix(monkeypatch, BaseNumbers, horizontal_hz=40.0, vertical_hz=40.0, rocking_hz=40.0)
     config = belted({"order": 0.37, "pull_n": 1000.0}, duration_s=4.0, beside={"base": base})
     lines = [h * 0.37 * SPEED_HZ for h in (1, 2, 3, 4)] + [SPEED_HZ]
     expected = amplitudes(force(config)[0], lines, config.fs_hz) * response(config, np.array(lines))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.signal import fftconvolve
 
+import siggen.record.simulation as simulation
 import siggen.sensing.block_filter as block_filter
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record
@@ -18,16 +19,24 @@ from siggen.record.simulation import record_response, simulate
 from siggen.record.specimen_state import specimen_state
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import MOTION
+from siggen.specimen.background_numbers import BaseNumbers, BurstNumbers
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import minimal
+from tests.specimen.fixed_numbers import fix
 
 LID = {"name": "lid", "place": "lid", "bits": None, "range_m_s2": 1e6, "cross_axis": 0.04, "high_pass_hz": 2.0,
        "mounting": {"frequency_hz": 9000.0, "damping_ratio": 0.05}}  # fmt: skip
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
-BASE = {"mount_hz": 40.0}
-LINES: dict[str, Any] = {"base": BASE, "shafts": {}, "second_stage": {"order": 4.13}}
-ALL = {**LINES, "rubbing": {"bursts": {"rate_hz": 20.0}}, "bearings": {}, "machines": {}}
+LINES: dict[str, Any] = {"base": {}, "shafts": {}, "second_stage": {"order": 4.13}}
+ALL = {**LINES, "rubbing": {"bursts": {}}, "bearings": {}, "machines": {}}
 VARYING = {"speed": {"random_rms": 0.005, "ripple_once": 0.001}, "torque": {"random_rms": 0.02}}
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mounts that ring for a short time, and bursts in every record."""
+    fix(monkeypatch, BaseNumbers, horizontal_hz=40.0, vertical_hz=40.0, rocking_hz=40.0)
+    fix(monkeypatch, BurstNumbers, rate_hz=20.0)
 
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
@@ -75,6 +84,17 @@ def test_a_memory_four_times_as_long_changes_little(monkeypatch: pytest.MonkeyPa
     for path in paths:
         assert short.labels[path] == pytest.approx(long.labels[path], rel=1e-3)
     assert {**short.labels, **dict.fromkeys(paths)} == {**long.labels, **dict.fromkeys(paths)}
+
+
+def test_a_motion_that_began_long_before_gives_the_same_record(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tenth of the integration's tolerance: what is left of the start in motion and filters together."""
+    short = record(loaded(duration_s=0.1))
+    least = simulation.both_settled_s
+    monkeypatch.setattr(simulation, "both_settled_s", lambda *times: 0.5 + least(*times))
+    long = record(loaded(duration_s=0.1))
+    for name, values in long.channels.items():
+        error = short.channels[name].astype(float) - values
+        assert 0.0 < error.std() < 1e-4 * values.astype(float).std()
 
 
 def test_a_record_in_blocks_depends_on_itself_alone() -> None:

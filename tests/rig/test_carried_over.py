@@ -65,7 +65,6 @@ def test_a_box_that_was_given_grows_with_the_pair_and_one_that_was_not_is_drawn_
     assert own.length_mm == pytest.approx(520.0)  # type: ignore[union-attr]
     assert own.wall_mm.high == pytest.approx(24.0)  # type: ignore[union-attr]
     assert own.width_mm is None  # type: ignore[union-attr]
-    assert own.feet == family(twice).housing.feet  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("teeth", [(17, 19), (18, 83), (35, 104)])

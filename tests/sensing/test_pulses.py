@@ -20,6 +20,8 @@ def test_an_even_shaft_gives_even_pulses_and_its_speed_at_every_sample() -> None
     np.testing.assert_allclose(times, (TURN / 360 * numbers - 1.0) / omega, atol=1e-13)  # rounding of 0.5 s at 1e-16
     speed = counted_speed(numbers, times, 360, FS, TIMES.size)
     np.testing.assert_allclose(speed, omega, rtol=1e-8)  # rounding of the angle, 1e-14 rad, times fs over omega
+    late = counted_speed(numbers + 1e12, times, 360, FS, TIMES.size)
+    np.testing.assert_allclose(late, omega, rtol=1e-8)  # of as many pulses the angle itself is rounded to 4e-6 rad
 
 
 @pytest.mark.parametrize(("share_of_fs", "tolerance"), [(0.02, 1e-10), (0.1, 4e-5), (1 / 6, 2e-3)])

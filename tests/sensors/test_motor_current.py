@@ -48,7 +48,7 @@ def test_a_speed_that_no_motor_follows_at_one_line_frequency_says_why() -> None:
     config = loaded(CLAMP, variation={"speed": {"start_ratio": 0.5}}, **OFF)
     (failure,) = simulate(config, [0])
     assert isinstance(failure, RecordFailure)
-    assert "sensor clamp: the slip would pass breakdown_slip (0.15)" in failure.reason
+    assert "sensor clamp: the slip would pass 0.15" in failure.reason
 
 
 def test_a_model_without_a_motor_is_refused() -> None:

@@ -25,7 +25,7 @@ from tests.sensors.toy_strain_gauge import STRAIN_PER_FORCE
 CONFIG = """
 extends: quickstart
 name: toy
-specimens: 4
+specimens: 2
 duration_s: 0.4
 repeats: 1
 splits: {train: 10, validation: 5, test: 5}
@@ -108,7 +108,7 @@ def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path)
     lid = "  - {name: lid, place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
     gauge = CONFIG.partition("sensors:\n")[2]
     for name, sensors in (("alone", lid), ("both", gauge + lid)):
-        own = CONFIG.replace("specimens: 4", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
+        own = CONFIG.replace("specimens: 2", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
         (folder / f"{name}.yaml").write_text(own)
         command(folder, "siggen", "generate", f"{name}.yaml", "--out", name, "--engine", "serial")
     alone, both = (siggen.open(folder / name) for name in ("alone", "both"))

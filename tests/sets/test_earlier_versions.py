@@ -22,8 +22,8 @@ from tests.dataset.fake_set import file_bytes, verify_fake_set, write_fake_set
 
 NEW_LABEL = "mesh_stiffness_loss_as_simulated"
 
-SECOND = Path(__file__).parent / "schema_2"
-"""Two gearboxes in two states, generated as one and extended by one when there was nothing after version 2."""
+SECOND = Path(__file__).parent / "earlier_set"
+"""Two gearboxes in two states, generated as one and extended by one by the first simulation; indexed since."""
 
 
 def say(folder: Path, **facts: object) -> None:
@@ -32,10 +32,10 @@ def say(folder: Path, **facts: object) -> None:
     manifest.write_bytes(sealed({**unsealed("manifest.json", manifest.read_bytes()), **facts}))
 
 
-def test_an_extended_set_of_version_2_opens_and_every_byte_of_it_is_checked() -> None:
+def test_an_extended_set_of_the_first_simulation_opens_and_every_byte_of_it_is_checked() -> None:
     dataset = siggen.open(SECOND)
-    assert (dataset.manifest["schema_version"], dataset.inventory.simulation_version) == ("2", 1)
-    assert [shard["specimens"] for shard in dataset.manifest["shards"]] == [[[0, 0]], [[1, 1]]]
+    assert dataset.inventory.simulation_version == 1
+    assert [list(shard.specimens) for shard in dataset.index.shards()] == [[(0, 0)], [(1, 1)]]
     assert dataset.labels()["record_id"].to_pylist() == [0, 1, 2, 3]
     signals = np.concatenate([signal_matrix(batch.column("accel_lid_vertical_m_s2")) for batch in dataset.records()])
     assert signals.shape == (4, 1600)
@@ -70,7 +70,7 @@ def test_a_set_of_another_simulation_is_neither_resumed_nor_extended(tmp_path: P
 def test_a_newer_unknown_schema_is_refused_in_words_and_verified_by_its_hashes(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     say(tmp_path, schema_version="99")
-    with pytest.raises(DatasetError, match="received schema version 99; allowed is 2"):
+    with pytest.raises(DatasetError, match="received schema version 99; allowed is 3"):
         siggen.open(tmp_path)
     found = verify_fake_set(tmp_path, 3)
     assert found.mismatches == ()

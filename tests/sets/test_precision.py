@@ -23,7 +23,7 @@ from siggen.sets.precision import FIRST_STEPS, MOST_STEPS, measure_precision
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, file_bytes, simulate, write_fake_set
 
-SECOND = Path(__file__).parent / "schema_2"
+SECOND = Path(__file__).parent / "earlier_set"
 
 
 def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[Record | RecordFailure]:

@@ -33,7 +33,7 @@ from tests.dataset.fake_set import (
 from tests.dataset.s3_server import BUCKET, digests, object_bytes, s3_server
 
 PLACE = f"s3://{BUCKET}/a/set"
-KEPT = Path(__file__).parent / "schema_2"
+KEPT = Path(__file__).parent / "earlier_set"
 
 
 @pytest.fixture(autouse=True)

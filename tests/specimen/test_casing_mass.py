@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Config
+from siggen.config import Config, RigidHousing
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.structure import structure
 from tests.config.minimal import minimal
 
@@ -92,3 +93,12 @@ def test_a_file_that_writes_the_default_values_out_has_the_identity_of_one_witho
     assert config.identity != load_config(minimal()).identity
     plates = {"kind": "plates", "damping_ratio": {"kind": "loguniform", "low": 0.003, "high": 0.05}}
     assert load_config(minimal(housing=plates)).identity == load_config(minimal()).identity
+
+
+def test_a_casing_of_twice_the_extent_turns_four_times_as_hard() -> None:
+    """The radius of gyration follows the distance of the axes; 1.15 of it is a box of even wall round both gears."""
+    section = loaded(20.0).housing
+    assert isinstance(section, RigidHousing)
+    small, large = (casing_numbers(section, extent_m, ()) for extent_m in (0.1, 0.2))
+    assert large.inertia_kg_m2 == pytest.approx(4.0 * small.inertia_kg_m2)
+    assert np.sqrt(small.inertia_kg_m2 / small.mass_kg) == pytest.approx(1.15 * 0.1)

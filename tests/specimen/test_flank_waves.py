@@ -56,6 +56,8 @@ def test_all_states_share_their_waves_and_gearboxes_do_not() -> None:
 def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in (("GHOSTS", 2.0), ("GHOST_UM", Fixed(0.1)), ("LAG_OVER_FACE_RAD", Fixed(0.0))):
         monkeypatch.setattr(flank_waves, name, value)
+    # fewer waves than are drawn, too: those are not larger than what is drawn
+    monkeypatch.setattr(flank_waves, "ORDER_OVER_TEETH", flank_waves.LogUniform(low=1.0, high=15.0))
     config = made()
     pair = gear_pair(draw_specimen(config, 0).gears)
     found = [specimen_waves(config, pair, specimen, 0) for specimen in range(150)]

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 import siggen
+from siggen.checks.loading import load_config
+from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.accelerometer import Accelerometer
-from siggen.specimen.instrument import ChannelInstrument, channel_ways
+from siggen.specimen.instrument import ChannelInstrument, channel_ways, settle_s
 from siggen.specimen.measured_path import INPUTS
+from tests.config.minimal import minimal
 
 
 def test_a_force_that_also_comes_through_a_path_counts_twice() -> None:
@@ -33,3 +36,8 @@ def test_what_the_model_does_not_give_is_refused_by_the_name_of_the_sensor(monke
     config = siggen.load_config("ideal")
     with pytest.raises(ValueError, match=f"sensor {config.sensors[0].name}: shows angle pinion"):
         siggen.simulate(config, [0])
+
+
+def test_nothing_settles_where_bearings_are_seats_and_no_path_was_measured() -> None:
+    config = load_config(minimal(dynamics__model="8dof"))
+    assert settle_s(config, draw_specimen(config, 0)) == 0.0

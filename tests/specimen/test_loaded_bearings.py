@@ -163,7 +163,7 @@ def test_a_spall_of_such_a_bearing_pushes_under_its_load_and_clearance() -> None
 
 def test_balls_that_pass_a_loaded_bearing_are_heard_at_their_order_though_nothing_is_drawn_for_them() -> None:
     """What a background of still bearings adds is lines of BPFO less its slip, larger with more clearance."""
-    still = {"velocity_um_s": 0.0, "compliance_um": 0.0}
+    still = {"velocity_um_s": 0.0}
     size = {}
     for um in (0.0, 40.0):
         short: dict[str, Any] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import ceil, inf
 from pathlib import Path
 
 import numpy as np
@@ -61,6 +61,19 @@ def test_another_operating_point_changes_no_steps() -> None:
     point = "{speed_hz: 33, torque_nm: 30}"
     alone = steps_of(loaded(f"operating_points=[{point}]"))
     assert steps_of(loaded(f"operating_points=[{point}, {{speed_hz: 37, torque_nm: 60}}]")) == alone
+
+
+def test_slow_gears_without_friction_take_steps_of_1_4_rad_of_the_teeth_s_vibration() -> None:
+    """A hundredth of the tolerance asks for a tenth of the step. The vibration is found by general eigenvalues."""
+    slow = ["operating_points=[{speed_hz: 5, torque_nm: 60}]", "dynamics.friction.model=off"]
+    config = loaded(*slow, "dynamics.integration_tolerance=1e-5")
+    mesh = specimen_state(config, draw_specimen(config, 0), 0).mesh
+    structure, tables = mesh.structure, mesh.every[0].mesh.tables
+    pairs = (tables.end_m - tables.start_m) / tables.base_pitch_m
+    teeth = pairs * tables.pair_stiffness_n_per_m.max(axis=0).mean()
+    stiffness = structure.stiffness + teeth * np.outer(structure.mesh.vector, structure.mesh.vector)
+    fastest = np.sqrt(np.linalg.eigvals(np.linalg.solve(structure.mass, stiffness)).real.max())
+    assert steps_of(config) == ceil(10.0 * fastest / 1.4 / config.fs_hz)
 
 
 def test_friction_that_stops_light_gears_at_once_takes_more_steps() -> None:

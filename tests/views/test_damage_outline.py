@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.gears.damage.outlines import rectangle
-from siggen.views.damage_outline import outline_mm
+from siggen.views.flank_views import outline_mm
 from tests.gears.builders import pit
 
 

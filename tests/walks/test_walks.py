@@ -47,7 +47,7 @@ def blocks() -> list[str]:
 
 
 def test_from_a_drawing_to_a_loaded_training_set(rig: Path) -> None:
-    planned = walk(rig, f"siggen plan rig.yaml {SIZE}")
+    planned = walk(rig, f"siggen plan rig.yaml --trial 0 {SIZE}")
     counts = re.search(r"train (\d), validation (\d), test (\d)", planned)
     assert counts is not None
     (rig / "load.py").write_text(

@@ -180,8 +180,9 @@ def _check(
     if min(points) < 3:
         raise ValueError(f"points: received {points}; allowed are at least 3 each")
     cell = _cell_m(range_m, points[0])
-    if not cell < range_m[0] < range_m[1] < mesh.line_m - cell:
-        allowed = f"allowed is a rising pair inside 0 to {mesh.line_m:.6g} m by more than a cell"
+    last = mesh.line_m if mesh.line_m > 0.0 else np.inf  # a hollow flank has no base point behind the contact
+    if not cell < range_m[0] < range_m[1] < last - cell:
+        allowed = f"allowed is a rising pair inside 0 to {last:.6g} m by more than a cell"
         raise ValueError(f"range_m: received {range_m}; {allowed}")
     if not roughness_m or not all(np.isfinite(value) and value >= 0.0 for value in roughness_m):
         raise ValueError(f"roughness_m: received {tuple(roughness_m)}; allowed is at least one finite value from 0")

@@ -50,9 +50,9 @@ class LubricatedMesh:
     Parameters
     ----------
     line_m : float
-        Length T of the line of action [m].
+        Length T of the line of action; negative where the gear is a ring [m].
     speed_1_rad_s, speed_2_rad_s : float
-        Mean speeds of pinion and gear, both positive [rad/s].
+        Mean speeds of pinion and gear, both positive; that of a ring, which turns as its pinion, negative [rad/s].
     contact_length_m : float
         Length of the contact across the face [m].
     effective_modulus_pa : float
@@ -66,7 +66,7 @@ class LubricatedMesh:
     Raises
     ------
     ValueError
-        If a number is not finite and positive.
+        If a number is not finite and positive; of a ring line and second speed are negative together.
     """
 
     line_m: float
@@ -82,8 +82,9 @@ class LubricatedMesh:
 
     def __post_init__(self) -> None:
         """Refuse impossible numbers where they enter, not as a NaN in a record."""
+        inside = self.line_m < 0.0 and self.speed_2_rad_s < 0.0
         for name in self.__slots__:
-            value = getattr(self, name)
+            value = getattr(self, name) * (-1.0 if inside and name in {"line_m", "speed_2_rad_s"} else 1.0)
             if not (isfinite(value) and value > 0.0):
                 raise ValueError(f"{name}: received {value}; allowed are finite values above 0")
 

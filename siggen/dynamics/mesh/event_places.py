@@ -43,7 +43,17 @@ def event_places(law: PairLaw, approach_m: float, step_pitches: float) -> NDArra
         force = _forces(law, rows, float(depth))
         bend = force[:, 2 * reach :] - 2.0 * force[:, reach:-reach] + force[:, : -2 * reach]
         edges[:, reach:-reach] |= np.abs(bend) > LEAST_SHARE * force.max(axis=0).mean()
-    return _widened(edges, 3 * reach, reach)
+    return _widened(edges, 3 * reach, reach) | _path_ends(law, points, step_pitches)
+
+
+def _path_ends(law: PairLaw, points: int, step_pitches: float) -> NDArray[np.bool_]:
+    """Return (points,) from where a step takes a pair off the path of contact, or the next pair onto it.
+
+    There a corner begins or ends to touch, from which on the errors of its flank stay as they are.
+    """
+    per_pitch = law.scalars[layout.PER_PITCH]
+    ahead = np.array([points - 1.0, per_pitch])[:, np.newaxis] - np.arange(float(points))
+    return np.asarray(((ahead >= 0.0) & (ahead <= step_pitches * per_pitch + 1.0)).any(axis=0))
 
 
 def _deepest_m(law: PairLaw) -> float:

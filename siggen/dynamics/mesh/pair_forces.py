@@ -80,6 +80,12 @@ def static_approach_m(law: PairLaw, force_n: float, pitches: float) -> float:
     low, high = -law.backlash_m - reach, reach
     if not static_force(law, low, pitches, pairs) <= force_n <= static_force(law, high, pitches, pairs):
         raise ValueError(f"force_n: received {force_n}; allowed are forces that teeth carry within {reach:.3g} m")
+    return _halved(law, force_n, pitches, low, high, pairs)
+
+
+@njit(cache=True, _nrt=False)
+def _halved(law: PairLaw, force_n: float, pitches: float, low: float, high: float, pairs: FloatArray) -> float:
+    """Return the approach between two at which the pairs carry a force."""
     # Monotone, so halving always ends; 80 halvings of 2 mm are below the rounding of a nanometre.
     for _ in range(80):
         middle = 0.5 * (low + high)

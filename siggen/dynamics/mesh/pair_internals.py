@@ -139,7 +139,7 @@ def _drives(pairs: FloatArray) -> NDArray[np.bool_]:
 def _contact_values(pairs: FloatArray, line_m: float, contact: PairContact) -> list[FloatArray]:
     touching = _drives(pairs)
     # Where nothing touches any contact will do: its values are replaced.
-    position = np.where(touching, pairs[:, :, PLACE], 0.5 * line_m)
+    position = np.where(touching, pairs[:, :, PLACE], 0.5 * abs(line_m))
     force = np.where(touching, pairs[:, :, NORMAL] / np.where(touching, pairs[:, :, CARRYING], 1.0), 1.0)
     radius = relative_radius(position, line_m)
     values = [hertz_pressure(force / contact.face_width_m, radius, contact.effective_modulus_pa)]

@@ -5,14 +5,17 @@ count counter-clockwise, as the sun drives; x and y turn with the carrier, in wh
 supports that are alike in all directions. Planets move along the radius (x) and along the tangent (y) against their
 pins, so that free rotation moves no translation. What turning adds to the inertia, 2 Ω_c m in the speeds and Ω_c² m
 in the places, is left out: beside a spring k at a frequency ω it counts as 2 Ω_c/ω, below 1 % above 200 Ω_c.
-Flanks slide without friction.
+
+Sliding, derived: with n the direction in which flanks push and t = z x n, a point at s of the driving flank moves by
+v_a·t + s θ̇_a along the flanks, its mate by v_b·t + (s - T) θ̇_b, with a negative T in a ring. It counts in the sense in
+which the driving gear turns, so that it grows with s.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import cos, pi, sin, tan
 
 import numpy as np
 
@@ -149,7 +152,9 @@ def _sun_meshes(coordinates: Sequence[str], stage: PlanetaryStage) -> list[MeshV
         carried = _planet(stage, number, -sin(slant), -cos(slant))
         mass = radii[0] ** 2 / stage.sun.inertia_kg_m2 + radii[1] ** 2 / stage.planet.inertia_kg_m2
         turning = ("theta_s", f"theta_p{number}")
-        found.append(_mesh(coordinates, {**push, **carried}, 1.0 / mass, turning, f"sun_{number}"))
+        across = {"x_s": -cos(angle), "y_s": -sin(angle), **_planet(stage, number, cos(slant), -sin(slant))}
+        sliding = _sliding(coordinates, across, turning, (radii[0] + radii[1]) * tan(slant))
+        found.append(_mesh(coordinates, {**push, **carried}, sliding, 1.0 / mass, turning, f"sun_{number}"))
     return found
 
 
@@ -162,7 +167,10 @@ def _ring_meshes(coordinates: Sequence[str], stage: PlanetaryStage) -> list[Mesh
         carried = _planet(stage, number, sin(slant), -cos(slant))
         mass = radii[0] ** 2 / stage.planet.inertia_kg_m2 + radii[1] ** 2 / stage.ring.inertia_kg_m2
         turning = (f"theta_p{number}", "theta_r")
-        found.append(_mesh(coordinates, {**push, **carried}, 1.0 / mass, turning, f"ring_{number}"))
+        across = {"x_r": -cos(angle), "y_r": -sin(angle), **_planet(stage, number, cos(slant), sin(slant))}
+        # planets turn the other way
+        sliding = -_sliding(coordinates, across, turning, (radii[0] - radii[1]) * tan(slant))
+        found.append(_mesh(coordinates, {**push, **carried}, sliding, 1.0 / mass, turning, f"ring_{number}"))
     return found
 
 
@@ -175,9 +183,22 @@ def _planet(stage: PlanetaryStage, number: int, radial: float, along: float) -> 
     return found
 
 
+def _sliding(
+    coordinates: Sequence[str], across: dict[str, float], turning: tuple[str, str], line_m: float
+) -> FloatArray:
+    """Return r_0, r_1 (2, n) of the gears that turn; `across` is the motion of both across the line of action."""
+    driving, driven = turning
+    shifts = vector(coordinates, {**across, driven: line_m})
+    return np.array([shifts, vector(coordinates, {driving: 1.0, driven: -1.0})])
+
+
 def _mesh(
-    coordinates: Sequence[str], along: dict[str, float], mass_kg: float, turning: tuple[str, str], name: str
+    coordinates: Sequence[str],
+    along: dict[str, float],
+    sliding: FloatArray,
+    mass_kg: float,
+    turning: tuple[str, str],
+    name: str,
 ) -> MeshVectors:
-    still: FloatArray = np.zeros((2, len(coordinates)))
-    still.setflags(write=False)
-    return MeshVectors(vector(coordinates, along), still, mass_kg, turning, name=name)
+    sliding.setflags(write=False)
+    return MeshVectors(vector(coordinates, along), sliding, mass_kg, turning, name=name)

@@ -41,15 +41,27 @@ class ExponentialMotion(PairMotion):
         super().__init__(
             structure, meshes, mean=mean, step_s=step_s, input_vectors=input_vectors, speed_input=speed_input
         )  # fmt: skip
+        self._mean_hz = mean.speed_hz
+        self._take_steps(step_s, stride)
+
+    def with_steps(self, step_s: float, stride: int = 1) -> ExponentialMotion:
+        """Return the same motion in other steps; it has to be started."""
+        other = ExponentialMotion.__new__(ExponentialMotion)
+        other.__dict__.update(self.__dict__)
+        other._take_steps(step_s, stride)
+        return other
+
+    def _take_steps(self, step_s: float, stride: int) -> None:
+        self._step_s = step_s
         of_pairs, k = self.pair_equations, self._stiffness
-        self.scheme = exponential_scheme(structure, self.equations, of_pairs, self.damping, stride * step_s)
+        self.scheme = exponential_scheme(self.structure, self.equations, of_pairs, self.damping, stride * step_s)
         light_n = np.array([mesh.light_force_n for mesh in self.meshes])
         static_n = np.maximum(np.abs(self.equations.static_force), light_n)
         approach_m = np.maximum(np.abs(self.equations.static_approach), light_n / k)
-        pitches_per_step = self.teeth * mean.speed_hz * stride * step_s * of_pairs.places[:, 0]
+        pitches_per_step = self.teeth * self._mean_hz * stride * step_s * of_pairs.places[:, 0]
         parts = zip(self.laws, static_n / k, pitches_per_step, strict=True)
         events = tuple(event_places(law, float(sunk), float(pitches)) for law, sunk, pitches in parts)
-        self._loop = Loop(self.scheme, self.laws, stride, speed_input, BEND_SHARE * static_n, approach_m, events)
+        self._loop = Loop(self.scheme, self.laws, stride, self._speed_input, BEND_SHARE * static_n, approach_m, events)
         self._work = work_arrays(self.scheme, self.laws)
         self._forget()
 

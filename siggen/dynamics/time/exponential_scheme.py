@@ -14,7 +14,8 @@ of augmented matrices, without an inverse of A.
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Iterator
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -73,8 +74,7 @@ def exponential_scheme(
     damping_n_s_per_m : (meshes,)
     step_s : float
     """
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+    nodes, weights = _gauss()
     steps = np.asarray(step_s * float(SPLIT) ** -np.arange(LEVELS))
     matrix = state_matrix(equations, equations.reference_stiffness, damping_n_s_per_m)
     forces, observed = _forces(structure), _observed(structure)
@@ -94,7 +94,7 @@ def exponential_scheme(
         nodes=nodes,
         weights=weights,
         legendre=np.array([_legendre(nodes, degree) * weights * (2.0 * degree + 1.0) for degree in range(NODES)]),
-        extrapolation=_extrapolation(nodes, weights, steps),
+        extrapolation=_extrapolation(),
         linear=np.array(linear),
         places=of_pairs.places,
     )
@@ -108,16 +108,24 @@ def _key(array: FloatArray) -> tuple[tuple[int, ...], bytes]:
     return array.shape, np.ascontiguousarray(array).tobytes()
 
 
+Keys = tuple[tuple[tuple[int, ...], bytes], ...]
+"""Shapes and values of matrix, forces, inputs and what is observed."""
+
+
 @lru_cache(maxsize=4)
-def _all_levels(keys: tuple[tuple[tuple[int, ...], bytes], ...], step_s: float) -> tuple[FloatArray, ...]:
+def _all_levels(keys: Keys, step_s: float) -> tuple[FloatArray, ...]:
     """Return transition, response and inputs of all lengths, and the middle; kept: states of a gearbox share them."""
-    matrix, forces, inputs, observed = (np.frombuffer(data).reshape(shape) for shape, data in keys)
-    nodes = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
+    matrix, forces, inputs, _ = _arrays(keys)
+    nodes, _ = _gauss()
     steps = step_s * float(SPLIT) ** -np.arange(LEVELS)
-    parts = [_propagated(matrix, forces, inputs, float(step), nodes, observed) for step in steps]
+    parts = [_propagated(keys, float(step)) for step in steps]
     half = _exponentials(matrix, forces, inputs, step_s, 0.5, nodes)
     middle = _filled(np.concatenate([part.reshape(-1, len(matrix)) for part in half]), LANES)
     return (*(aligned(np.array([part[k] for part in parts])) for k in range(3)), aligned(middle))
+
+
+def _arrays(keys: Keys) -> Iterator[FloatArray]:
+    return (np.frombuffer(data).reshape(shape) for shape, data in keys)
 
 
 def _filled(values: FloatArray, multiple: int) -> FloatArray:
@@ -147,10 +155,11 @@ def _observed(structure: Structure) -> FloatArray:
     return np.array([np.concatenate(row) for row in rows]).T
 
 
-def _propagated(
-    matrix: FloatArray, forces: FloatArray, inputs: FloatArray, step_s: float, nodes: FloatArray, observed: FloatArray
-) -> tuple[FloatArray, ...]:
+@lru_cache(maxsize=12)  # twice as many steps per sample have all lengths but one in common
+def _propagated(keys: Keys, step_s: float) -> tuple[FloatArray, ...]:
     """Return transition (2n, columns), response (channels, NODES, columns) and input response (2, m, columns)."""
+    matrix, forces, inputs, observed = _arrays(keys)
+    nodes, _ = _gauss()
     at_end = _exponentials(matrix, forces, inputs, step_s, 1.0, nodes)
     at_nodes = [_exponentials(matrix, forces, inputs, step_s, float(t), nodes) for t in nodes]
     columns = []
@@ -197,13 +206,22 @@ def _powers(linear: FloatArray, forces: FloatArray, count: int) -> tuple[FloatAr
     return exponential[:size, :size], exponential[:size, size:] * np.repeat(factorials, c)
 
 
+def _gauss() -> tuple[FloatArray, FloatArray]:
+    """Return the Gauss nodes on [0, 1] and their weights (NODES,)."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    return 0.5 * (nodes + 1.0), 0.5 * weights
+
+
 def _legendre(t: FloatArray, degree: int) -> FloatArray:
     """Return the shifted Legendre polynomial P_degree at t on [0, 1]."""
     return np.asarray(np.polynomial.legendre.legval(2.0 * t - 1.0, np.eye(NODES)[degree]))
 
 
-def _extrapolation(nodes: FloatArray, weights: FloatArray, steps: FloatArray) -> FloatArray:
+@cache
+def _extrapolation() -> FloatArray:
     """Return what continues the parabola through the values at the nodes of a step to those of the next one."""
+    nodes, weights = _gauss()
+    steps = float(SPLIT) ** -np.arange(LEVELS)
     result = np.zeros((LEVELS, LEVELS, NODES, LANES))
     for before, last in enumerate(steps):
         for now, step in enumerate(steps):
@@ -211,4 +229,5 @@ def _extrapolation(nodes: FloatArray, weights: FloatArray, steps: FloatArray) ->
             for degree in range(3 if step <= last else 1):  # a longer step after short ones: their mean
                 part = _legendre(nodes, degree) * weights * (2.0 * degree + 1.0)
                 result[before, now, :, :NODES] += part[:, None] * _legendre(ahead, degree)[None, :]
+    result.setflags(write=False)
     return result

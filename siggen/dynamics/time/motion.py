@@ -22,7 +22,7 @@ class Motion(Protocol):
     `teeth`: of the first gear, by which angles are counted in base pitches; `limits_m` (meshes,): approaches beyond
     which a state is refused. `coarse_inputs`: whether inputs may be splines over a coarse grid; motions of older sets
     keep every bit without.
-    `starts_settled`: whether a motion starts near its end, on a whole sample and with its transient before any history.
+    `starts_settled`: whether a motion starts near its end, on a whole sample.
     """
 
     structure: Structure

@@ -61,7 +61,7 @@ def face_gaps(pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m
         )
     shape = (position_m.size, pinion.intervals.size)
     gaps = FaceGaps(*(np.zeros(shape) for shape in (*(6 * [shape]), (*shape, 2))))
-    tips = tuple(0.5 * g.base_radius_m * g.tip_roll_rad**2 for g in (pair.pinion, pair.gear))
+    tips = tuple(0.5 * g.signed_base_radius_m * g.tip_roll_rad**2 for g in (pair.pinion, pair.gear))
     room = np.empty((2, pinion.low.shape[1] + gear.low.shape[1] + 2))
     _fill(pair.line_of_action_m, pinion, gear, tips[0], tips[1], np.ascontiguousarray(position_m), room, gaps)
     return gaps
@@ -152,7 +152,8 @@ def _nearest(room: FloatArray, count: int) -> tuple[float, float]:
 
 @njit(cache=True)
 def _height(arc: float, base_radius: float, half_angle: float) -> float:
-    """Return the height of a point of the flank at an arc, NaN beside the involute, where no pit is [m]."""
-    if arc <= 0.0:
+    """Return the height of a point of the flank at an arc, signed as the radius; NaN beside the involute [m]."""
+    square = 2.0 * arc / base_radius
+    if square <= 0.0:
         return np.nan
-    return involute.height(sqrt(2.0 * arc / base_radius), base_radius, half_angle)
+    return involute.height(sqrt(square), abs(base_radius), half_angle)

@@ -76,7 +76,7 @@ def pair_faces(
     cell = pair.face_width_m / count
     face = cell * (np.arange(count) + 0.5) - 0.5 * pair.face_width_m
     rolls = {"pinion": position_m / pair.pinion.base_radius_m}
-    rolls["gear"] = (pair.line_of_action_m - position_m) / pair.gear.base_radius_m
+    rolls["gear"] = (pair.line_of_action_m - position_m) / pair.gear.signed_base_radius_m
     first, second = (centre_line_depth(pair, which, roll) for which, roll in rolls.items())
     depth = np.sqrt(first * second)
     radius = position_m * (pair.line_of_action_m - position_m) / pair.line_of_action_m
@@ -132,7 +132,7 @@ def _typical_depth(pair: GearPair) -> float:
     middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
     rolls = {
         "pinion": middle / pair.pinion.base_radius_m,
-        "gear": (pair.line_of_action_m - middle) / pair.gear.base_radius_m,
+        "gear": (pair.line_of_action_m - middle) / pair.gear.signed_base_radius_m,
     }
     return float(np.sqrt(np.prod([centre_line_depth(pair, which, np.array([roll])) for which, roll in rolls.items()])))
 

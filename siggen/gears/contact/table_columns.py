@@ -11,13 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.gears.contact import tilt_rays
 from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.force_curve import curve_along
+from siggen.gears.contact.force_curve import ForceCurve, curve_along
 from siggen.gears.contact.kind_row import KindRow, first_touch
-from siggen.gears.contact.newton_matrix import SolverRoom, solver_room
+from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, contact_kappa, pair_faces
 from siggen.gears.contact.table_options import TableOptions, half_width, reference_force_n
-from siggen.gears.contact.tilt_rays import RAYS, UPRIGHT, along_ray, ray_way
+from siggen.gears.contact.tilt_rays import RAYS, UPRIGHT, along_rays, ray_way
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import carrying_middle_m
 from siggen.gears.stiffness.compliance import tooth_compliance
@@ -94,29 +95,30 @@ def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceS
 
 def column_curves(solver: TableSolver, row: KindRow, chosen: IntArray) -> FloatArray:
     """Return the curves (chosen, nodes, 1, values) without tilt at fine points (chosen,), ascending."""
-    touch, room = first_touch(solver.pair, row, chosen, solver.lead_m), solver_room(solver.lead_m.size)
-    values = TILTING_VALUES if solver.options.tilts else VALUES
-    curves = np.zeros((chosen.size, solver.node_m.size, 1, values))
-    for i, slices in enumerate(row_faces(solver, row, chosen)):
-        write_ray(curves[i, :, 0], solver, slices, float(touch[i]), RAYS[UPRIGHT], room)
-    curves[:, 0, :, CARRYING : ROUGH + 1] = curves[:, 1, :, CARRYING : ROUGH + 1]
+    curves = ray_curves(solver, row, chosen, RAYS[UPRIGHT : UPRIGHT + 1])
     keep_rising(solver.node_m, curves)
     return curves
 
 
-def write_ray(
-    curve: FloatArray, solver: TableSolver, slices: FaceSlices, touch_m: float, ray: float, room: SolverRoom
-) -> None:
-    """Write one ray of a column (nodes, values) behind its first node."""
+def ray_curves(solver: TableSolver, row: KindRow, chosen: IntArray, rays: FloatArray) -> FloatArray:
+    """Return the curves (chosen, nodes, rays, values) on rays (rays,) of p at fine points (chosen,), as solved."""
+    touch, room = first_touch(solver.pair, row, chosen, solver.lead_m), solver_room(solver.lead_m.size)
     node, half_face = solver.node_m[1:], 0.5 * solver.pair.face_width_m
-    way, guess = ray_way(ray, node, half_face), np.zeros(solver.lead_m.size)
-    found = curve_along(slices, touch_m + way.approach_m, way.tilt_rad, guess, room, NO_ENERGY, TOLERANCE)
-    values = along_ray(ray, node, half_face, found)
-    curve[1:, FORCE], curve[1:, SLOPE] = values[:, 0], values[:, 1]
-    curve[1:, CARRYING] = found.carrying_m / solver.pair.face_width_m
-    curve[1:, ROUGH] = found.on_damage
-    if curve.shape[1] > VALUES:
-        curve[1:, ACROSS], curve[1:, ACROSS_SLOPE] = values[:, 2], values[:, 3]
+    way = ray_way(rays, node, half_face)
+    found = np.empty((len(ForceCurve._fields), chosen.size, rays.size, node.size))
+    for i, slices in enumerate(row_faces(solver, row, chosen)):
+        for k in range(rays.size):
+            guess, approach = np.zeros(solver.lead_m.size), touch[i] + way.approach_m[k]
+            found[:, i, k] = curve_along(slices, approach, way.tilt_rad[k], guess, room, NO_ENERGY, TOLERANCE)
+    values = along_rays(rays, node, half_face, found)
+    parts = [values[0], values[1], found[tilt_rays.CARRYING] / solver.pair.face_width_m, found[tilt_rays.ON_DAMAGE]]
+    parts += [values[2], values[3]] if solver.options.tilts else []
+    count = TILTING_VALUES if solver.options.tilts else VALUES
+    curves = np.zeros((chosen.size, solver.node_m.size, rays.size, count))
+    for number, part in enumerate(parts):
+        curves[:, 1:, :, number] = np.moveaxis(part, -1, 1)
+    curves[:, 0, :, CARRYING : ROUGH + 1] = curves[:, 1, :, CARRYING : ROUGH + 1]
+    return curves
 
 
 def keep_rising(node_m: FloatArray, curves: FloatArray) -> None:

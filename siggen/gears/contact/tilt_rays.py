@@ -17,42 +17,44 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.contact.force_curve import ForceCurve
 
 HALF_RAYS = (0.0, 0.3, 0.8, 1.5, 1.0 + 2.0**0.5)
 """p of the rays to one side; the last one is that on which a rigid corner comes to touch."""
 RAYS = np.array([-p for p in HALF_RAYS[:0:-1]] + list(HALF_RAYS))
 UPRIGHT = len(HALF_RAYS) - 1
 """Number of the ray without tilt."""
+FORCE, MOMENT, STIFFNESS, CROSS, TURNING, CARRYING, ON_DAMAGE = range(1, 8)
+"""Where answers of the solver stand in a `ForceCurve`."""
 
 
 class RayWay(NamedTuple):
-    """Approaches beyond first touch [m] and tilts [rad] of the nodes of a ray."""
+    """Approaches beyond first touch [m] and tilts [rad] of the nodes of rays (rays, nodes)."""
 
     approach_m: FloatArray
     tilt_rad: FloatArray
 
 
-def ray_way(ray: float, node_m: FloatArray, half_face_m: float) -> RayWay:
-    """Return the way along the ray p = `ray` through the nodes (nodes,), r [m]."""
-    cosine, sine = _direction(ray)
+def ray_way(rays: FloatArray, node_m: FloatArray, half_face_m: float) -> RayWay:
+    """Return the way along rays (rays,) of p through the nodes (nodes,), r [m]."""
+    cosine, sine = _direction(rays)
     return RayWay(cosine * node_m, sine * node_m / half_face_m)
 
 
-def along_ray(ray: float, node_m: FloatArray, half_face_m: float, found: ForceCurve) -> FloatArray:
-    """Return W_r, W_rr, W_p and W_pr (nodes, 4) from the solver's answers at the nodes."""
-    cosine, sine = _direction(ray)
-    moment, cross, turning = (
-        values / half_face_m**power
-        for values, power in ((found.moment_n_m, 1), (found.turning_n, 1), (found.tilting_n_m, 2))
-    )
-    force, stiffness = found.force_n, found.stiffness_n_per_m
+def along_rays(rays: FloatArray, node_m: FloatArray, half_face_m: float, found: FloatArray) -> FloatArray:
+    """Return W_r, W_rr, W_p and W_pr (4, ..., rays, nodes).
+
+    `found` (8, ..., rays, nodes): the solver's answers at the nodes in the order of `ForceCurve`.
+    """
+    cosine, sine = _direction(rays)
+    force, stiffness = found[FORCE], found[STIFFNESS]
+    moment, cross = found[MOMENT] / half_face_m, found[CROSS] / half_face_m
+    turning = found[TURNING] / half_face_m**2
     per_angle = -sine * force + cosine * moment
     bend = cosine * (cosine * cross - sine * stiffness) + sine * (cosine * turning - sine * cross)
     radial = cosine**2 * stiffness + 2.0 * cosine * sine * cross + sine**2 * turning
-    angle = 2.0 / (1.0 + ray**2)  # dφ/dp
+    angle = 2.0 / (1.0 + rays[:, np.newaxis] ** 2)  # dφ/dp
     pushed = cosine * force + sine * moment
-    return np.stack([pushed, radial, angle * node_m * per_angle, angle * (per_angle + node_m * bend)], axis=-1)
+    return np.stack([pushed, radial, angle * node_m * per_angle, angle * (per_angle + node_m * bend)])
 
 
 def energy_j(node_m: FloatArray, pushed: FloatArray, slope: FloatArray) -> FloatArray:
@@ -62,6 +64,7 @@ def energy_j(node_m: FloatArray, pushed: FloatArray, slope: FloatArray) -> Float
     return np.concatenate([np.zeros_like(pushed[..., :1]), np.cumsum(parts, axis=-1)], axis=-1)
 
 
-def _direction(ray: float) -> tuple[float, float]:
-    """Return cos φ and sin φ."""
-    return (1.0 - ray**2) / (1.0 + ray**2), 2.0 * ray / (1.0 + ray**2)
+def _direction(rays: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return cos φ and sin φ (rays, 1)."""
+    p = rays[:, np.newaxis]
+    return (1.0 - p**2) / (1.0 + p**2), 2.0 * p / (1.0 + p**2)

@@ -10,21 +10,17 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.column_halving import halved
-from siggen.gears.contact.kind_row import KindRow, first_touch
-from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.kind_row import KindRow
 from siggen.gears.contact.table_columns import (
     ACROSS,
     ACROSS_SLOPE,
-    CARRYING,
     ENERGY,
     FORCE,
-    ROUGH,
     SLOPE,
     TILTING_VALUES,
     TableSolver,
     keep_rising,
-    row_faces,
-    write_ray,
+    ray_curves,
 )
 from siggen.gears.contact.tilt_rays import RAYS, UPRIGHT, energy_j
 
@@ -32,6 +28,9 @@ COARSEST = 16
 """Columns from one that is solved on all rays to the next, before halving."""
 BEND = 1e-2
 """Largest deviation of a ray's forces from its neighbours', of the force without tilt and a tenth of the largest."""
+
+TILTED = [ray for ray in range(1, RAYS.size - 1) if ray != UPRIGHT]
+"""Rays that are solved."""
 
 
 def tilted_columns(solver: TableSolver, row: KindRow, chosen: IntArray, upright: FloatArray) -> FloatArray:
@@ -74,13 +73,8 @@ def _scale(node_m: FloatArray, upright: FloatArray) -> FloatArray:
 
 def _rays(solver: TableSolver, row: KindRow, chosen: IntArray) -> FloatArray:
     """Return solved columns (chosen, nodes, rays, values); on the last rays a rigid corner only comes to touch."""
-    touch, room = first_touch(solver.pair, row, chosen, solver.lead_m), solver_room(solver.lead_m.size)
     curves = np.zeros((chosen.size, solver.node_m.size, RAYS.size, TILTING_VALUES))
-    for i, slices in enumerate(row_faces(solver, row, chosen)):
-        for ray in range(1, RAYS.size - 1):
-            if ray != UPRIGHT:
-                write_ray(curves[i, :, ray], solver, slices, float(touch[i]), RAYS[ray], room)
-    curves[:, 0, :, CARRYING : ROUGH + 1] = curves[:, 1, :, CARRYING : ROUGH + 1]
+    curves[:, :, TILTED] = ray_curves(solver, row, chosen, RAYS[TILTED])
     return curves
 
 

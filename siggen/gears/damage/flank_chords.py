@@ -64,7 +64,8 @@ class FlankChords(NamedTuple):
     `low`, `high` (slices, most): merged intervals along the arc [m], ascending; `low_radius_m`, `high_radius_m`: radii
     of their edges [m], negative where the damage states none; `intervals` (slices,): how many; `face_m` (slices,): the
     lines; `covered` (slices,): part of a slice's width over which damage extends; `pits` (n, COLUMNS): rows of
-    `pit_rows`; `lines`: those that cross each line; `base_radius_m`, `half_angle_rad`: the involute.
+    `pit_rows`; `lines`: those that cross each line; `base_radius_m`, `half_angle_rad`: the involute. Radius and arcs
+    of a ring are negative.
     """
 
     low: FloatArray
@@ -101,13 +102,16 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
         raise ValueError(f"slices: received {slices}; allowed are whole numbers from 1")
     rows = pit_rows(one for one in pits if has_extent(one))
     face, covered = _covered(face_width_m, slices, rows)
-    highest = float(gear.height_m(min(BEYOND_TIP * gear.tip_roll_rad, 0.5 * pi)))
+    highest = float(gear.height_m(min(BEYOND_TIP * gear.last_roll_rad, 0.5 * pi)))
     lines = _line_rows(face, rows)
     found, count = _line_unions(lines, rows, highest)
     low, high, low_radius, high_radius = np.ascontiguousarray(found[:, :, : count.max()])
+    arcs = _arcs(gear, low), _arcs(gear, high)
+    if gear.signed_base_radius_m < 0.0:  # what is higher lies lower along the tangent
+        arcs, low_radius, high_radius = arcs[::-1], high_radius, low_radius
     return FlankChords(
-        low=_arcs(gear, low),
-        high=_arcs(gear, high),
+        low=arcs[0],
+        high=arcs[1],
         low_radius_m=low_radius,
         high_radius_m=high_radius,
         intervals=count,
@@ -115,7 +119,7 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
         covered=covered,
         pits=rows,
         lines=lines,
-        base_radius_m=gear.base_radius_m,
+        base_radius_m=gear.signed_base_radius_m,
         half_angle_rad=gear.base_half_angle_rad,
     )
 
@@ -255,9 +259,9 @@ def _merge(room: FloatArray, filled: int, out: FloatArray) -> int:
 
 
 def _arcs(gear: SpurGear, height_m: FloatArray) -> FloatArray:
-    """Return the arc along the involute, R_b ψ²/2, at heights (slices, k) [m]."""
+    """Return the arc along the involute, R_b ψ²/2, at heights (slices, k), signed as R_b [m]."""
     roll = involute.rolls_at_heights(height_m.ravel(), gear.base_radius_m, gear.base_half_angle_rad)
-    return np.ascontiguousarray((0.5 * gear.base_radius_m * roll**2).reshape(height_m.shape))
+    return np.ascontiguousarray((0.5 * gear.signed_base_radius_m * roll**2).reshape(height_m.shape))
 
 
 @njit(cache=True)

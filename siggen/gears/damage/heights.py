@@ -17,8 +17,9 @@ READINGS = ("axial", "radial", "arc")
 
 
 def flank_heights(gear: SpurGear) -> tuple[float, float]:
-    """Return the heights x of the start of the rack-cut involute and of the tip [m]."""
-    return float(gear.height_m(gear.involute_start_roll_rad)), float(gear.height_m(gear.tip_roll_rad))
+    """Return the heights x of the ends of the flank, ascending: start of the involute and tip, of rings turned [m]."""
+    low, high = gear.flank_rolls_rad
+    return float(gear.height_m(low)), float(gear.height_m(high))
 
 
 def initiation_height_m(pair: GearPair, which: str) -> float:

@@ -51,9 +51,12 @@ def takes_whole_contact(pair: GearPair, pinion_rows: FloatArray, gear_rows: Floa
         return False  # compiles nothing: a configuration is checked with single pits, before anything is told
     flanks = (
         (pinion_rows, pinion.base_radius_m, pinion.base_half_angle_rad),
-        (gear_rows, gear.base_radius_m, gear.base_half_angle_rad),
+        (gear_rows, gear.signed_base_radius_m, gear.base_half_angle_rad),
     )
-    rolls = [involute.rolls_at_heights(section_kinks(rows, width), *sizes) * sizes[0] for rows, *sizes in flanks]
+    rolls = [
+        involute.rolls_at_heights(section_kinks(rows, width), abs(radius), half_angle) * radius
+        for rows, radius, half_angle in flanks
+    ]
     ends = np.array([pair.contact_start_m, pair.contact_end_m])
     cuts = np.clip(np.concatenate([rolls[0], pair.line_of_action_m - rolls[1], ends]), *ends)
     return bool(_closes(np.unique(cuts), pair.line_of_action_m, *flanks, width))
@@ -106,7 +109,7 @@ def _is_closed(
 ) -> bool:
     filled = 0
     for travel, flank in ((position, pinion), (line - position, gear)):
-        x = involute.height(travel / flank[1], flank[1], flank[2])
+        x = involute.height(travel / flank[1], abs(flank[1]), flank[2])
         count = active_pits(x, flank[0], active)
         filled = add_intervals(x, flank[0], active, count, face_width, intervals, filled)
     return covered_length(intervals, filled) >= face_width * (1.0 - WHOLE_FACE)
@@ -125,9 +128,9 @@ def _may_close(
     """Return whether the extreme ends of all rows between two positions leave no gap."""
     filled = 0
     for start, stop, flank in ((low, high, pinion), (line - high, line - low, gear)):
-        bottom = involute.height(start / flank[1], flank[1], flank[2])
-        top = involute.height(stop / flank[1], flank[1], flank[2])
-        filled = _add_extremes(bottom, top, flank[0], face_width, intervals, filled)
+        one = involute.height(start / flank[1], abs(flank[1]), flank[2])
+        two = involute.height(stop / flank[1], abs(flank[1]), flank[2])
+        filled = _add_extremes(min(one, two), max(one, two), flank[0], face_width, intervals, filled)
     return covered_length(intervals, filled) >= face_width * (1.0 - WHOLE_FACE)
 
 

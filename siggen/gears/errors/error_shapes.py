@@ -5,8 +5,8 @@ machines that index teeth one by one, and a random part; eccentricity goes on wi
 both make together is held to the limits, so no harmonic of a real gear counts twice. Profile: a slope,
 since cutters and settings are wrong alike for all teeth, with a scatter of 10 % between them; a wave of a few cycles
 with a phase of its own on every tooth; noise down to L/30 of the length L of the flank, where the profile filter of the
-standard ends what is measured. Waves are freed of their straight line, as the standard does before it calls the rest
-form.
+standard ends what is measured, and as smooth as that filter leaves it. Waves are freed of their straight line, as the
+standard does before it calls the rest form.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from siggen.arrays import FloatArray
 
@@ -88,7 +89,7 @@ def _form(waves: FloatArray, rng: np.random.Generator) -> FloatArray:
     # Tooth by tooth, so that further teeth leave those before them as they are.
     for tooth, cycles in enumerate(waves):
         phase, amplitude = 2.0 * np.pi * rng.random(), 1.0 + TOOTH_SCATTER * rng.standard_normal()
-        noise = np.interp(place, nodes, NOISE_SHARE * rng.standard_normal(NOISE_POINTS))
+        noise = CubicSpline(nodes, NOISE_SHARE * rng.standard_normal(NOISE_POINTS))(place)
         form[tooth] = amplitude * np.sin(2.0 * np.pi * cycles * place + phase) + noise
     return without_line(form)
 

@@ -93,9 +93,11 @@ def _rolls(
 
     Tables of few teeth may begin below the base circle, where no flank is.
     """
+    gear = pair.member(which)
     radius = position_m if which == "pinion" else pair.line_of_action_m - position_m
+    radius = radius if gear.signed_base_radius_m > 0.0 else -radius
     seen = np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
-    return radius / pair.member(which).base_radius_m, seen
+    return radius / gear.base_radius_m, seen
 
 
 def with_waves(

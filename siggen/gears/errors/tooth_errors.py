@@ -16,6 +16,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from siggen.arrays import FloatArray
 from siggen.gears.errors.error_shapes import FLANK_POINTS
@@ -74,5 +75,5 @@ def _profiles(pair: GearPair, which: str, errors: GearErrors, position_m: FloatA
     place = (position_m - pair.contact_start_m) / (pair.contact_end_m - pair.contact_start_m)
     place = np.clip(place if which == "pinion" else 1.0 - place, 0.0, 1.0)
     points = np.linspace(0.0, 1.0, FLANK_POINTS)
-    form = np.stack([np.interp(place, points, row) for row in errors.form_m])
+    form = CubicSpline(points, errors.form_m, axis=1)(place)
     return np.asarray(errors.slope_m[:, None] * place[None, :] + form)

@@ -79,7 +79,7 @@ class GearPair:
     @property
     def contact_start_m(self) -> float:
         """Position s_A where the gear's tip enters contact [m]."""
-        return self.line_of_action_m - self.gear.base_radius_m * self.gear.tip_roll_rad
+        return self.line_of_action_m - self.gear.signed_base_radius_m * self.gear.tip_roll_rad
 
     @property
     def contact_end_m(self) -> float:
@@ -117,6 +117,11 @@ class GearPair:
         return self.face_travel_m / self.base_pitch_m
 
     @property
+    def tips_meet_flanks(self) -> bool:
+        """Whether the corner of a tip meets the mate beside the path of contact."""
+        return True
+
+    @property
     def engagement_start_m(self) -> float:
         """Position of the middle of the face where the first end of the face enters contact; s_A of spur gears [m]."""
         return self.contact_start_m - 0.5 * self.face_travel_m
@@ -136,7 +141,7 @@ class GearPair:
 
     @property
     def _base_radii_m(self) -> float:
-        return self.pinion.base_radius_m + self.gear.base_radius_m
+        return self.pinion.base_radius_m + self.gear.signed_base_radius_m
 
     def member(self, which: str) -> SpurGear:
         """Return the gear named 'pinion' or 'gear'.

@@ -1,17 +1,18 @@
 """A planet inside a ring: radii of the ring's teeth, path of contact, where the ring's mesh stands after the sun's.
 
 Equations: standard literature (internal involute gearing); the phase between both meshes of a planet is derived. The
-planet drives. Positions s along the line of action count from the planet's base tangent point; the ring's lies at -T,
-so that the flanks' radii of curvature are s and s + T, the ring's being hollow.
+planet drives. Positions s along the line of action count from the planet's base tangent point; the ring's lies on the
+same side of the contact, at T < 0, so that the flanks' radii of curvature are s and s - T, the ring's being hollow.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import acos, cos, pi, sqrt, tan
+from math import acos, cos, pi, sin, sqrt, tan
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem
@@ -23,39 +24,26 @@ LEAST_APART = 10
 
 
 @dataclass(frozen=True, slots=True)
-class RingGear:
+class RingGear(SpurGear):
     """Teeth that point inwards; the spaces between them are the teeth of an outer gear of the same numbers.
+
+    Heights, rolls and radii of a flank grow outwards from the base circle, from the tip to the root. Its profile shift
+    is positive where spaces are wider, teeth thinner and farther out.
 
     Parameters
     ----------
-    teeth : int
-    module_m, pressure_angle_rad : float
-        [m], [rad].
-    profile_shift : float
-        Positive: spaces wider, teeth thinner and farther out.
-    addendum_coefficient, clearance_coefficient : float
-        Tip height and tip clearance in modules.
+    bore_radius_m : float
+        Not read: the ring is held round its rim.
     cut_back_m : float
         By how much the tips are shortened [m].
     """
 
-    teeth: int
-    module_m: float
-    pressure_angle_rad: float
-    profile_shift: float
-    addendum_coefficient: float
-    clearance_coefficient: float
     cut_back_m: float = 0.0
 
     @property
-    def pitch_radius_m(self) -> float:
-        """Generating pitch radius [m]."""
-        return 0.5 * self.module_m * self.teeth
-
-    @property
-    def base_radius_m(self) -> float:
-        """Base radius [m]."""
-        return self.pitch_radius_m * cos(self.pressure_angle_rad)
+    def signed_base_radius_m(self) -> float:
+        """Base radius as it counts along a line of action, negative [m]."""
+        return -self.base_radius_m
 
     @property
     def tip_radius_m(self) -> float:
@@ -70,78 +58,77 @@ class RingGear:
         return self.pitch_radius_m + height * self.module_m
 
     @property
-    def space_half_angle_rad(self) -> float:
-        """Half angle of a space on the base circle, as of the tooth of an outer gear [rad]."""
+    def base_half_angle_rad(self) -> float:
+        """Half angle of a tooth on the base circle; negative where it has come to a point farther out [rad].
+
+        As that of an outer gear it counts for a flank whose tooth grows thinner outwards, hence with its sign turned.
+        """
         shift = 2.0 * self.profile_shift * tan(self.pressure_angle_rad) / self.teeth
-        return pi / (2.0 * self.teeth) + involute_function(self.pressure_angle_rad) + shift
+        space = pi / (2.0 * self.teeth) + involute_function(self.pressure_angle_rad) + shift
+        return space - pi / self.teeth
+
+    @property
+    def tip_roll_rad(self) -> float:
+        """Roll angle of the tip; 0 where it lies inside of the base circle [rad]."""
+        return sqrt(max((self.tip_radius_m / self.base_radius_m) ** 2 - 1.0, 0.0))
+
+    @property
+    def tip_half_thickness_m(self) -> float:
+        """Half tooth thickness at the tip [m]; not positive when the tooth is pointed."""
+        return float(self.half_thickness_m(self.tip_roll_rad))
+
+    @property
+    def flank_rolls_rad(self) -> tuple[float, float]:
+        """Roll angles of the ends of the flank, ascending: the tip and the end before the root [rad]."""
+        return self.tip_roll_rad, self.last_roll_rad
+
+    @property
+    def last_roll_rad(self) -> float:
+        """Roll angle where the involute ends: a clearance before the root (assumed: cut by a tool with round tips)."""
+        radius = self.root_radius_m - self.clearance_coefficient * self.module_m
+        return sqrt((radius / self.base_radius_m) ** 2 - 1.0)
+
+    def half_thickness_m(self, roll: ArrayLike) -> FloatArray:
+        """Return the half tooth thickness, shape of `roll` [m]."""
+        return -SpurGear.half_thickness_m(self, roll)
 
     def half_angle_rad(self, radius_m: FloatArray) -> FloatArray:
         """Return half the angle that a tooth fills at radii (k,) from the base circle outwards [rad]."""
         slant = np.arccos(np.minimum(self.base_radius_m / radius_m, 1.0))
-        return np.asarray(pi / self.teeth - self.space_half_angle_rad + np.tan(slant) - slant)
+        return np.asarray(np.tan(slant) - slant - self.base_half_angle_rad)
 
 
 @dataclass(frozen=True, slots=True)
-class InternalPair:
-    """A driving planet in a ring, without backlash: the centre distance says how the ring must be shifted."""
+class InternalPair(GearPair):
+    """A driving planet (`pinion`) in a ring (`gear`), without backlash: the centre distance says how it is shifted.
 
-    planet: SpurGear
-    ring: RingGear
-    face_width_m: float
-    youngs_modulus_pa: float
-    poisson_ratio: float
+    Its line of action T is negative, as the ring's base radius counts: so rolls of the ring (T - s)/R, the relative
+    radius of the flanks s (T - s)/T and the ends of the path are those of any pair (derived).
+    """
+
+    gear: RingGear
 
     @property
-    def working_pressure_angle_rad(self) -> float:
+    def tight_pressure_angle_rad(self) -> float:
         """Working pressure angle, inv = inv alpha_0 + 2 (X_r - X_p) tan(alpha_0)/(z_r - z_p) [rad]."""
-        angle = self.planet.pressure_angle_rad
-        shift = self.ring.profile_shift - self.planet.profile_shift
-        teeth = self.ring.teeth - self.planet.teeth
+        angle = self.pinion.pressure_angle_rad
+        shift = self.gear.profile_shift - self.pinion.profile_shift
+        teeth = self.gear.teeth - self.pinion.teeth
         return angle if shift == 0.0 else inverse_involute(involute_function(angle) + 2.0 * shift * tan(angle) / teeth)
 
     @property
     def working_centre_distance_m(self) -> float:
         """Centre distance (R_br - R_bp)/cos(alpha_w) [m]."""
-        return self._base_radii_m / cos(self.working_pressure_angle_rad)
+        return abs(self.line_of_action_m) / sin(self.working_pressure_angle_rad)
 
     @property
-    def line_of_action_m(self) -> float:
-        """Distance T of the base tangent points, both on one side of the contact [m]."""
-        return self._base_radii_m * tan(self.working_pressure_angle_rad)
-
-    @property
-    def contact_start_m(self) -> float:
-        """Position where the ring's tip enters contact [m]; -T where the tip lies inside of the base circle."""
-        ring = self.ring
-        return sqrt(max(ring.tip_radius_m**2 - ring.base_radius_m**2, 0.0)) - self.line_of_action_m
-
-    @property
-    def contact_end_m(self) -> float:
-        """Position where the planet's tip leaves contact [m]."""
-        return self.planet.base_radius_m * self.planet.tip_roll_rad
-
-    @property
-    def pitch_point_m(self) -> float:
-        """Position of the pitch point [m]."""
-        return self.planet.base_radius_m * tan(self.working_pressure_angle_rad)
-
-    @property
-    def base_pitch_m(self) -> float:
-        """Base pitch [m]."""
-        return 2.0 * pi * self.planet.base_radius_m / self.planet.teeth
-
-    @property
-    def contact_ratio(self) -> float:
-        """Mean number of pairs in contact."""
-        return (self.contact_end_m - self.contact_start_m) / self.base_pitch_m
-
-    @property
-    def _base_radii_m(self) -> float:
-        return self.ring.base_radius_m - self.planet.base_radius_m
+    def tips_meet_flanks(self) -> bool:
+        """Whether the corner of a tip meets the mate beside the path of contact; not modelled in a ring."""
+        return False
 
     def ring_radius_m(self, position_m: FloatArray) -> FloatArray:
         """Return the radius on the ring of contacts at positions (k,) [m]."""
-        return np.hypot(self.ring.base_radius_m, position_m + self.line_of_action_m)
+        return np.hypot(self.gear.base_radius_m, self.line_of_action_m - position_m)
 
 
 def ring_round(sun_pair: GearPair, teeth: int) -> InternalPair:
@@ -168,14 +155,14 @@ def ring_round(sun_pair: GearPair, teeth: int) -> InternalPair:
     unshifted = even and sun_pair.pinion.profile_shift + planet.profile_shift == 0.0
     shift = planet.profile_shift + (0.0 if unshifted else 0.5 * more * apart / tan(angle))
     height, clearance = planet.addendum_coefficient, planet.clearance_coefficient
-    ring = RingGear(teeth, planet.module_m, angle, shift, height, clearance)
+    ring = RingGear(teeth, planet.module_m, angle, shift, height, clearance, planet.bore_radius_m)
     pair = InternalPair(planet, ring, sun_pair.face_width_m, sun_pair.youngs_modulus_pa, sun_pair.poisson_ratio)
-    return replace(pair, ring=replace(ring, cut_back_m=max(_clear_radius_m(pair) - ring.tip_radius_m, 0.0)))
+    return replace(pair, gear=replace(ring, cut_back_m=max(_clear_radius_m(pair) - ring.tip_radius_m, 0.0)))
 
 
 def _clear_radius_m(pair: InternalPair) -> float:
     """Return the least radius of the ring's tips that does not reach the planet's fillet [m]."""
-    first = pair.planet.involute_start_roll_rad * pair.planet.base_radius_m
+    first = pair.pinion.involute_start_roll_rad * pair.pinion.base_radius_m
     return float(pair.ring_radius_m(np.array([first]))[0])
 
 
@@ -185,7 +172,7 @@ def internal_problems(pair: InternalPair) -> tuple[GeometryProblem, ...]:
 
 
 def _internal(pair: InternalPair) -> Iterator[GeometryProblem]:
-    ring, planet = pair.ring, pair.planet
+    ring, planet = pair.gear, pair.pinion
     if ring.teeth - planet.teeth < LEAST_APART:
         received, allowed = f"{ring.teeth} teeth round {planet.teeth}", f"allowed: at least {LEAST_APART} teeth more"
         yield GeometryProblem("tips touch", "ring", received, allowed)
@@ -194,7 +181,7 @@ def _internal(pair: InternalPair) -> Iterator[GeometryProblem]:
         received = f"contact from {pair.contact_start_m:.6g} m along the line of action"
         allowed = f"allowed: from {first:.6g} m, where the planet's flank starts; shorter tips of the ring"
         yield GeometryProblem("interference", "ring and planet", received, allowed)
-    if float(ring.half_angle_rad(np.array([ring.tip_radius_m]))[0]) <= 0.0:
+    if ring.tip_half_thickness_m <= 0.0:
         allowed = "allowed: a tooth of some thickness there"
         yield GeometryProblem("pointed tip", "ring", f"profile shift {ring.profile_shift:.6g}", allowed)
     if pair.contact_ratio < 1.0:
@@ -208,7 +195,7 @@ def ring_ahead_pitches(sun_pair: GearPair, ring_pair: InternalPair) -> float:
     loads the flanks behind in the planet's sense of turning, the ring those in front; half a turn lies between both
     pitch points, less half a tooth at each (derived). Without shift: 0 for odd, 1/2 for even teeth of the planet.
     """
-    planet = ring_pair.planet
+    planet = ring_pair.pinion
     half_teeth_rad = sum(
         planet.base_half_angle_rad - involute_function(angle)
         for angle in (sun_pair.working_pressure_angle_rad, ring_pair.working_pressure_angle_rad)

@@ -8,6 +8,7 @@ relief, the corner of the tip outside the path of contact, and one constant per 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,7 @@ class MissingMaterial:
     gear: ToothTables
 
 
+@lru_cache(maxsize=4)  # states of a gearbox share them
 def missing_material(
     pair: GearPair,
     relief: TipRelief | None = None,
@@ -76,7 +78,7 @@ def missing_material(
     if relief is not None and not (relief.amount_m >= 0.0 and 0.0 < relief.length_m <= pair.base_pitch_m):
         allowed = f"allowed are amounts from 0 and lengths above 0 up to a base pitch, {pair.base_pitch_m:.6g} m"
         raise ValueError(f"tip relief: received {relief.amount_m} m over {relief.length_m} m; {allowed}")
-    reach_m = reach_pitches * pair.base_pitch_m if corner_contact else 0.0
+    reach_m = reach_pitches * pair.base_pitch_m if corner_contact and pair.tips_meet_flanks else 0.0
     start_m, end_m = pair.engagement_start_m - reach_m, pair.engagement_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)
     if pair.helix_rad != 0.0:
@@ -104,4 +106,7 @@ def missing_at_m(pair: GearPair, which: str, relief: TipRelief | None, position_
 
 def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:
     profile, teeth = missing_at_m(pair, which, relief, position_m), pair.member(which).teeth
-    return ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
+    made = ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
+    for array in (made.profile_m, made.kind_of_tooth, made.offset_m):
+        array.setflags(write=False)
+    return made

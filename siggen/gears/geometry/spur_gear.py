@@ -56,6 +56,21 @@ class SpurGear:
         return self.pitch_radius_m * cos(self.pressure_angle_rad)
 
     @property
+    def signed_base_radius_m(self) -> float:
+        """Base radius as it counts along a line of action: that of a ring is negative [m]."""
+        return self.base_radius_m
+
+    @property
+    def flank_rolls_rad(self) -> tuple[float, float]:
+        """Roll angles of the ends of the flank, ascending: the start of the involute and the tip [rad]."""
+        return self.involute_start_roll_rad, self.tip_roll_rad
+
+    @property
+    def last_roll_rad(self) -> float:
+        """Roll angle of the end of the flank that is farther from the centre [rad]."""
+        return self.tip_roll_rad
+
+    @property
     def tip_radius_m(self) -> float:
         """Tip radius R_a = r + (ha + X) m [m]; no tip shortening."""
         return self.pitch_radius_m + (self.addendum_coefficient + self.profile_shift) * self.module_m

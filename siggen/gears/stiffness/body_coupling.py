@@ -21,6 +21,7 @@ from numpy.polynomial import chebyshev
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import carrying_middle_m
+from siggen.gears.geometry.internal_pair import RingGear
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, unit_coordinates
@@ -104,6 +105,8 @@ def ring_torsion(gear: SpurGear, poisson_ratio: float) -> float:
     Derived: the shear stress of a moment M is M/(2 pi r^2 L), and the rotation of the rim against the bore its strain
     over r, integrated over the radius. Times E L, dimensionless, for a unit force on the line of action.
     """
+    if isinstance(gear, RingGear):
+        return 0.0  # held all round
     squares = gear.bore_radius_m**-2 - gear.root_radius_m**-2
     return float(gear.base_radius_m**2 * squares * (1.0 + poisson_ratio) / (2.0 * pi))
 

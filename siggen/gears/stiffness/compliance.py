@@ -28,14 +28,15 @@ from siggen.gears.damage.tooth_damage import Damage, ToothDamage, goes_through
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import normal_pair, normal_rolls
+from siggen.gears.geometry.internal_pair import RingGear
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.beams import beam_integrals, first_roll
 from siggen.gears.stiffness.calibration import calibration_factor
 from siggen.gears.stiffness.foundation import foundation_compliance
 from siggen.gears.stiffness.pitted_beams import pit_integrals, pit_sums
+from siggen.gears.stiffness.ring_tooth import SHEAR_FACTOR, ring_tooth_parts
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
-SHEAR_FACTOR = 1.2
 ROLL_TOLERANCE = 1e-9
 """Contacts this far (relative to the tip's roll) outside the flank count as its end: rounding of positions, no more."""
 PIECE_RAD = 0.02
@@ -91,10 +92,20 @@ def tooth_compliances(
         return _in_normal_section(pair, which, roll, options, teeth)
     gear = pair.member(which)
     damages = [tuple(pits) for pits in teeth]
+    if isinstance(gear, RingGear):
+        return [_of_ring(pair, gear, np.atleast_1d(np.asarray(roll, dtype=np.float64)), options)] * len(damages)
     angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
     arms = _arms(gear, angles)
     healthy = _healthy(pair, gear, angles, arms, options)
     return [_damaged(pair, gear, angles, arms, options, pits, healthy) for pits in damages]
+
+
+def _of_ring(pair: GearPair, ring: RingGear, roll: FloatArray, options: StiffnessOptions) -> ToothCompliance:
+    """Return the compliance of a tooth of a ring, whatever its damage."""
+    beam, foot = ring_tooth_parts(pair, ring, roll)
+    if options.foundation == "none":
+        foot = np.zeros_like(foot)
+    return ToothCompliance(beam[0], beam[1], beam[2], foot)
 
 
 def _in_normal_section(

@@ -85,8 +85,9 @@ def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
 
 
 def flank_arc_m(gear: SpurGear) -> float:
-    """Return the arc of the involute from its rack-cut start to the tip, R_b (psi_tip^2 - psi_start^2)/2 [m]."""
-    return 0.5 * gear.base_radius_m * (gear.tip_roll_rad**2 - gear.involute_start_roll_rad**2)
+    """Return the arc of the involute between the ends of the flank, R_b (psi_2^2 - psi_1^2)/2 [m]."""
+    low, high = gear.flank_rolls_rad
+    return 0.5 * gear.base_radius_m * (high**2 - low**2)
 
 
 def _face_length(outline: Outline, width: float) -> float:
@@ -100,7 +101,7 @@ def _sagitta_m(pair: GearPair, pit: ToothDamage) -> float:
     gear = pair.member(pit.gear)
     low, high = gear.roll_at_height(np.clip(pit.outline.height_range_m, *flank_heights(gear)))
     # The arc is R_b psi^2/2: its middle has the mean square of the roll angles.
-    travel = gear.base_radius_m * sqrt(0.5 * (low * low + high * high))
+    travel = gear.signed_base_radius_m * sqrt(0.5 * (low * low + high * high))
     line = pair.line_of_action_m
     position = travel if pit.gear == "pinion" else line - travel
     s = min(max(position, pair.contact_start_m), pair.contact_end_m)

@@ -80,7 +80,7 @@ def contact_half_width(
     Parameters as in `weber_banaschek_compliance`. Radii of curvature are rho_i = R_bi psi_i. Source: Hertz, parallel
     cylinders.
     """
-    first, second = roll_pinion * pair.pinion.base_radius_m, roll_gear * pair.gear.base_radius_m
+    first, second = roll_pinion * pair.pinion.base_radius_m, roll_gear * pair.gear.signed_base_radius_m
     radius = first * second / (first + second)
     return np.sqrt(8.0 * force_n * radius / (pi * _plane_modulus(pair) * length_m))
 

@@ -72,7 +72,7 @@ def rolls_at(pair: GearPair, position_m: FloatArray) -> tuple[FloatArray, FloatA
         span = f"{np.min(position_m):.6g} to {np.max(position_m):.6g}"
         raise ValueError(f"position_m {span} m is off the path of contact; allowed: {start:.6g} to {end:.6g} m")
     clipped = np.clip(position_m, start, end)
-    return clipped / pair.pinion.base_radius_m, (pair.line_of_action_m - clipped) / pair.gear.base_radius_m
+    return clipped / pair.pinion.base_radius_m, (pair.line_of_action_m - clipped) / pair.gear.signed_base_radius_m
 
 
 def contact_compliance(

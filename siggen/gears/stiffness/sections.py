@@ -126,8 +126,7 @@ def union_area_m2(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: flo
     kinks = involute.rolls_at_heights(section_kinks(rows, face_width_m), gear.base_radius_m, gear.base_half_angle_rad)
     area = flank_area(
         kinks,
-        gear.involute_start_roll_rad,
-        gear.tip_roll_rad,
+        *gear.flank_rolls_rad,
         rows,
         gear.base_radius_m,
         gear.base_half_angle_rad,

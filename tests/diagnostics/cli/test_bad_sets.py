@@ -143,25 +143,26 @@ def at_no_rate(folder: Path) -> None:
     (folder / "manifest.json").write_bytes(sealed({**manifest, "fs_hz": None}))
 
 
-ALL = tuple(COMMANDS)
+ALL, ONE = tuple(COMMANDS), ("table",)
+"""A mistake in samples, labels, files and of the folder goes to all commands, the others to one: all read alike."""
 BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "nan": (samples(not_a_number), ("channel bearing_vertical", "not finite", "3"), ALL),
-    "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ALL),
-    "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range_m_s2"), ALL),
+    "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ONE),
+    "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range_m_s2"), ONE),
     "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole pinion revolution", "duration_s"), ALL),
-    "no pulses": (column("tacho_s", []), ("0 whole pinion revolution", "--speed-range"), ALL),
-    "pulses backwards": (column("tacho_s", [0.1, 0.05, 0.2, 0.3]), ("not finite and increasing", "tacho_s"), ALL),
+    "no pulses": (column("tacho_s", []), ("0 whole pinion revolution", "--speed-range"), ONE),
+    "pulses backwards": (column("tacho_s", [0.1, 0.05, 0.2, 0.3]), ("not finite and increasing", "tacho_s"), ONE),
     "unknown teeth": (
         column("teeth_gear", None, ("data", "metadata")), ("received 18, nan", "correct the columns"), ALL,
     ),
-    "too few teeth": (column("teeth_pinion", 2, ("data", "metadata")), ("received 2, 47", "from 3 on"), ALL),
-    "no rate": (at_no_rate, ("fs_hz: received None", "a valid number"), ALL),
-    "truncated shard": (truncated, ("data/test-00000.parquet is not the file", "siggen verify"), ALL),
+    "too few teeth": (column("teeth_pinion", 2, ("data", "metadata")), ("received 2, 47", "from 3 on"), ONE),
+    "no rate": (at_no_rate, ("fs_hz: received None", "a valid number"), ONE),
+    "truncated shard": (truncated, ("data/test-00000.parquet is not the file", "siggen verify"), ONE),
     "missing shard": (lambda folder: first_shard(folder).unlink(), ("test-00000.parquet is missing",), ALL),
-    "no manifest": (lambda folder: (folder / "manifest.json").unlink(), ("not finished", "siggen generate"), ALL),
-    "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ALL),
+    "no manifest": (lambda folder: (folder / "manifest.json").unlink(), ("not finished", "siggen generate"), ONE),
+    "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ONE),
     "empty folder": (emptied, ("no data set here",), ALL),
-    "photos": (photos, ("not a siggen data set",), ALL),
+    "photos": (photos, ("not a siggen data set",), ONE),
     "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "models", "audit")),
     "no healthy": (
         some_rows(lambda row: row["state"] != "healthy"), ("no healthy records", "--out FILE.parquet"), ("indicators",),

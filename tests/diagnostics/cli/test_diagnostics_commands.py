@@ -16,7 +16,8 @@ import diagnostics.cli.app
 import siggen.cli.app
 from diagnostics.cli.app import COMMANDS, main
 from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
-from siggen.columns.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
+from siggen.columns.common_columns import LABEL_COLUMNS, OPERATING_COLUMNS
+from siggen.columns.record import ID_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
 from siggen.errors import UsageError
 

@@ -44,7 +44,7 @@ def ran(command: str, *options: str) -> str:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("mixed")
     (place / "mixed.yaml").write_text(MIXED, encoding="utf-8")
-    ran("siggen", "generate", str(place / "mixed.yaml"), "--out", str(place / "set"))
+    ran("siggen", "generate", str(place / "mixed.yaml"), "--out", str(place / "set"), "--engine", "serial")
     return place / "set"
 
 

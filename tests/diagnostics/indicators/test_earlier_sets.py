@@ -9,7 +9,7 @@ import siggen
 from diagnostics.indicators.classifier_table import classifier_table
 from diagnostics.indicators.table import record_table
 
-EARLIER = Path(__file__).parents[2] / "sets" / "schema_2"
+EARLIER = Path(__file__).parents[2] / "sets" / "earlier_set"
 
 
 def test_the_indicators_of_an_earlier_set_are_computed(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from diagnostics.indicators.indicator import base_name, without_mesh
 from diagnostics.indicators.record import RecordValues, record_values
 from diagnostics.indicators.registry import columns, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import Mesh, further_meshes, gear_train
+from diagnostics.records.gear_train import GearNames, Mesh, further_meshes, gear_train
 from diagnostics.signal.order_domain import angle_grid, shaft_grid
 
 LABELS = {"teeth_pinion": 18, "teeth_gear": 47, "teeth_slow_pinion": 17, "teeth_slow_gear": 52}
@@ -116,11 +116,11 @@ def test_a_shaft_of_fewer_than_eight_turns_has_no_averages_and_says_so_once() ->
 
 def test_columns_of_a_further_mesh_end_in_its_name_and_titles_name_it() -> None:
     settings = IndicatorSettings()
-    alone, both = columns(settings), columns(settings, meshes=("last_one",))
+    alone, both = columns(settings), columns(settings, named=GearNames(meshes=("last_one",)))
     assert both[: len(alone)] == alone
     behind = both[len(alone) :]
     assert len(behind) > 0.9 * len(alone)
-    titles = indicator_titles(settings, meshes=("last_one",))
+    titles = indicator_titles(settings, named=GearNames(meshes=("last_one",)))
     for name in alone:
         assert without_mesh(name) == (name, "")
     for name in behind:

@@ -16,7 +16,8 @@ def some_set(speeds_hz: list[float], duration_s: float = 1.0, fs_hz: float = 256
     table = pa.table(
         {"speed_hz": speeds_hz, "teeth_pinion": [18] * len(speeds_hz), "teeth_gear": [47] * len(speeds_hz)}
     )
-    return SimpleNamespace(labels=table.select, fs_hz=fs_hz, duration_s=duration_s)
+    labels = lambda columns=None: table.select(columns or table.column_names)  # noqa: E731 - as a set's labels
+    return SimpleNamespace(labels=labels, fs_hz=fs_hz, duration_s=duration_s)
 
 
 @pytest.mark.parametrize("start", np.linspace(0.0, 0.999, 7))

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from diagnostics.page.style_sheet import style_sheet
+from diagnostics.page.html import style_sheet
 
 STYLE = style_sheet(20)
 LIGHT, DARK = (dict(re.findall(r"--(\w+):#(\w+)", part)) for part in re.findall(r":root\{(.*?)\}", STYLE, re.DOTALL))

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.columns import clocks, read_columns
 from diagnostics.recordings.file_channels import file_channels
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from siggen.errors import UsageError
@@ -81,3 +81,8 @@ def test_a_wrong_name_is_refused_where_the_only_signal_has_another(tmp_path: Pat
     np.savez(tmp_path / "run.npz", time=TIMES_S, oil=np.random.default_rng(2).standard_normal(SAMPLES))
     with pytest.raises(UsageError, match="no column lid"):
         read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts())
+
+
+def test_a_record_s_list_of_angles_is_no_time_of_its_samples() -> None:
+    samples = np.random.default_rng(3).normal(size=100)
+    assert clocks({"lid": samples, "angles_deg": np.array([0.0, 120.0, 240.0])}, {}, "tacho_s") == {}

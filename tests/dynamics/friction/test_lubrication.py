@@ -109,5 +109,9 @@ def test_notes_name_what_leaves_the_range() -> None:
     assert "speed group" in "".join(lubrication_notes(inside._replace(speed=2e-10)))
     assert len(lubrication_notes(inside._replace(load=1e-7))) == 2
     assert lubrication_notes(inside, "smooth film") == ()
+    # α E' of mineral oil between steel is 4000 to 6000: 1.05 times the end of the data is outside, its inside is not
+    for end, beyond in ((2000.0, 1.0 / 1.05), (7000.0, 1.05)):
+        assert lubrication_notes(inside._replace(material=end)) == ()
+        assert "material group" in "".join(lubrication_notes(inside._replace(material=end * beyond)))
     with pytest.raises(ValueError, match="smooth film"):
         lubrication_notes(inside, "grubin")

@@ -47,3 +47,15 @@ def test_the_largest_entry_of_a_shape_is_positive() -> None:
     stiffness, mass = pencil(30)
     shapes = lowest_modes(stiffness, mass, 10.0).shapes
     assert (shapes.max(axis=0) >= -shapes.min(axis=0)).all()
+
+
+@pytest.mark.parametrize("n", [3, 4, 7, 12])
+def test_every_mode_of_a_small_pencil_is_that_of_lapack_whatever_rows_are_exchanged(n: int) -> None:
+    for seed in range(20):
+        found = np.random.default_rng(seed).standard_normal((n, n))
+        stiffness = found @ found.T + 0.1 * np.eye(n)
+        expected, shapes = eigh(stiffness, np.eye(n))
+        modes = lowest_modes(stiffness, np.eye(n), np.sqrt(1.1 * expected[-1]))
+        np.testing.assert_allclose(modes.omega_squared, expected, rtol=1e-9)
+        # two modes may be near: errors of shapes are 1e-15 over the relative distance of their values
+        np.testing.assert_allclose(np.abs((modes.shapes * shapes).sum(axis=0)), 1.0, atol=1e-8)

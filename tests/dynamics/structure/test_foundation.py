@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.casing_structure import casing_body
+from siggen.dynamics.structure.casing_structure import casing_body, casing_structure
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.foundation import Base, on_base
 from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.structure import eight_dof
 from tests.dynamics.casing_stage import PRESSURE_ANGLE, make_casing, make_stage, make_structure
 
 LID = "casing_lid/vertical"
@@ -50,3 +53,31 @@ def test_a_rigid_motion_of_gearbox_and_base_stretches_the_mounts_alone() -> None
         moved = np.array([1.0 if name in (*first, together) else 0.0 for name in base.coordinates])
         mount = 100.0 * (2.0 * np.pi * (10.0 if together == "x_b" else 20.0)) ** 2
         assert moved @ base.stiffness @ moved == pytest.approx(mount, rel=1e-6)
+
+
+def test_the_lock_lets_the_whole_drive_swing_once_per_second_nearly_without_ringing() -> None:
+    """Rigid teeth: all inertia on one spring, by the eigenvalues of the first order; shafts give 1e-3 of it."""
+    stage = locked_load(make_structure())
+    direction, size = stage.mesh.vector, len(stage.coordinates)
+    stiffness = stage.stiffness + 1e9 * np.outer(direction, direction)
+    inverse = np.linalg.inv(stage.mass)
+    rates = np.block([[np.zeros((size, size)), np.eye(size)], [-inverse @ stiffness, -inverse @ stage.damping]])
+    found = np.linalg.eigvals(rates)
+    slowest = found[np.argmin(np.abs(found))]
+    assert abs(slowest) / (2.0 * np.pi) == pytest.approx(1.0, rel=0.01)
+    assert -slowest.real / abs(slowest) == pytest.approx(0.95, rel=0.01)
+
+
+def test_a_bearing_that_ties_its_axes_pushes_across_and_takes_no_energy_by_it() -> None:
+    """A force k x along y and k y along x: springs alone, so what is damped is what it was."""
+    plain, tied = make_stage(), make_stage()
+    bearing = replace(tied.pinion.bearing, stiffness_xy_n_per_m=4e7)
+    tied = replace(tied, pinion=replace(tied.pinion, bearing=bearing))
+    for made in (eight_dof, lambda stage: casing_structure(stage, make_casing())):
+        one, other = (made(stage) for stage in (plain, tied))
+        np.testing.assert_array_equal(one.damping, other.damping)
+        rows = [one.coordinates.index(name) for name in ("x_1", "y_1")]
+        assert other.damping[*rows] == pytest.approx(0.0, abs=1e-9 * other.damping[rows[0], rows[0]])
+        added = (other.stiffness - one.stiffness)[np.ix_(rows, rows)]
+        # whatever way the coordinates lie: softer along one diagonal by what it is stiffer along the other
+        np.testing.assert_allclose(np.linalg.eigvalsh(added), [-4e7, 4e7], rtol=1e-9)

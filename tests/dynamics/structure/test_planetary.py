@@ -13,7 +13,7 @@ from siggen.dynamics.structure.free_rotation import free_rotations, static_solut
 from siggen.dynamics.structure.planetary import planetary_structure
 from siggen.dynamics.structure.shaft_lines import rigid_rotation, rolling
 from siggen.dynamics.time.equations import equations_about, mesh_springs
-from tests.dynamics.planetary_set import planetary_stage
+from tests.dynamics.planetary_set import pairs, planetary_stage
 
 K = 3e8
 
@@ -91,6 +91,56 @@ def test_modes_fall_into_rotation_translation_in_pairs_and_planets_alone(planets
     found = np.sort(values[shifting])
     assert found.size == 12
     assert found[::2] == pytest.approx(found[1::2], rel=1e-6)
+
+
+@pytest.mark.parametrize("mesh", range(6))
+def test_flanks_slide_as_the_points_of_both_bodies_move_that_touch(mesh):
+    """Places of tangent points and contact from radii and the angles of the lines; any motion of all bodies."""
+    stage, rng = planetary_stage(), np.random.default_rng(mesh)
+    structure = planetary_structure(stage)
+    speed = dict(zip(structure.coordinates, rng.normal(size=len(structure.coordinates)), strict=True))
+    place, with_ring = 2.0 * np.pi * stage.places_turns[mesh % 3], mesh >= 3
+    number, slant = mesh % 3 + 1, stage.ring_angle_rad if with_ring else stage.sun_angle_rad
+    out, ahead = np.array([np.cos(place), np.sin(place)]), np.array([-np.sin(place), np.cos(place)])
+    carrier = np.array([speed["x_c"], speed["y_c"]]) + stage.centre_distance_m * speed["theta_c"] * ahead
+    planet = carrier + speed[f"x_p{number}"] * out + speed[f"y_p{number}"] * ahead
+    axis = stage.centre_distance_m * out
+    sign = -1.0 if with_ring else 1.0
+    push = np.sin(slant) * out + sign * np.cos(slant) * ahead
+    tangent = stage.planet.base_radius_m * np.array([push[1], -push[0]])  # a quarter turn before the push
+    position, contact = 0.007, None
+    bodies = {"planet": (axis, planet, speed[f"theta_p{number}"])}
+    bodies["s"] = (np.zeros(2), np.array([speed["x_s"], speed["y_s"]]), speed["theta_s"])
+    bodies["r"] = (np.zeros(2), np.array([speed["x_r"], speed["y_r"]]), speed["theta_r"])
+    if with_ring:
+        contact, driving, driven = axis - tangent + position * push, "planet", "r"
+    else:
+        foot = stage.sun.base_radius_m * np.array([push[1], -push[0]])
+        contact, driving, driven = foot + position * push, "s", "planet"
+
+    def moving(name):
+        centre, shift, turning = bodies[name]
+        arm = contact - centre
+        return shift + turning * np.array([-arm[1], arm[0]])
+
+    along = sign * np.array([-push[1], push[0]])
+    expected = (moving(driving) - moving(driven)) @ along
+    r_0, r_1 = structure.meshes[mesh].sliding
+    found = (r_0 + position * r_1) @ np.array([speed[name] for name in structure.coordinates])
+    assert found == pytest.approx(expected, abs=1e-12)
+
+
+def test_rolling_flanks_slide_past_each_other_at_the_pitch_points_alone():
+    stage = planetary_stage()
+    structure = planetary_structure(stage)
+    turning = rolling(structure)
+    sun_pair, ring_pair = pairs()
+    for number, mesh in enumerate(structure.meshes):
+        first, second = mesh.sliding @ turning
+        pair = sun_pair if number < 3 else ring_pair
+        assert first + second * pair.pitch_point_m == pytest.approx(0.0, abs=1e-15)
+        # planets turn by -24/27 against the carrier where the sun turns once, the ring by -24/78
+        assert second == pytest.approx(1.0 + 24 / 27 if number < 3 else 24 / 27 - 24 / 78, rel=1e-12)
 
 
 def test_a_circling_point_stands_still_in_space():

@@ -10,7 +10,7 @@ import pytest
 from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import Element, Structure, assemble, vector
-from siggen.dynamics.structure.tilting_shaft import Shaft, tilting_ends
+from siggen.dynamics.structure.tilting_shaft import Shaft, cantilever_compliance_m_per_n, crossed_ends, tilting_ends
 from tests.dynamics.casing_stage import MEAN_STIFFNESS, make_casing, make_stage, make_structure
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
@@ -139,3 +139,20 @@ def test_the_tilt_vector_takes_the_pinion_against_the_gear_in_the_plane_of_actio
     tilts = dict(zip(structure.coordinates, structure.mesh.tilt, strict=True))
     assert {name: value for name, value in tilts.items() if value} == {"phi_y_1": 1.0, "phi_y_2": -1.0}
     assert make_structure().mesh.tilt is None
+
+
+def test_a_bearing_that_pushes_across_is_one_without_seen_from_turned_axes() -> None:
+    """Along the axes of the ellipse of its stiffness each spring is in series with the cantilever, as one alone is."""
+    turn, along, damping = 0.4, np.array([3e8, 1e8]), 900.0
+    axes = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    whole = axes @ np.diag(along) @ axes.T
+    ways = ({"x_1": 1.0, "y_1": 0.0}, {"x_1": 0.0, "y_1": 1.0})
+    bearings = [Element(way, float(whole[i, i]), damping) for i, way in enumerate(ways)]
+    ends = crossed_ends((bearings[0], bearings[1]), float(whole[0, 1]), SHAFT, "1")
+    for end, lever_m in zip(ends, SHAFT.levers_m.values(), strict=True):
+        series = 1.0 / (2.0 / along + cantilever_compliance_m_per_n(SHAFT, abs(lever_m)))
+        stiffness = axes @ np.diag(series) @ axes.T
+        damped = axes @ np.diag(0.5 * damping * (2.0 * series / along) ** 2) @ axes.T
+        assert (end.stiffness, end.damping) == pytest.approx((stiffness[0, 1], damped[0, 1]), rel=1e-9)
+        for i, one in enumerate(end.elements):
+            assert (one.stiffness, one.damping) == pytest.approx((stiffness[i, i], damped[i, i]), rel=1e-9)

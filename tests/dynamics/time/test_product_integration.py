@@ -6,10 +6,10 @@ import pytest
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import approach_of
 from siggen.dynamics.time.linear_motion import RungeKutta
-from siggen.dynamics.time.product_integration import SHIFTED_LEGENDRE, ProductIntegration, scheme
+from siggen.dynamics.time.product_integration import HERMITE_DIP, SHIFTED_LEGENDRE, ProductIntegration, scheme
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.conftest import arched_row, make_tables
-from tests.dynamics.integration_runs import model, reference, relative_error, trajectory
+from tests.dynamics.integration_runs import FIRST_PITCHES, MESH_HZ, model, reference, relative_error, trajectory
 
 PINION_RATE = 8 + 2  # velocity of y_1 in the state of the 8-DOF model
 STEP = 1.0 / (51200 * 4)
@@ -77,6 +77,28 @@ def test_contact_loss_agrees_with_small_runge_kutta_steps(structure: Structure) 
     assert relative_error(states, fine, 8 + 3) < 2e-2
 
 
+def test_a_force_from_outside_goes_on_while_the_flanks_are_apart(structure: Structure) -> None:
+    equations, law, start = model(structure, make_tables(arched_row(65)[None, :]), torque=0.5, backlash=4e-6)
+    row = np.zeros((1, 8))
+    row[0, 3] = 1.0
+    equations, start = equations._replace(external_input=row), start.copy()
+    start[8 + 3] = -3.0
+    times = STEP * np.arange(STEPS + 1)
+    found = []
+    for integrator, division in ((ProductIntegration, 1), (RungeKutta, 64)):
+        at = STEP / division * np.arange(STEPS * division + 1)
+        # 3e4 rad/s² for the 0.1 ms of a flight are the 3 rad/s of the strike; linear within steps, as both take it
+        push = np.interp(at, times, 3e4 * np.cos(2.0 * np.pi * 900.0 * times))[:, None]
+        states = np.empty((at.size, start.size))
+        states[0] = start
+        integrator(equations, law, STEP / division).advance(FIRST_PITCHES + MESH_HZ * at, push, states)
+        found.append(states[::division])
+    states, fine = found
+    apart = np.array([abs(approach_of(equations, 0, state)[0]) < 2e-6 for state in fine])
+    assert apart.mean() > 0.05
+    assert relative_error(states, fine, 8 + 3) < 2e-2  # the flank's edge at first order, as above
+
+
 def test_response_weights_are_the_integrals_they_stand_for(structure: Structure, sharp_tables: MeshTables) -> None:
     from scipy.linalg import expm
 
@@ -101,3 +123,9 @@ def test_same_bytes_every_time(structure: Structure, sharp_tables: MeshTables) -
     equations, law, start = model(structure, sharp_tables)
     runs = [trajectory(ProductIntegration, equations, law, start, STEP, 500).tobytes() for _ in range(2)]
     assert runs[0] == runs[1]
+
+
+def test_no_cubic_dips_deeper_below_its_ends_than_the_bound_on_its_slopes() -> None:
+    """Hermite's functions of the end slopes are x (1 - x)² and -x² (1 - x); a third of the way is where they end."""
+    x = np.linspace(0.0, 1.0, 3001)
+    assert np.max(x * (1.0 - x) ** 2) == pytest.approx(HERMITE_DIP, rel=1e-6)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
+from siggen.gears.contact.face_gaps import FaceGaps, _nearest, face_gaps
 from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
 from siggen.gears.contact.pair_rest import rigid_rest
 from siggen.gears.damage.flank_chords import flank_chords
@@ -86,3 +88,17 @@ def test_arrays_that_do_not_fit_are_refused():
         pair_faces(PAIR, gaps, np.zeros(2), rigid_rest(np.zeros(2)), FaceOptions(60e3))
     with pytest.raises(ValueError, match="one for each slice"):
         pair_faces(PAIR, gaps, np.array([PAIR.pitch_point_m]), rigid_rest(np.zeros(1)), FaceOptions(60e3), np.zeros(3))
+
+
+@given(st.lists(st.tuples(st.integers(-9, 9), st.integers(0, 4)), min_size=1, max_size=6))
+def test_a_gap_grows_by_all_that_touch_it_and_by_no_other(found):
+    """Beside half steps that are marked one by one; several gaps may be as near to 0."""
+    room = np.array([(low, low + width) for low, width in found], dtype=float).T
+    steps = {step for low, width in found for step in range(2 * low, 2 * (low + width) + 1)}
+    first = min(range(len(found)), key=lambda k: max(room[0, k], -room[1, k]))
+    low, high = (round(2 * room[side, first]) for side in (0, 1))
+    while low - 1 in steps:
+        low -= 1
+    while high + 1 in steps:
+        high += 1
+    assert _nearest(room, len(found)) == (0.5 * low, 0.5 * high)

@@ -15,6 +15,7 @@ from siggen.gears.contact.kind_row import KindRow, first_touch, kind_row, pits_o
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.table_columns import NO_ENERGY, row_faces, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
+from siggen.gears.contact.tilt_rays import RAYS
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
@@ -111,3 +112,9 @@ def test_force_and_moment_are_those_of_direct_solutions(damage: Damage, uneven: 
     # Where columns of a spall at one end are read between those that were solved on all rays.
     assert force.max() < 1e-2
     assert moment.max() < 3e-2
+
+
+def test_the_outermost_rays_are_those_on_which_a_corner_just_touches() -> None:
+    """There the ends' lift makes up for the gap: d = -|τ| in p = τ/(√(d² + τ²) + d)."""
+    lift = np.array([-1.0, 1.0])
+    np.testing.assert_allclose(RAYS[[0, -1]], lift / (np.sqrt(2.0) - 1.0), rtol=1e-12)

@@ -20,6 +20,8 @@ from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
 from siggen.gears.damage.irregular import (
+    NEAR,
+    STRIPS,
     WAVE_LIMIT,
     IrregularSpall,
     Waves,
@@ -229,3 +231,21 @@ def test_edges_that_cross_and_a_negative_radius_are_named() -> None:
         "at least two, ascending across the face",
         "one between neighbouring stations",
     ]
+
+
+@pytest.mark.parametrize(("left_m", "right_m"), [(3e-3, 17e-3), (7e-3, 17e-3), (3e-3, 11e-3), (7e-3, 11e-3)])
+def test_stations_reach_from_the_outermost_edges_of_both_with_every_end_of_a_strip_between(left_m, right_m) -> None:
+    """The milder one reaches from 5 to 14 mm across the face, and from half to two millimetres in height."""
+    milder = IrregularSpall(
+        gear="pinion",
+        tooth=0,
+        stations_m=((5e-3, 5e-4, 2e-3), (14e-3, 5e-4, 2e-3)),
+        strip_depths_m=(1e-4,),
+        edge_radius_m=1e-4,
+    )
+    found = stations_across(WIDTH, left_m, right_m, milder)
+    low, high = min(left_m, 5e-3), max(right_m, 14e-3)
+    assert (found[0], found[-1]) == (low, high)
+    ends = WIDTH * np.arange(STRIPS + 1) / STRIPS
+    for end in ends[(ends > low) & (ends < high)]:
+        assert np.abs(found - end).min() < NEAR * WIDTH

@@ -13,7 +13,7 @@ from siggen.gears.damage.flank_damage import damage_problems, pit_rows
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.row_columns import COLUMNS
 from siggen.gears.damage.spall import Spall
-from siggen.gears.damage.union import lengths_covered
+from siggen.gears.damage.union import _depth_crossings, lengths_covered
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from tests.gears.builders import pair_18_47, pit
 
@@ -110,3 +110,27 @@ def test_a_stretch_that_a_dense_search_finds_is_found(on_pinion, on_gear):
         assert found
     if found:
         assert np.max(covered(*flanks, dense)) > 0.9 * WIDTH_MM / 1e3
+
+
+@pytest.mark.parametrize(("depths_mm", "floors"), [((0.4, 0.25), ("dish", "dish")), ((0.4, 0.25), ("dish", "flat"))])
+@pytest.mark.parametrize("height_mm", [1.9, 1.97])
+def test_two_pits_change_places_where_they_are_equally_deep(depths_mm, floors, height_mm):
+    """Depth D √(1 - u² - v²) of a dish, D of a flat floor: written out again."""
+    first, second = (
+        pit(face_mm=face, a_mm=0.8, b_mm=0.3, depth_mm=depth, floor=floor)
+        for face, depth, floor in zip((9.8, 10.2), depths_mm, floors, strict=True)
+    )
+    rows, x = np.vstack([pit_rows([first]), pit_rows([second])]), height_mm * 1e-3
+
+    def depth(one, face_m):
+        u, v = (x - one.height_m) / one.semi_axis_profile_m, (face_m - one.face_m) / one.semi_axis_face_m
+        return one.depth_m * (1.0 if one.floor == "flat" else np.sqrt(1.0 - u * u - v * v))
+
+    def is_inside(at):
+        with np.errstate(invalid="ignore"):
+            return depth(first, at) > 0.0 and depth(second, at) > 0.0
+
+    found = [at for at in _depth_crossings(x, rows, 0, 1) if is_inside(at)]
+    assert found
+    for at in found:
+        assert depth(first, at) == pytest.approx(depth(second, at), rel=1e-9)

@@ -25,7 +25,7 @@ def test_flanks_touch_on_the_line_of_action_and_never_cross(ring, shifts):
     pair = ring_round(sun_pair, ring)
     assert internal_problems(pair) == ()
     assert pair.working_centre_distance_m == pytest.approx(sun_pair.working_centre_distance_m, rel=1e-12)
-    planet, wheel, centre = pair.planet, pair.ring, pair.working_centre_distance_m
+    planet, wheel, centre = pair.pinion, pair.gear, pair.working_centre_distance_m
     roll = np.linspace(planet.involute_start_roll_rad, planet.tip_roll_rad, 20_001)
     inv = roll - np.arctan(roll)
     for share in (0.1, 0.4, 0.8):
@@ -39,7 +39,7 @@ def test_flanks_touch_on_the_line_of_action_and_never_cross(ring, shifts):
         from_ring, at = np.hypot(x, y), np.arctan2(y, x)
         usable = (from_ring > wheel.tip_radius_m) & (from_ring < wheel.root_radius_m)
         slant = np.arccos(wheel.base_radius_m / from_ring[usable])
-        ring_origin = tangent - (position + pair.line_of_action_m) / wheel.base_radius_m
+        ring_origin = tangent - (position - pair.line_of_action_m) / wheel.base_radius_m
         gap = from_ring[usable] * (at[usable] - (ring_origin + np.tan(slant) - slant))
         assert np.abs(gap).min() < 1e-9
         assert abs(from_ring[usable][np.abs(gap).argmin()] - pair.ring_radius_m(np.array([position]))[0]) < 2e-5
@@ -48,8 +48,8 @@ def test_flanks_touch_on_the_line_of_action_and_never_cross(ring, shifts):
 
 def test_a_ring_without_end_is_a_rack():
     pair = ring_round(sun_and_planet(), 78)
-    pair = replace(pair, ring=replace(pair.ring, cut_back_m=0.0))
-    wide = replace(pair, ring=replace(pair.ring, teeth=10_000_000))
+    pair = replace(pair, gear=replace(pair.gear, cut_back_m=0.0))
+    wide = replace(pair, gear=replace(pair.gear, teeth=10_000_000))
     alpha, module = radians(20.0), 2e-3
     expected = (pair.contact_end_m - (pair.pitch_point_m - module / sin(alpha))) / (pi * module * cos(alpha))
     assert wide.contact_ratio == pytest.approx(expected, rel=1e-6)
@@ -57,7 +57,7 @@ def test_a_ring_without_end_is_a_rack():
 
 
 def test_the_ring_fills_what_the_spaces_leave():
-    ring = RingGear(78, 2e-3, radians(20.0), 0.25, 1.0, 0.25)
+    ring = RingGear(78, 2e-3, radians(20.0), 0.25, 1.0, 0.25, 6e-3)
     at_pitch = float(ring.half_angle_rad(np.array([ring.pitch_radius_m]))[0])
     assert 2.0 * ring.pitch_radius_m * at_pitch == pytest.approx(pi * 1e-3 - 0.5 * 2e-3 * tan(radians(20.0)), rel=1e-12)
 
@@ -73,7 +73,7 @@ def test_the_phase_between_both_meshes_is_that_of_strings_unwound_from_the_plane
     """A contact at s lies R_b · roll along its string: count strings from the feet of both flanks of one tooth."""
     sun_pair = sun_and_planet(shifts=shifts)
     pair = ring_round(sun_pair, ring)
-    planet, pitch = pair.planet, 2.0 * pi / pair.planet.teeth
+    planet, pitch = pair.pinion, 2.0 * pi / pair.pinion.teeth
     sun_angle, ring_angle = sun_pair.working_pressure_angle_rad, pair.working_pressure_angle_rad
     # the sun on the left, the planet turns clockwise; strings leave its base circle at pi - alpha and at alpha
     foot_behind = pi - sun_angle + tan(sun_angle)
@@ -85,7 +85,7 @@ def test_the_phase_between_both_meshes_is_that_of_strings_unwound_from_the_plane
 
 def test_rings_that_do_not_mesh_are_refused_by_name():
     pair = ring_round(sun_and_planet(), 78)
-    high = replace(pair, ring=replace(pair.ring, cut_back_m=0.0))
+    high = replace(pair, gear=replace(pair.gear, cut_back_m=0.0))
     assert internal_problems(pair) == ()
     assert "interference" in " ".join(map(str, internal_problems(high)))
     with pytest.raises(ValueError, match="line of action"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from hashlib import sha256
 from math import radians
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.stiffness import calibration_table, coupling_table
 from siggen.gears.stiffness.calibration import calibration_factor, outside_calibration
 from siggen.gears.stiffness.calibration_table import MAIN_COEFFICIENTS, METADATA
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, tooth_compliance
@@ -134,3 +136,13 @@ def test_table_says_how_it_was_made():
     assert 0.0 < METADATA["held_out_error"] < 0.03
     assert str(METADATA["command"]).startswith("python -m benchmarks.finite_elements")
     assert not MAIN_COEFFICIENTS.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("table", "digest"), [(calibration_table, "6e165befe1e52b5b"), (coupling_table, "f602bd5e309faa79")]
+)
+def test_fitted_numbers_are_those_that_the_fit_wrote(table, digest):
+    """Most are below the error of the fit, so no comparison finds one that was mistyped. A new fit has a new digest."""
+    written = [values for name, values in vars(table).items() if name.endswith("_COEFFICIENTS")]
+    millionths = np.concatenate([np.rint(1e6 * values).astype("<i8").ravel() for values in written])
+    assert sha256(millionths.tobytes()).hexdigest()[:16] == digest

@@ -10,13 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
+from scipy.optimize import brentq
 
 from siggen.gears.geometry.gear_pair import GearPair, geometry_problems
+from siggen.gears.stiffness.beams import involute_integrals
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.gears.builders import pair_18_47, spur_gear
-from tests.gears.stiffness.slow_quadrature import alpha_form, beam_compliances, straight_root_closed_form
+from tests.gears.stiffness.slow_quadrature import Outline, alpha_form, beam_compliances, straight_root_closed_form
 
 BASE = StiffnessOptions("base_circle")
 BASE_FREE = StiffnessOptions("base_circle", "none")
@@ -284,3 +286,20 @@ def test_positions_off_the_path_of_contact_and_unknown_models_are_refused():
         StiffnessOptions("cantilever")
     with pytest.raises(ValueError, match="finite"):
         mesh_stiffness(pair, np.array([0.0, np.inf]), BASE)
+
+
+def test_integrals_up_to_a_pointed_tip_are_those_of_an_adaptive_rule():
+    """1/h³ grows without end there: panels of one width miss 23 % of it at a thousandth before the tip."""
+    tooth = Outline(spur_gear(20))
+    tip = brentq(tooth.h, 0.5 * tooth.half, 1.2)
+    rolls = tip * np.array([0.8, 0.99, 0.999])
+
+    def exact(power, roll):
+        def integrand(t):
+            return 1.5 * tooth.x(t) ** power * tooth.slope(t) / tooth.h(t) ** 3
+
+        return quad(integrand, 0.05, roll, epsabs=0.0, epsrel=1e-12, limit=500)[0]
+
+    found = involute_integrals(rolls, 0.05, tooth.radius, tooth.half, 1.0)[:3]
+    # measured: 3e-10 with panels of at most half the thickness over the slope
+    np.testing.assert_allclose(found, [[exact(power, roll) for roll in rolls] for power in range(3)], rtol=1e-8)

@@ -150,3 +150,7 @@ def test_parts_of_a_pair_add_up_to_its_compliance():
 def test_options_that_mean_nothing_together_are_refused(wrong, message):
     with pytest.raises(ValueError, match=message):
         StiffnessOptions(**wrong)
+
+
+def test_any_force_above_none_may_flatten_the_contact():
+    assert StiffnessOptions(hertz="weber_banaschek", hertz_force_n=1e-3).hertz_force_n == 1e-3

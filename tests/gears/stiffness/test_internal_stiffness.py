@@ -12,13 +12,8 @@ from scipy.integrate import quad
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import RingGear, ring_round
 from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.internal_stiffness import (
-    ROTATION,
-    internal_mesh_stiffness,
-    internal_pair_stiffness,
-    ring_tooth_compliance,
-)
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
+from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness
+from siggen.gears.stiffness.ring_tooth import ROTATION
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.gears.builders import spur_gear
 
@@ -34,15 +29,13 @@ def test_the_tooth_of_a_wide_ring_is_that_of_a_wide_gear():
     """Both are the rack's tooth: two ways, roll angles and radii, outwards and inwards."""
     sun_pair, pair = sets()
     teeth = 100_000
-    wide = replace(pair, ring=RingGear(teeth, 2e-3, pair.planet.pressure_angle_rad, 0.0, 1.0, 0.25))
+    wide = replace(pair, gear=RingGear(teeth, 2e-3, pair.pinion.pressure_angle_rad, 0.0, 1.0, 0.25, 6e-3))
     gear = spur_gear(teeth, 2e-3, 50.0)
     outer = replace(sun_pair, gear=gear)
     for height in (-0.8e-3, 0.0, 0.9e-3):  # from the pitch line to the tip
         roll = gear.roll_at_radius(gear.pitch_radius_m + height)
-        position = (
-            np.sqrt((wide.ring.pitch_radius_m - height) ** 2 - wide.ring.base_radius_m**2) - wide.line_of_action_m
-        )
-        found = ring_tooth_compliance(wide, position)
+        roll_of_ring = wide.gear.roll_at_radius(wide.gear.pitch_radius_m - height)
+        found = tooth_compliance(wide, "gear", [roll_of_ring], StiffnessOptions())
         expected = tooth_compliance(outer, "gear", [roll], StiffnessOptions(beam="root_circle", foundation="none"))
         for part in PARTS:
             assert getattr(found, part)[0] == pytest.approx(getattr(expected, part)[0], rel=3e-4), part  # 1/z
@@ -50,14 +43,15 @@ def test_the_tooth_of_a_wide_ring_is_that_of_a_wide_gear():
 
 def test_ring_tooth_against_slow_quadrature_of_its_outline():
     _, pair = sets()
-    ring = pair.ring
+    ring = pair.gear
     for share in (0.0, 0.5, 1.0):
         position = pair.contact_start_m + share * (pair.contact_end_m - pair.contact_start_m)
-        found = ring_tooth_compliance(pair, position)
+        roll = (position - pair.line_of_action_m) / ring.base_radius_m
+        found = tooth_compliance(pair, "gear", [roll], StiffnessOptions())
         radii = np.linspace(ring.tip_radius_m, ring.root_radius_m, 200_001)
         half = ring.half_angle_rad(radii)
         height, width = radii * np.cos(half), radii * np.sin(half)
-        at = np.hypot(ring.base_radius_m, position + pair.line_of_action_m)
+        at = np.hypot(ring.base_radius_m, position - pair.line_of_action_m)
         place = np.interp(at, radii, height), np.interp(at, radii, width)
         slope = np.interp(place[0], height, np.gradient(width, height))  # flank against the centre line
         along, across = np.sin(np.arctan(slope)), np.cos(np.arctan(slope))
@@ -77,6 +71,11 @@ def test_ring_tooth_against_slow_quadrature_of_its_outline():
         area = quad(slenderness, place[0], height[-1], limit=200)[0]
         assert found.axial[0] == pytest.approx(along**2 * area / 206e9, rel=1e-4)
         assert found.shear[0] == pytest.approx(1.2 * across**2 * area * 2.6 / 206e9, rel=1e-4)
+        # Cornell's foot, the load where its line crosses the centre line: turned, both ways coupled, shifted
+        lever = (height[-1] - place[0] - place[1] * along / across) / (2.0 * width[-1])
+        shifted = 1.534 * (1.0 + (along / across) ** 2 / (2.4 * 1.3))
+        foot = 16.67 / pi * lever**2 + 2.0 * 0.7 * lever + shifted
+        assert found.foundation[0] == pytest.approx(across**2 * foot / (206e9 * 20e-3), rel=1e-4)
 
 
 def test_the_foot_turns_on_the_half_plane_as_its_potential_says():
@@ -93,23 +92,21 @@ def test_the_mesh_with_the_ring_is_stiffer_than_that_with_the_sun_and_periodic()
     sun_pair, pair = sets()
     options = StiffnessOptions()
     pitches = np.linspace(0.0, 1.0, 41)
-    inner = internal_mesh_stiffness(sun_pair, pair, pitches, options)
+    inner = mesh_stiffness(pair, 2.0 * pi / 27 * pitches, options)
     outer = mesh_stiffness(sun_pair, np.linspace(0.0, 2.0 * pi / 24, 41), options)
     assert inner[0] == pytest.approx(inner[-1], rel=1e-12)
     assert inner.mean() > outer.mean()
     # the sum over pairs is the mean of one pair times the contact ratio
     path = np.linspace(pair.contact_start_m, pair.contact_end_m, 4001)
-    fine = internal_mesh_stiffness(sun_pair, pair, np.arange(4000) / 4000, options).mean()
-    one = internal_pair_stiffness(sun_pair, pair, path, options).mean()
+    fine = mesh_stiffness(pair, 2.0 * pi / 27 * np.arange(4000) / 4000, options).mean()
+    one = pair_stiffness(pair, path, options).mean()
     assert fine == pytest.approx(pair.contact_ratio * one, rel=1e-3)
 
 
 def test_more_force_makes_the_contact_with_the_ring_stiffer():
-    sun_pair, pair = sets()
+    _, pair = sets()
     found = [
-        internal_pair_stiffness(
-            sun_pair, pair, [pair.pitch_point_m], StiffnessOptions(hertz="weber_banaschek", hertz_force_n=force)
-        )[0]
+        pair_stiffness(pair, [pair.pitch_point_m], StiffnessOptions(hertz="weber_banaschek", hertz_force_n=force))[0]
         for force in (100.0, 1000.0)
     ]
     assert found[1] > found[0]

@@ -1,0 +1,146 @@
+"""A set whose gears, shafts and meshes have names of the user's own, read in the words that diagnostics counts by.
+
+What is written about such a set goes through `Words`, which says the user's names again.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import pyarrow as pa
+
+from diagnostics.records.gear_train import GEARS
+from siggen.config.names import NO_NAMES, Names
+from siggen.dataset.reading import Dataset, RowGroup
+from siggen.dataset.reading import open as open_dataset
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Rows = TypeVar("Rows", pa.Table, pa.RecordBatch)
+BREAK = "<wbr>"
+IDENTIFIER = re.compile(rf"(?:\w|{BREAK})*(?:pinion|gear)(?:\w|{BREAK})*")
+"""Names of columns, which pages may break between their parts."""
+OF_GEAR = re.compile(
+    r"\bgear(?= (?:averages?|sidebands?|revolutions?|turns?|tooth|orders)\b)|(?<=, )gear(?=[,<\"]| [0-9])"
+)
+"""Where `gear` is the driven one of the first mesh, not any gear."""
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """The user's names in texts, tables and figures about a set, but for channels; without any, nothing changes."""
+
+    names: Names = NO_NAMES
+    channels: frozenset[str] = frozenset()
+
+    def __call__(self, text: str) -> str:
+        """Return a text with the user's names."""
+        if not self.names.gears:
+            return text
+        text = IDENTIFIER.sub(self._identifier, text)
+        for short, _ in self.names.meshes[1:]:  # what a sentence says of another mesh than the first
+            about = re.compile(rf"[^<>.;:]*\bmesh {short}\b[^<>.;]*")
+            text = about.sub(partial(self._of_mesh, short), text)
+        return OF_GEAR.sub(self.names.gear("gear"), self.names.text(text))
+
+    def column(self, name: str) -> str:
+        """Return the user's name of a column; one that ends in the name of a mesh is about its gears."""
+        own, behind, channel = name.partition("__")
+        if "_" not in own or own in self.channels:
+            return name
+        mesh = next((short for short, _ in self.names.meshes[1:] if own.endswith(f"_{short}")), "")
+        if not mesh or name.startswith("teeth_"):
+            return f"{self.names.column(own)}{behind}{channel}"
+        for role in GEARS:
+            own = re.sub(rf"(?<![a-z0-9]){role}(?![a-z0-9])", self.names.gear(f"{mesh}.{role}"), own)
+        return f"{own}{behind}{channel}"
+
+    def _identifier(self, found: re.Match[str]) -> str:
+        own = self.column(found[0].replace(BREAK, ""))
+        return own.replace("_", f"_{BREAK}") if BREAK in found[0] else own
+
+    def _of_mesh(self, mesh: str, found: re.Match[str]) -> str:
+        """Return a phrase about one mesh with the names of its gears."""
+        phrase = found[0]
+        for role in GEARS:
+            phrase = re.sub(rf"\b{role}\b", self.names.gear(f"{mesh}.{role}"), phrase)
+        return phrase
+
+    def table(self, table: pa.Table) -> pa.Table:
+        """Return a table with the user's names of columns and of what columns of texts say."""
+        if not self.names.gears:
+            return table
+        columns = [
+            pa.array([None if one is None else self(one) for one in column.to_pylist()], column.type)
+            if pa.types.is_string(column.type)
+            else column
+            for column in table.columns
+        ]
+        return pa.table(columns, names=[self.column(name) for name in table.column_names])
+
+    def figure(self, figure: Figure) -> Figure:
+        """Return a figure with the user's names in its texts."""
+        if self.names.gears:
+            from matplotlib.text import Text
+
+            for text in figure.findobj(Text):
+                text.set_text(self(text.get_text()))
+        return figure
+
+
+class NamedSet(Dataset):
+    """A set with names of its own, whose columns have those of the program."""
+
+    def read_as(self, names: Names, short: Mapping[str, str]) -> NamedSet:
+        """Return the set with the words of a machine: column of the files -> column here."""
+        self.own_names, self._short = names, dict(short)
+        self._own = {here: there for there, here in short.items()}
+        return self
+
+    def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
+        """Return labels as `Dataset.labels`."""
+        return self._renamed(super().labels(split, self._there(columns)))
+
+    def records(
+        self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None
+    ) -> Iterator[pa.RecordBatch]:
+        """Yield rows as `Dataset.records`."""
+        return map(self._renamed, super().records(split, self._there(columns), batch_rows))
+
+    def row_group(self, group: RowGroup, columns: Sequence[str] | None = None) -> pa.RecordBatch:
+        """Return rows as `Dataset.row_group`."""
+        return self._renamed(super().row_group(group, self._there(columns)))
+
+    def record(self, record_id: int) -> dict[str, Any]:
+        """Return a record as `Dataset.record`."""
+        return {self._short.get(name, name): value for name, value in super().record(record_id).items()}
+
+    def _there(self, columns: Sequence[str] | None) -> list[str] | None:
+        return None if columns is None else [self._own.get(name, name) for name in columns]
+
+    def _renamed(self, rows: Rows) -> Rows:
+        fields = [field.with_name(self._short.get(field.name, field.name)) for field in rows.schema]
+        return type(rows).from_arrays(rows.columns, schema=pa.schema(fields, rows.schema.metadata))
+
+
+def open_set(path: PurePath | str) -> Dataset:
+    """Return a set as diagnostics reads it; raises DatasetError as `siggen.open`."""
+    dataset = open_dataset(path)
+    names, short = dataset.names()
+    if names == NO_NAMES:
+        return dataset
+    dataset.__class__ = NamedSet
+    assert isinstance(dataset, NamedSet)
+    return dataset.read_as(names, short)
+
+
+def words_of(dataset: Dataset) -> Words:
+    """Return what says the user's names of a set."""
+    channels = frozenset(channel.name for channel in dataset.channels)
+    return Words(dataset.own_names, channels) if isinstance(dataset, NamedSet) else Words()

@@ -1,0 +1,34 @@
+"""What contradicts a section `life`: states beside it, gearboxes with further meshes, torque that no flank wears by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from siggen.config.life import Life
+from siggen.errors import Problem
+from siggen.keys.number import bounds, number_text
+
+
+def life_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield states beside a life, and what else it cannot be beside."""
+    life: Life | None = sections.get("life")
+    if life is None:
+        return
+    if raw.get("states"):
+        yield Problem("states", "states beside a section life", "allowed: one of both; with life states: []")
+    for key in ("stages", "planetary"):
+        if sections.get(key):
+            yield Problem("life", f"a section life with {key}", f"allowed: null, or no {key}: teeth of one pair wear")
+    yield from _loads(sections, life)
+
+
+def _loads(sections: Mapping[str, Any], life: Life) -> Iterator[Problem]:
+    """Yield loads under which no tooth ever pits, or the back flanks would."""
+    if life.history and not any(torque > 0.0 for _, torque in life.history):
+        yield Problem("life.history", "no block with a torque above 0", "allowed: one at least, or teeth never fail")
+    points = sections.get("operating_points", ())
+    if points and bounds(points[0].torque_nm)[0] <= 0.0:
+        received = f"{number_text(points[0].torque_nm)} with a section life"
+        allowed = "allowed: above 0, the torque between inspections, by which the front flanks wear"
+        yield Problem("operating_points.0.torque_nm", received, allowed)

@@ -1,0 +1,60 @@
+"""Section `machine`: the drivetrain as shafts, gears and meshes, each with a name of the user's own."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from siggen.config.dynamics import Rotor
+from siggen.config.gears import ToothForm, Wheel
+from siggen.config.stages import DIRECTION, SPAN
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Section
+from siggen.keys.wording import AllowedText
+
+NAME_TEXT = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), NAME_TEXT]
+
+
+NAMED: Any = Field(description="its name: in places of sensors, damage, columns, messages and pages")
+
+
+class MachineShaft(Rotor):
+    """A shaft on two bearings; masses are those of the gear that the shaft in front drives, of the first its own."""
+
+    name: Name = NAMED
+    span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
+        default=None,
+        description=SPAN,
+    )
+
+
+class MachineGear(Wheel):
+    """A gear on a shaft."""
+
+    name: Name = NAMED
+    shaft: str = Field(description="name of the shaft that it stands on")
+
+
+class MachineMesh(ToothForm):
+    """A gear that drives another one."""
+
+    name: Name = NAMED
+    driver: str = Field(description="name of the driving gear")
+    driven: str = Field(description="name of the driven gear")
+    direction_deg: Annotated[Number, Within(least=-180, most=180)] = Field(
+        default=0.0,
+        description=DIRECTION,
+    )
+
+
+class Machine(Section):
+    """Shafts, gears and meshes in any order; takes the place of `gears` and `stages`.
+
+    The motor drives the shaft whose gear none drives, the load hangs on the shaft whose gear drives none.
+    """
+
+    shafts: Annotated[tuple[MachineShaft, ...], Field(min_length=2, max_length=100)] = Field(description="its shafts")
+    gears: Annotated[tuple[MachineGear, ...], Field(min_length=2, max_length=200)] = Field(description="its gears")
+    meshes: Annotated[tuple[MachineMesh, ...], Field(min_length=1, max_length=100)] = Field(description="its meshes")

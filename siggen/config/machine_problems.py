@@ -1,0 +1,175 @@
+"""What a machine cannot be as a graph: names, gears, meshes and shafts that do not fit together; and its order."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from siggen.config.machine import Machine, MachineMesh
+from siggen.errors import Problem
+from siggen.keys.problems import nearest
+
+SAME_RATIO = 1e-12
+"""Ratios of speed round a loop that differ by less are one; fractions of teeth differ by nothing or by more."""
+TAKEN = ("motor", "load", "casing", "either", "both", "several", "none", "mesh")
+"""Words with a meaning of their own in places of sensors and in labels."""
+
+
+@dataclass(frozen=True, slots=True)
+class Train:
+    """Meshes and shafts in the order of power, as places in their lists; there is one shaft more."""
+
+    meshes: tuple[int, ...]
+    shafts: tuple[int, ...]
+
+
+def machine_problems(machine: Machine) -> list[Problem]:
+    """Return what is wrong about a machine, the first kind of it: what refers to nothing goes before loops."""
+    for check in (_names, _references, _pairs, _gears, _connected, _loops, _branches, _spans):
+        if found := list(check(machine)):
+            return found
+    return []
+
+
+def train(machine: Machine) -> Train:
+    """Return the order of power of a machine without problems."""
+    shaft_of = _shaft_of(machine)
+    ends = [(shaft_of[mesh.driver], shaft_of[mesh.driven]) for mesh in machine.meshes]
+    order = {driving: (index, driven) for index, (driving, driven) in enumerate(ends)}
+    (shaft,) = {driving for driving, _ in ends} - {driven for _, driven in ends}
+    meshes, shafts = [], [shaft]
+    while shaft in order:
+        index, shaft = order[shaft]
+        meshes.append(index)
+        shafts.append(shaft)
+    return Train(tuple(meshes), tuple(shafts))
+
+
+def _names(machine: Machine) -> Iterator[Problem]:
+    for key in Machine.model_fields:
+        names = [one.name for one in getattr(machine, key)]
+        for index, name in enumerate(names):
+            if name in names[:index]:
+                yield Problem(f"machine.{key}.{index}.name", f"'{name}' a second time", "allowed: every name once")
+            if name in TAKEN:
+                allowed = f"allowed: another name than {', '.join(TAKEN)}"
+                yield Problem(f"machine.{key}.{index}.name", f"'{name}', which means something else", allowed)
+    columns = {f"mesh_{one.name}_hz" for one in machine.meshes}
+    for index, shaft in enumerate(machine.shafts):
+        if f"{shaft.name}_shaft_hz" in columns:
+            received = f"'{shaft.name}', whose column {shaft.name}_shaft_hz a mesh has too"
+            yield Problem(f"machine.shafts.{index}.name", received, "allowed: a name whose columns are its own")
+
+
+def _references(machine: Machine) -> Iterator[Problem]:
+    shafts, gears = [one.name for one in machine.shafts], [one.name for one in machine.gears]
+    for index, gear in enumerate(machine.gears):
+        yield from _unknown(f"machine.gears.{index}.shaft", gear.shaft, shafts)
+    for index, mesh in enumerate(machine.meshes):
+        yield from _unknown(f"machine.meshes.{index}.driver", mesh.driver, gears)
+        yield from _unknown(f"machine.meshes.{index}.driven", mesh.driven, gears)
+
+
+def _unknown(path: str, name: str, known: Sequence[str]) -> Iterator[Problem]:
+    if name not in known:
+        yield Problem(path, f"'{name}'", f"allowed: one of {', '.join(known)}{nearest(name, known)}")
+
+
+def _pairs(machine: Machine) -> Iterator[Problem]:
+    """Yield meshes whose gears turn together."""
+    names, shaft_of = [one.name for one in machine.shafts], _shaft_of(machine)
+    for index, mesh in enumerate(machine.meshes):
+        if (shaft := shaft_of[mesh.driver]) == shaft_of[mesh.driven]:
+            received = f"'{mesh.driven}', which stands on the shaft {names[shaft]} as {mesh.driver} does"
+            yield Problem(f"machine.meshes.{index}.driven", received, "allowed: a gear on another shaft")
+
+
+def _gears(machine: Machine) -> Iterator[Problem]:
+    """Yield gears that mesh with none or with too many."""
+    meshes: dict[str, list[str]] = {}
+    for mesh in machine.meshes:
+        for name in (mesh.driver, mesh.driven):
+            meshes.setdefault(name, []).append(mesh.name)
+    for index, gear in enumerate(machine.gears):
+        own = meshes.get(gear.name, [])
+        received = f"'{gear.name}', in {len(own)} meshes{': ' if own else ''}{', '.join(own)}"
+        if len(own) > 2:
+            yield Problem(f"machine.gears.{index}.name", received, "allowed: one mesh; more in a planetary set alone")
+        elif len(own) != 1:
+            allowed = "allowed: one mesh; give each mesh a gear of its own on the shaft"
+            yield Problem(f"machine.gears.{index}.name", received, allowed)
+
+
+def _connected(machine: Machine) -> Iterator[Problem]:
+    """Yield shafts that no mesh joins with the first one."""
+    reached, first = set(_speeds(machine)), machine.shafts[0].name
+    for index, shaft in enumerate(machine.shafts):
+        if index not in reached:
+            received = f"'{shaft.name}', which no mesh joins with the shaft {first}"
+            yield Problem(f"machine.shafts.{index}.name", received, "allowed: shafts joined by meshes of their gears")
+
+
+def _loops(machine: Machine) -> Iterator[Problem]:
+    """Yield meshes that close a loop; one whose ratios disagree could not turn at all."""
+    speeds, shaft_of = _speeds(machine), _shaft_of(machine)
+    closing = len(machine.meshes) - len(machine.shafts) + 1
+    for index, mesh in enumerate(machine.meshes):
+        driving, driven = shaft_of[mesh.driver], shaft_of[mesh.driven]
+        turned, else_turned = speeds[driving] * _ratio(machine, mesh), speeds[driven]
+        if abs(turned / else_turned - 1) > SAME_RATIO:
+            received = (
+                f"a loop: by this mesh the shaft {machine.shafts[driven].name} turns {turned} times per turn of "
+                f"{machine.shafts[0].name}, by the others {else_turned} times"
+            )
+            yield Problem(f"machine.meshes.{index}", received, "allowed: teeth that turn each shaft at one speed")
+            return
+    if closing > 0:
+        received = f"{closing} more than join all shafts, so power has two ways"
+        yield Problem("machine.meshes", received, "allowed: one way from the motor to the load")
+
+
+def _branches(machine: Machine) -> Iterator[Problem]:
+    """Yield shafts that drive several others, or are driven by several."""
+    shaft_of = _shaft_of(machine)
+    for key, does in (("driver", "drives"), ("driven", "is driven in")):
+        counts = Counter(shaft_of[getattr(mesh, key)] for mesh in machine.meshes)
+        for shaft, count in counts.items():
+            if count > 1:
+                received = f"'{machine.shafts[shaft].name}', which {does} {count} meshes"
+                yield Problem(f"machine.shafts.{shaft}.name", received, "allowed: one way from the motor to the load")
+
+
+def _spans(machine: Machine) -> Iterator[Problem]:
+    inner = train(machine).shafts[1:-1]
+    for index, shaft in enumerate(machine.shafts):
+        if shaft.span_mm is not None and index not in inner:
+            yield Problem(
+                f"machine.shafts.{index}.span_mm", str(shaft.span_mm), "allowed: null of a shaft with one gear"
+            )
+
+
+def _shaft_of(machine: Machine) -> dict[str, int]:
+    places = {shaft.name: index for index, shaft in enumerate(machine.shafts)}
+    return {gear.name: places[gear.shaft] for gear in machine.gears}
+
+
+def _ratio(machine: Machine, mesh: MachineMesh) -> Fraction:
+    """Return turns of the driven gear per turn of the driver, which turns the other way."""
+    teeth = {gear.name: gear.teeth for gear in machine.gears}
+    return -Fraction(teeth[mesh.driver], teeth[mesh.driven])
+
+
+def _speeds(machine: Machine) -> Mapping[int, Fraction]:
+    """Return shaft -> turns per turn of the first one, for the shafts that meshes join with it."""
+    shaft_of, speeds, waiting = _shaft_of(machine), {0: Fraction(1)}, [0]
+    while waiting:
+        shaft = waiting.pop()
+        for mesh in machine.meshes:
+            ends, ratio = (shaft_of[mesh.driver], shaft_of[mesh.driven]), _ratio(machine, mesh)
+            for here, there, turned in ((*ends, ratio), (*ends[::-1], 1 / ratio)):
+                if here == shaft and there not in speeds:
+                    speeds[there] = speeds[shaft] * turned
+                    waiting.append(there)
+    return speeds

@@ -1,0 +1,170 @@
+"""Names: the user's own words for gears, shafts and meshes, in place of those of the short form.
+
+The short form calls the gears of a mesh pinion and gear, those of a mesh SLOW behind the first one SLOW.pinion and
+SLOW.gear. All code counts by these words. What leaves it, a label, a column, a message, a page, says `Names`' own ones.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any, TypeAlias
+
+from siggen.errors import Problem
+
+Table: TypeAlias = tuple[tuple[str, str], ...]
+"""Words of the short form, each with the user's own."""
+DRIVER, DRIVEN, EITHER, BOTH, SEVERAL = "pinion", "gear", "either", "both", "several"
+KEYS: Table = (
+    ("pinion", "driver"), ("gear", "driven"), ("pinion_depth", "driver_depth"), ("gear_depth", "driven_depth"),
+    ("pinion_encoder", "driver_encoder"), ("gear_encoder", "driven_encoder"),
+    ("accuracy_class_gear", "accuracy_class_driven"), ("crowning_gear_um", "crowning_driven_um"),
+)  # fmt: skip
+"""Keys of the short form and those of a file with a `machine`."""
+START, END = r"(?<![\w.])", r"(?![\w])"
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The words of one machine; without any, every word stays as it is.
+
+    Attributes
+    ----------
+    gears : pinion, gear, SLOW.pinion, ... and the user's names
+    shafts : pinion, gear, SLOW (the shaft of SLOW.gear) and the user's names
+    meshes : the empty name of the first mesh, SLOW, ... and the user's names
+    paths : keys of the short form, such as stages.0.gears.pinion, and where the user wrote them
+    """
+
+    gears: Table = ()
+    shafts: Table = ()
+    meshes: Table = ()
+    paths: Table = ()
+
+    def gear(self, word: str) -> str:
+        """Return the user's name of a gear as damage and labels name it."""
+        return _words(self).get(word, word)
+
+    def mesh(self, name: str) -> str:
+        """Return the user's name of a mesh."""
+        return dict(self.meshes).get(name, name)
+
+    @property
+    def damaged(self) -> dict[str, str]:
+        """What `gear` of damage may hold: gears, and for each mesh the drawn one of both."""
+        return {**dict(self.gears), **{_in(mesh, EITHER): f"{own}.{EITHER}" for mesh, own in self.meshes}}
+
+    @property
+    def places(self) -> dict[str, str]:
+        """Places of sensors: bearings, ends of the casing, rims and all that turns."""
+        of_shafts = {f"{short}_{what}": f"{own}_{what}" for short, own in self.shafts for what in ("bearing", "end")}
+        rims = {f"{short}_rim": f"{own}_rim" for short, own in self.gears[:2]}
+        return {**of_shafts, **rims, **dict(self.gears)}
+
+    def place(self, word: str) -> str:
+        """Return where a sensor stands in the user's words."""
+        return self.places.get(word, word)
+
+    def short_path(self, path: str) -> str:
+        """Return a key of the user as the short form has it, such as one that a state changes."""
+        for short, own in self.paths:
+            if path.startswith(f"{own}."):
+                return f"{short}{path.removeprefix(own)}"
+        return path
+
+    def column(self, name: str) -> str:
+        """Return the user's name of a column or a quantity that the program has."""
+        if not self.gears or name in {"gear", "faulty_gear"}:
+            return name
+        if name == "mesh_hz":
+            return f"mesh_{self.mesh('')}_hz"
+        words = _column_words(self)
+        return _found(tuple(words), r"(?<![a-z0-9])", r"(?![a-z0-9])").sub(lambda one: words[one[0]], name)
+
+    def text(self, text: str, mesh: str = "") -> str:
+        """Return a text of the program in the user's words; `mesh` is that whose gears it calls pinion and gear."""
+        if not self.gears:
+            return text
+        for short, own in sorted(self.paths, key=lambda one: -len(one[0])):
+            text = re.sub(
+                rf"{START}{re.escape(short)}(?=\.[a-z]{'' if short.endswith('gears') else '|' + END})", own, text
+            )
+        words = _text_words(self)
+        text = re.sub(r", stages: [a-z0-9_, ]+", "", text)
+        text = _found(tuple(words), START, END).sub(lambda one: words[one[0]], text)
+        place = [name for name, _ in self.meshes].index(mesh)
+        shafts = [f"the {own} shaft" for _, own in self.shafts[place : place + 2]]
+        return _prose(text, shafts, self.gear(_in(mesh, DRIVER)), self.gear(_in(mesh, DRIVEN)))
+
+    def of_any_mesh(self, text: str) -> str:
+        """Return a text about the gears of any mesh without the words of the short form."""
+        return _prose(text, ["its shaft"] * 2, "the driving gear", "the driven gear") if self.gears else text
+
+    def problem(self, problem: Problem) -> Problem:
+        """Return a problem in the user's words, at the key that the user wrote."""
+        if not self.gears:
+            return problem
+        mesh = self._mesh_at(problem.path)
+        path, received, allowed = (self.text(one, mesh) for one in (problem.path, problem.received, problem.allowed))
+        return replace(problem, path=path, received=received, allowed=allowed)
+
+    def _mesh_at(self, path: str) -> str:
+        found = re.match(r"stages\.(\d+)", path)
+        return self.meshes[1 + int(found[1])][0] if found and int(found[1]) + 1 < len(self.meshes) else ""
+
+
+NO_NAMES = Names()
+"""Of files in the short form."""
+
+
+def renamed_keys(value: Any, *, own: bool) -> Any:
+    """Return mappings and lists with the keys of the other form: the user's `own`, or those of the short form."""
+    table = dict(KEYS) if own else {to: key for key, to in KEYS}
+    if isinstance(value, dict):
+        return {table.get(key, key): renamed_keys(item, own=own) for key, item in value.items()}
+    return [renamed_keys(item, own=own) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _in(mesh: str, gear: str) -> str:
+    return f"{mesh}.{gear}" if mesh else gear
+
+
+@cache
+def _words(names: Names) -> dict[str, str]:
+    """Return what `gear` of damage and labels may hold."""
+    return {**names.damaged, **{_in(mesh, BOTH): SEVERAL for mesh, _ in names.meshes}}
+
+
+@cache
+def _column_words(names: Names) -> dict[str, str]:
+    """Return parts of the names of columns."""
+    of_shafts = {f"{short}_shaft": f"{own}_shaft" for short, own in names.shafts}
+    gears = {short.replace(".", "_"): own for short, own in names.gears}
+    return {**of_shafts, **names.places, **gears}
+
+
+@cache
+def _text_words(names: Names) -> dict[str, str]:
+    """Return whole words in texts; pinion and gear alone are left to `_prose`."""
+    drawn = {short: own for short, own in _words(names).items() if short not in {DRIVER, DRIVEN, BOTH, EITHER}}
+    keys = {short: own for short, own in KEYS if short not in {DRIVER, DRIVEN}}
+    found = {**_column_words(names), **drawn, **keys}
+    return {short: own for short, own in found.items() if short not in {DRIVER, DRIVEN}}
+
+
+@cache
+def _found(words: tuple[str, ...], start: str, end: str) -> re.Pattern[str]:
+    """Return what finds any of these words, the longest first."""
+    longest = sorted(words, key=len, reverse=True)
+    return re.compile(f"{start}(?:{'|'.join(map(re.escape, longest))}){end}")
+
+
+def _prose(text: str, shafts: Sequence[str], driver: str, driven: str) -> str:
+    """Return a text with the gears of one mesh and their shafts named."""
+    for short, shaft in zip((DRIVER, DRIVEN), shafts, strict=True):
+        text = re.sub(rf"\b[Tt]he {short} shaft\b", shaft, text)
+    text = re.sub(r"\bpinion(,| and| or) (?:the )?gear\b", rf"{driver}\1 {driven}", text)
+    text = re.sub(r"\b(?:[Tt]he )?(?:first )?pinion\b", driver, text)
+    return re.sub(r"\b[Tt]he gear(?! (?:pair|body|bodies|in front))\b|'gear'|^gear(?= [a-z]+$)", driven, text)

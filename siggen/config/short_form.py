@@ -1,0 +1,188 @@
+"""A file with a `machine` as the short form that all code reads, and back: its names are those of the short form.
+
+In the short form the first mesh is `gears`, with a pinion and a gear; further meshes are `stages`. The shaft of the
+pinion is `dynamics.pinion`, that of the gear `dynamics.gear`, those behind are `stages[].gear`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+from siggen.config.dynamics import Rotor
+from siggen.config.gears import ToothForm, Wheel
+from siggen.config.machine import Machine
+from siggen.config.machine_problems import train
+from siggen.config.names import DRIVEN, DRIVER, KEYS, Names, renamed_keys
+from siggen.errors import Problem
+from siggen.keys.problems import nearest, received_text
+from siggen.keys.section import Section
+
+REPLACED = ("gears", "stages", "planetary")
+"""Sections that a machine takes the place of."""
+WITH_KEYS = ("dynamics", "manufacture", "sensors", "background")
+"""Sections with keys of their own for driver and driven gear."""
+
+
+@cache
+def names_of(machine: Machine) -> Names:
+    """Return the words of a machine without problems."""
+    found = train(machine)
+    gears = {gear.name: index for index, gear in enumerate(machine.gears)}
+    named, shafts, meshes, paths = [], [(DRIVER, found.shafts[0])], [], []
+    for number, place in enumerate(found.meshes):
+        mesh, path = machine.meshes[place], f"stages.{number - 1}." if number else ""
+        short = mesh.name if number else ""
+        meshes.append((short, mesh.name))
+        shafts.append((short or DRIVEN, found.shafts[number + 1]))
+        for role, gear in ((DRIVER, mesh.driver), (DRIVEN, mesh.driven)):
+            named.append((f"{short}.{role}" if short else role, gear))
+            paths.append((f"{path}gears.{role}", f"machine.gears.{gears[gear]}"))
+        paths += [(f"{path}gears", f"machine.meshes.{place}")]
+        if number:
+            here = f"stages.{number - 1}"
+            paths += [(f"{here}.{key}", f"machine.meshes.{place}.{key}") for key in ("name", "direction_deg")]
+            paths += [(f"{here}.span_mm", f"machine.shafts.{found.shafts[number]}.span_mm")]
+            paths += [(f"{here}.gear", f"machine.shafts.{found.shafts[number + 1]}"), (here, f"machine.meshes.{place}")]
+    paths += [(f"dynamics.{short}", f"machine.shafts.{place}") for short, place in shafts[:2]]
+    own_shafts = tuple((short, machine.shafts[place].name) for short, place in shafts)
+    return Names(tuple(named), own_shafts, tuple(meshes), tuple(paths))
+
+
+def short_form(raw: Mapping[str, Any], machine: Machine, names: Names) -> tuple[dict[str, Any], list[Problem]]:
+    """Return a raw configuration with a machine in the short form, and words of the file that are none of its own."""
+    problems = [*_beside(raw), *_keys(raw)]
+    short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
+    short |= {key: renamed_keys(raw[key], own=False) for key in WITH_KEYS if key in raw}
+    short |= _drivetrain(machine)
+    rotors = _rotors(machine)
+    if isinstance(own := short.get("dynamics", {}), Mapping):
+        short["dynamics"] = {**own, **rotors}
+    for section, key, table in _words(names):
+        if section in short:
+            short[section] = _replaced(short[section], key, {own: word for word, own in table.items()})
+            problems += _unknown(raw[section], section, key, table)
+    return _with_changes(short, names), problems
+
+
+def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
+    """Return a configuration as plain mappings and lists as the user writes it; `short_form` of it is the same."""
+    own = {key: value for key, value in plain.items() if key not in REPLACED}
+    dynamics = {key: value for key, value in own["dynamics"].items() if key not in (DRIVER, DRIVEN)}
+    own = {**own, "dynamics": dynamics}
+    own |= {key: renamed_keys(own[key], own=True) for key in WITH_KEYS}
+    for section, key, table in _words(names):
+        own[section] = _replaced(own[section], key, table)
+    states = [
+        {**one, "changes": {names.text(path): to for path, to in one["changes"].items()}} for one in own["states"]
+    ]
+    return {**own, "states": states}
+
+
+def mesh_alone(machine: Machine, number: int) -> Machine:
+    """Return the machine of one mesh alone, the number-th in the order of power, from 0."""
+    found = train(machine)
+    mesh, places = machine.meshes[found.meshes[number]], found.shafts[number : number + 2]
+    shafts = tuple(machine.shafts[place].model_copy(update={"span_mm": None}) for place in places)
+    gears = tuple(gear for gear in machine.gears if gear.name in (mesh.driver, mesh.driven))
+    return machine.model_copy(update={"shafts": shafts, "gears": gears, "meshes": (mesh,)})
+
+
+def _beside(raw: Mapping[str, Any]) -> Iterator[Problem]:
+    for key in REPLACED:
+        if raw.get(key):
+            yield Problem(key, "a section beside machine", "allowed: either this section or machine")
+
+
+def _keys(raw: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield keys of the short form alone."""
+    for section in WITH_KEYS:
+        for path, key in _all_keys(raw.get(section), section):
+            if key in dict(KEYS) and not (section == "dynamics" and path.count(".") == 0):
+                yield Problem(f"{path}.{key}", "a key", f"allowed with a machine: {dict(KEYS)[key]}")
+    if isinstance(dynamics := raw.get("dynamics"), Mapping):
+        for key in {DRIVER, DRIVEN, "driver", "driven"} & dynamics.keys():
+            yield Problem(f"dynamics.{key}", received_text(dynamics[key]), "allowed with a machine: machine.shafts")
+
+
+def _all_keys(value: Any, path: str) -> Iterator[tuple[str, str]]:
+    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        if isinstance(key, str):
+            yield path, key
+        yield from _all_keys(item, f"{path}.{key}")
+
+
+def _drivetrain(machine: Machine) -> dict[str, Any]:
+    found = train(machine)
+    wheels = {gear.name: _given(gear, Wheel) for gear in machine.gears}
+    pairs = [
+        {**_given(mesh, ToothForm), DRIVER: wheels[mesh.driver], DRIVEN: wheels[mesh.driven]}
+        for mesh in (machine.meshes[place] for place in found.meshes)
+    ]
+    stages = []
+    for number, pair in enumerate(pairs[1:], start=1):
+        mesh, front, own = machine.meshes[found.meshes[number]], *found.shafts[number : number + 2]
+        stages.append({
+            "name": mesh.name, "gears": pair, "gear": _given(machine.shafts[own], Rotor),
+            "span_mm": machine.shafts[front].span_mm, "direction_deg": mesh.direction_deg,
+        })  # fmt: skip
+    return {"gears": pairs[0], "stages": stages}
+
+
+def _rotors(machine: Machine) -> dict[str, Any]:
+    first, second = train(machine).shafts[:2]
+    return {DRIVER: _given(machine.shafts[first], Rotor), DRIVEN: _given(machine.shafts[second], Rotor)}
+
+
+def _given(section: Section, model: type[Section]) -> dict[str, Any]:
+    """Return what a section has of a model's keys beside its defaults."""
+    values = {key: getattr(section, key) for key in model.model_fields}
+    return {key: value for key, value in values.items() if value != model.model_fields[key].default}
+
+
+def _words(names: Names) -> Iterator[tuple[str, str, dict[str, str]]]:
+    """Yield section and key of what holds a word of the machine, and its words in the short form with the user's."""
+    yield "states", "gear", names.damaged
+    yield "states", "bearing", names.places
+    yield "sensors", "place", names.places
+    yield "background", "shaft", dict(names.shafts)
+
+
+def _replaced(value: Any, key: str, table: Mapping[str, str]) -> Any:
+    """Return mappings and lists with the words of a key replaced."""
+    if isinstance(value, Mapping):
+        return {
+            name: table.get(item, item) if name == key and isinstance(item, str) else _replaced(item, key, table)
+            for name, item in value.items()
+        }
+    return [_replaced(item, key, table) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _unknown(value: Any, path: str, key: str, table: Mapping[str, str]) -> Iterator[Problem]:
+    """Yield words that are no name of the machine; of places those of the short form alone, others have their own."""
+    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
+    for name, item in items:
+        if name == key and isinstance(item, str) and item not in table.values():
+            if item in table or key != "place":
+                known = list(table.values())
+                allowed = f"allowed: one of {', '.join(known)}{nearest(item, known)}"
+                yield Problem(f"{path}.{name}", f"'{item}'", allowed)
+        else:
+            yield from _unknown(item, f"{path}.{name}", key, table)
+
+
+def _with_changes(short: dict[str, Any], names: Names) -> dict[str, Any]:
+    """Return a raw configuration whose states change keys of the short form."""
+    states = short.get("states")
+    if not isinstance(states, list):
+        return short
+    return {**short, "states": [_with_short_paths(state, names) for state in states]}
+
+
+def _with_short_paths(state: Any, names: Names) -> Any:
+    changes = state.get("changes") if isinstance(state, Mapping) else None
+    if not isinstance(changes, Mapping):
+        return state
+    return {**state, "changes": {names.short_path(str(path)): to for path, to in changes.items()}}

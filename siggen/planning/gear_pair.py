@@ -1,0 +1,43 @@
+"""From the units of a drawn section `gears` (mm, degrees, GPa) to the gear pair in SI."""
+
+from __future__ import annotations
+
+import math
+
+from siggen.config import Pair, Wheel
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.geometry.helical import transverse_gear
+from siggen.keys.number import constant
+
+
+def gear_pair(gears: Pair) -> GearPair:
+    """Return the gear pair of a drawn section `gears`.
+
+    Raises
+    ------
+    TypeError
+        If a number of the section is still a distribution.
+    """
+    distance_mm = gears.centre_distance_mm
+    return GearPair(
+        pinion=_spur_gear(gears, gears.pinion),
+        gear=_spur_gear(gears, gears.gear),
+        face_width_m=constant(gears.face_width_mm) / 1e3,
+        youngs_modulus_pa=constant(gears.youngs_modulus_gpa) * 1e9,
+        poisson_ratio=constant(gears.poisson_ratio),
+        centre_distance_m=None if distance_mm is None else constant(distance_mm) / 1e3,
+        helix_rad=math.radians(constant(gears.helix_deg)),
+    )
+
+
+def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
+    normal = SpurGear(
+        teeth=wheel.teeth,
+        module_m=constant(gears.module_mm) / 1e3,
+        pressure_angle_rad=math.radians(constant(gears.pressure_angle_deg)),
+        profile_shift=constant(wheel.profile_shift),
+        addendum_coefficient=constant(gears.addendum_coefficient),
+        clearance_coefficient=constant(gears.clearance_coefficient),
+        bore_radius_m=constant(wheel.bore_radius_mm) / 1e3,
+    )
+    return transverse_gear(normal, math.radians(constant(gears.helix_deg)))

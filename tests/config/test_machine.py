@@ -1,0 +1,150 @@
+"""A machine in the user's own names: what it means, what is refused, and where it is said to be wrong."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.config import parse, yaml_text
+from siggen.errors import ConfigError
+from siggen.planning.specimen import draw_specimen
+from siggen.planning.stages import first_mesh, stage_config
+from tests.config.mill import MACHINE, mill, with_machine
+from tests.config.staged import SLOW, SPALL, staged
+
+WHEEL = {"teeth": 20, "bore_radius_mm": 12.0}
+MESH = {"module_mm": 2.0, "face_width_mm": 20.0}
+
+
+def test_a_machine_is_its_short_form_with_other_words() -> None:
+    own, short = parse(mill()).config, parse(staged(
+        stages=[{**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}], sensors=[{"name": "bearing"}]
+    )).config  # fmt: skip
+    assert own is not None
+    assert short is not None
+    for section in ("gears", "stages", "dynamics", "states", "sensors"):
+        assert getattr(own, section) == getattr(short, section), section
+    assert own.identity != short.identity, "their columns have other names"
+
+
+def test_its_own_file_reads_the_same_and_never_says_pinion() -> None:
+    config = parse(mill(manufacture={"accuracy_class": 6}, internals={"quantities": ["mesh_force_n"]})).config
+    assert config is not None
+    text = yaml_text(config.canonical())
+    assert "pinion" not in text
+    assert parse(config.canonical()).config == config
+
+
+def test_states_change_shafts_by_their_place_in_the_machine() -> None:
+    key = "machine.shafts.1.bearing_stiffness_x_n_per_m"
+    state = {"name": "soft", "fault": "loose_bearing", "severity": "slight", "changes": {key: {"times": 0.5}}}
+    config = load_config(mill(states=[{"name": "healthy"}, state]))
+    assert [one.path for one in config.states[1].changes] == ["dynamics.pinion.bearing_stiffness_x_n_per_m"]
+    assert list(config.canonical()["states"][1]["changes"]) == [key]
+
+
+def test_one_mesh_alone_is_a_machine_of_its_two_gears() -> None:
+    config = parse(mill()).config
+    assert config is not None
+    assert config.names.gear("pinion") == "ida"
+    assert first_mesh(config).names.gears == (("pinion", "ida"), ("gear", "otto"))
+    slow = stage_config(config, draw_specimen(config, 0), 0)
+    assert slow.names.gears == (("pinion", "eva"), ("gear", "karl"))
+    assert slow.names.shafts == (("pinion", "middle"), ("gear", "output"))
+
+
+def loop(teeth: int) -> dict[str, Any]:
+    """Return the machine with a mesh that drives the first shaft from the last one."""
+    gears = [{**WHEEL, "name": "x", "shaft": "output"}, {**WHEEL, "name": "y", "shaft": "input", "teeth": teeth}]
+    meshes = [*MACHINE["meshes"], {**MESH, "name": "back", "driver": "x", "driven": "y"}]
+    return {**MACHINE, "gears": [*MACHINE["gears"], *gears], "meshes": meshes}
+
+
+def beside(*gears: dict[str, Any], meshes: tuple[dict[str, Any], ...] = (), **shaft: Any) -> dict[str, Any]:
+    """Return the machine with more gears and meshes, and a shaft if it is given."""
+    shafts = [*MACHINE["shafts"], *([shaft] if shaft else [])]
+    return {"shafts": shafts, "gears": [*MACHINE["gears"], *gears], "meshes": [*MACHINE["meshes"], *meshes]}
+
+
+ELSE = {**WHEEL, "name": "else", "shaft": "output"}
+MISTAKES: dict[str, tuple[dict[str, Any], str, str]] = {
+    "a gear on no shaft": (with_machine("gears", 1, shaft="inptu"), "machine.gears.1.shaft", "did you mean 'input'?"),
+    "a mesh of no gear": (with_machine("meshes", 0, driver="eve"), "machine.meshes.0.driver", "did you mean 'eva'?"),
+    "gears of one shaft": (with_machine("meshes", 0, driven="otto"), "machine.meshes.0.driven", "the shaft middle"),
+    "a name twice": (with_machine("gears", 1, name="otto"), "machine.gears.2.name", "every name once"),
+    "a word that is taken": (with_machine("shafts", 1, name="load"), "machine.shafts.1.name", "another name than"),
+    "a gear in no mesh": (beside(ELSE), "machine.gears.4.name", "'else', in 0 meshes"),
+    "a gear in three meshes": (
+        beside(
+            ELSE, {**ELSE, "name": "more", "shaft": "input"},
+            meshes=tuple({**MESH, "name": f"m_{one}", "driver": "otto", "driven": one} for one in ("else", "more")),
+        ), "machine.gears.2.name", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh; more in a planetary",
+    ),
+    "a shaft apart": (beside(name="far"), "machine.shafts.3.name", "'far', which no mesh joins with the shaft output"),
+    "a loop that cannot turn": (loop(23), "machine.meshes.1", "a loop: by this mesh the shaft middle turns"),
+    "a span of one gear's shaft": (with_machine("shafts", 1, span_mm=90.0), "machine.shafts.1.span_mm", "one gear"),
+    "a branch": (
+        beside(
+            ELSE | {"shaft": "side"}, {**ELSE, "name": "more", "shaft": "middle"}, name="side",
+            meshes=({**MESH, "name": "aside", "driver": "more", "driven": "else"},),
+        ), "machine.shafts.2.name", "'middle', which drives 2 meshes",
+    ),
+    "too few teeth": (with_machine("gears", 3, teeth=3), "machine.gears.3.teeth", "from 5 to 1000"),
+    "a key that is none": (with_machine("gears", 3, teeht=3), "machine.gears.3.teeht", "did you mean 'teeth'?"),
+    "centres too close": (
+        with_machine("meshes", 0, centre_distance_mm=40.0), "machine.meshes.0.centre_distance_mm", "40",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_machine_that_cannot_be_is_refused_at_the_users_line(mistake: str, tmp_path: Path) -> None:
+    machine, path, words = MISTAKES[mistake]
+    text = yaml_text(mill(machine=machine))
+    (tmp_path / "mill.yaml").write_text(text)
+    begun = time.process_time()
+    with pytest.raises(ConfigError) as refused:
+        load_config(tmp_path / "mill.yaml")
+    assert time.process_time() - begun < 2.0
+    found = {one.path: one for one in refused.value.problems}
+    assert path in found, str(refused.value)
+    assert words in str(found[path])
+    assert found[path].where.startswith("line "), found[path]
+    assert "pinion" not in str(refused.value)
+
+
+def test_a_loop_whose_ratios_agree_turns_but_has_two_ways_for_power() -> None:
+    gears = [*MACHINE["gears"], *(
+        {**WHEEL, "name": name, "shaft": shaft, "teeth": teeth}
+        for name, shaft, teeth in (("p", "input", 18), ("q", "middle", 47))
+    )]  # fmt: skip
+    meshes = [*MACHINE["meshes"], {**MESH, "name": "twin", "driver": "p", "driven": "q"}]
+    (problem,) = parse(mill(machine={**MACHINE, "gears": gears, "meshes": meshes})).problems
+    assert problem.path == "machine.meshes"
+    assert "two ways" in problem.received
+
+
+OTHERS: dict[str, tuple[dict[str, Any], str, str]] = {
+    "damage": (
+        {"states": [{"name": "bad", "severity": "slight", "damage": {**SPALL, "gear": "pinion"}}]},
+        "states.0.damage.gear",
+        "karl",
+    ),
+    "place": ({"sensors": [{"name": "a", "place": "pinion_bearing"}]}, "sensors.0.place", "input_bearing"),
+    "beside": ({"stages": [SLOW]}, "stages", "either this section or machine"),
+    "rotor": ({"dynamics": {"model": "8dof", "gear": {"mass_kg": 1.0}}}, "dynamics.gear", "machine.shafts"),
+    "casing": ({"dynamics": {"model": "6dof"}}, "dynamics.model", "8dof or casing"),
+}
+
+
+@pytest.mark.parametrize("case", OTHERS)
+def test_words_of_the_short_form_are_none_of_a_machine(case: str) -> None:
+    changes, path, words = OTHERS[case]
+    found = {one.path: one for one in parse(mill(**changes)).problems}
+    assert list(found) == [path]
+    assert words in found[path].allowed
+    assert "pinion" not in found[path].allowed

@@ -1,0 +1,168 @@
+"""Sets of gearboxes that run to failure: as files and commands show them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+import siggen
+from siggen.checks.loading import load_config
+from siggen.cli.app import app
+from siggen.errors import ConfigError
+from siggen.planning.gearbox import gearbox_life
+from siggen.planning.plan import plan
+from siggen.sets.extension import extend
+from tests.config.minimal import minimal
+
+LIFE: dict[str, Any] = {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 0.8, "most": 9, "removed_share": 0.0}
+"""Gearboxes of 30 Hz pit after 2 to 3 h and fail after 4 to 5."""
+
+
+def lives(life: dict[str, Any] | None = None, **changes: Any) -> dict[str, Any]:
+    """Return a small set of short records."""
+    return minimal(states=[], life={**LIFE, **(life or {})}, specimens=2, duration_s=0.05, fs_hz=20_000.0, **changes)
+
+
+def run(*arguments: str) -> str:
+    """Return what a command says."""
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def rows(path: Path) -> list[dict[str, Any]]:
+    """Return everything of the records of a set, by record."""
+    found = [row for batch in siggen.open(path).records() for row in batch.to_pylist()]
+    return sorted(found, key=lambda row: row["record_id"])
+
+
+@pytest.fixture(scope="module")
+def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("fleet")
+    siggen.generate(load_config(lives()), path / "set", workers=0)
+    return path / "set"
+
+
+def test_a_record_of_a_life_is_the_static_record_of_its_damage(fleet: Path, tmp_path: Path) -> None:
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives()))
+    run(
+        "inspect", "life", str(tmp_path / "lives.yaml"), "--specimen", "1", "--as-states", str(tmp_path / "states.yaml")
+    )
+    siggen.generate(load_config(tmp_path / "states.yaml"), tmp_path / "set", workers=0)
+    own = [{**row, "record_id": 0} for row in rows(fleet) if row["specimen_id"] == 1]
+    static = [{**row, "record_id": 0} for row in rows(tmp_path / "set") if row["specimen_id"] == 1]
+    assert own == static
+    assert any(row["damaged_area_share"] > 0.04 for row in own)
+
+
+def test_ids_have_a_fixed_stride_and_tables_tell_the_same_truth_as_labels(fleet: Path) -> None:
+    dataset = siggen.open(fleet)
+    labels = {row["record_id"]: row for row in dataset.labels().to_pylist()}
+    inspections = dataset.life("inspections").to_pylist()
+    assert sorted(labels) == sorted(row["record_id"] for row in inspections)
+    assert {row["record_id"] - 9 * row["specimen_id"] - row["inspection"] for row in inspections} == {0}
+    worst: dict[int, float] = {}
+    for row in dataset.life("teeth").to_pylist():
+        worst[row["record_id"]] = max(worst.get(row["record_id"], 0.0), row["area_share"])
+    for record_id, label in labels.items():
+        # edges are straight in arc there and in height here
+        assert label["damaged_area_share"] == pytest.approx(worst.get(record_id, 0.0), rel=0.03)
+    units = {row["specimen_id"]: row for row in dataset.life("units").to_pylist()}
+    for row in inspections:
+        assert row["age_h"] + row["rul_h"] == pytest.approx(units[row["specimen_id"]]["failure_h"], rel=1e-12)
+        assert (
+            labels[row["record_id"]]["severity"]
+            == {"no pit": "healthy", "pitted": "slight", "rated": "severe"}[row["phase"]]
+        )
+
+
+def test_more_gearboxes_leave_those_that_exist_as_they_are(fleet: Path, tmp_path: Path) -> None:
+    import shutil
+
+    shutil.copytree(fleet, tmp_path / "grown")
+    extend(tmp_path / "grown", "+1", 0)
+    siggen.generate(load_config({**lives(), "specimens": 3}), tmp_path / "once", workers=0)
+    assert rows(tmp_path / "grown") == rows(tmp_path / "once")
+    for table in ("units", "inspections", "teeth", "pits"):
+        first, second = (siggen.open(tmp_path / name).life(table).to_pylist() for name in ("grown", "once"))
+        assert sorted(map(str, first)) == sorted(map(str, second))
+    assert "as its manifest promises" in run("verify", str(tmp_path / "grown"), "--sample", "3")
+
+
+def test_another_schedule_changes_no_truth() -> None:
+    often = gearbox_life(load_config(lives({"interval_h": 0.3, "most": 30})), 1)
+    seldom = gearbox_life(load_config(lives()), 1)
+    assert often.course.ends == seldom.course.ends
+    for age_h in (1.0, 3.0, 4.0, 5.0):
+        time = often.clock.time(age_h)
+        assert often.course.teeth(time) == seldom.course.teeth(seldom.clock.time(age_h))
+
+
+def test_before_the_first_pit_records_are_those_of_a_healthy_gearbox(tmp_path: Path) -> None:
+    names = [{"name": f"inspection_{number:03d}"} for number in range(3)]
+    young = {"interval_h": 1e-3, "most": 3}
+    siggen.generate(load_config(lives(young)), tmp_path / "young", workers=0)
+    siggen.generate(load_config({**lives(), "life": None, "states": names}), tmp_path / "healthy", workers=0)
+    first, second = (rows(tmp_path / name) for name in ("young", "healthy"))
+    columns = set(first[0]) & set(second[0])
+    assert [{c: row[c] for c in columns} for row in first] == [{c: row[c] for c in columns} for row in second]
+
+
+def test_taken_out_gearboxes_have_no_remaining_life_but_a_least_one() -> None:
+    from siggen.record.life_rows import life_rows
+
+    config = load_config({**lives({"removed_share": 1.0}), "specimens": 30})
+    units = [life_rows(config, number) for number in range(30)]
+    taken = [one for one in units if one["units"][0]["event"] == "suspended"]
+    assert 5 < len(taken) < 29
+    for one in taken:
+        assert all(row["rul_h"] is None and row["rul_at_least_h"] >= 0.0 for row in one["inspections"])
+        assert one["units"][0]["observed_h"] < one["units"][0]["failure_h"]
+
+
+def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives()))
+    count = len(gearbox_life(load_config(lives()), 0).ages_h)
+    assert count < 9
+    result = CliRunner().invoke(
+        app, ["simulate", str(tmp_path / "lives.yaml"), "--record", "8", "--out", str(tmp_path / "r.csv")]
+    )
+    assert result.exit_code != 0
+    assert f"allowed: 0 to {count - 1}" in str(result.exception)
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "said"),
+    [
+        ({"states": [{"name": "healthy"}]}, "states", "states beside a section life"),
+        ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -60.0}]}, "operating_points.0.torque_nm", "-60"),
+        ({"life": {**LIFE, "history": [[5.0, -1.0]]}}, "life.history.0.1", "-1"),
+        ({"life": {**LIFE, "history": [[5.0, 0.0]]}}, "life.history", "no block with a torque above 0"),
+        ({"life": None}, "states", "a list of 0"),
+    ],
+)
+def test_lives_that_cannot_be_are_refused(changes: dict[str, Any], path: str, said: str) -> None:
+    with pytest.raises(ConfigError) as error:
+        load_config({**lives(), **changes})
+    assert [problem.path for problem in error.value.problems] == [path]
+    assert said in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("life", "said"),
+    [
+        ({"interval_h": 0.01}, "no gearbox of 2 has a pit before its last inspection"),
+        ({"interval_h": 0.3}, "no gearbox of 2 fails before its last inspection"),
+    ],
+)
+def test_plan_tells_a_schedule_that_sees_no_end(tmp_path: Path, life: dict[str, Any], said: str) -> None:
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(life)))
+    assert said in " ".join(run("plan", str(tmp_path / "lives.yaml")).split())
+
+
+def test_plan_counts_the_records_that_there_will_be(fleet: Path) -> None:
+    assert plan(load_config(lives())).count == len(siggen.open(fleet).labels())

@@ -1,0 +1,78 @@
+"""Teeth of the meshes of a planetary set: one sun, one ring, and planets that turn about one axis each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.arrays import FloatArray
+from siggen.checks.loading import load_config
+from siggen.dynamics.structure.planetary import planetary_structure
+from siggen.gears.errors.gear_errors import eccentric_m
+from siggen.gears.geometry.internal_pair import ring_begins_pitches
+from siggen.planning.specimen import draw_specimen
+from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.planetary_meshes import made_meshes
+from siggen.specimen.planetary_numbers import planetary_numbers, planetary_teeth, planets_in_ring
+from tests.config.planets import planets
+
+COUNT = 3
+
+
+@pytest.fixture(scope="module")
+def meshes() -> list[MadeGears]:
+    config = load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"}))
+    return made_meshes(MadeGears(config, draw_specimen(config, 0)), config)
+
+
+def test_sun_and_ring_are_the_same_in_all_of_their_meshes_and_every_flank_of_planets_is_its_own(
+    meshes: list[MadeGears],
+) -> None:
+    found = [one.errors(0) for one in meshes]
+    assert all(one is not None for one in found)
+    suns = [one.pinion.errors.pitch_m for one in found[:COUNT] if one is not None]
+    rings = [one.gear.errors.pitch_m for one in found[COUNT:] if one is not None]
+    assert all(np.array_equal(one, suns[0]) for one in suns)
+    assert all(np.array_equal(one, rings[0]) for one in rings)
+    flanks = [one.gear for one in found[:COUNT] if one is not None] + [
+        one.pinion for one in found[COUNT:] if one is not None
+    ]
+    assert len({one.errors.pitch_m.tobytes() for one in flanks}) == 2 * COUNT
+    waves = [one.waves(0) for one in meshes]
+    assert len({one.pinion.common_m.tobytes() for one in waves[:COUNT] if one is not None}) == 1
+    assert len({one.gear.common_m.tobytes() for one in waves[COUNT:] if one is not None}) == 1
+
+
+def missing_m(made: MadeGears, which: str, pitches: FloatArray) -> FloatArray:
+    """Return what the eccentricity takes from the pair that is in contact (k,) [m], `pitches` after pair 0 entered."""
+    errors = made.errors(0)
+    assert errors is not None
+    gear = getattr(errors, which).errors
+    number = np.floor(pitches).astype(int)
+    position = made.pair.contact_start_m + (pitches - number) * made.pair.base_pitch_m
+    every = eccentric_m(made.pair, which, gear, position)
+    return np.asarray(every[number % made.pair.member(which).teeth, np.arange(pitches.size)])
+
+
+@pytest.mark.parametrize("planet", range(COUNT))
+def test_an_eccentric_planet_stands_back_from_sun_and_ring_as_the_structure_says_of_its_shift(
+    meshes: list[MadeGears], planet: int
+) -> None:
+    """The shift is found from the sun's mesh by the vectors of the motion, turned, and told to the ring's."""
+    specimen = meshes[0].specimen
+    teeth, (pair, inner) = planetary_teeth(specimen), planets_in_ring(specimen)
+    structure = planetary_structure(planetary_numbers(specimen))
+    place = [structure.coordinates.index(f"{axis}_p{planet + 1}") for axis in ("x", "y")]
+    to_sun, to_ring = (structure.meshes[i].vector[place] for i in (planet, COUNT + planet))
+    turned = 30.0 + np.linspace(0.0, 26.0, 53)  # pitches of the first mesh
+    at_sun, lag = turned + float(teeth.sun_begins[planet]), ring_begins_pitches(pair, inner)
+    at_ring = turned + lag + float(teeth.ring_begins[planet])
+    angle = -2.0 * np.pi * turned / teeth.planet  # planets turn against the sun
+    turns = np.stack([np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle)]).reshape(2, 2, -1)
+    shift = np.linalg.lstsq(
+        -np.einsum("a,bak->kb", to_sun, turns), missing_m(meshes[planet], "gear", at_sun), rcond=None
+    )
+    expected = -np.einsum("a,bak,b->k", to_ring, turns, shift[0])
+    found = missing_m(meshes[COUNT + planet], "pinion", at_ring)
+    assert np.ptp(expected) > 1e-6
+    assert found == pytest.approx(expected, abs=1e-9 * np.ptp(expected) + 1e-15)

@@ -1,0 +1,114 @@
+"""A machine of three shafts by command, its gears, shafts and meshes named by its user: nobody says pinion.
+
+The set is the one of the short form, renamed: signals are equal to the bit.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+import siggen
+from siggen.columns.record import Record
+from siggen.config import yaml_text
+from siggen.record.simulation import simulate
+from tests.config.mill import mill
+from tests.config.staged import SLOW, SPALL, staged
+
+COMMON: dict[str, Any] = {
+    "specimens": 3, "fs_hz": 12_800.0, "duration_s": 0.3, "manufacture": {"accuracy_class": 6, "flank_waves": "on"},
+}  # fmt: skip
+CODE = "from {}.cli.app import main; main()"
+
+
+def states(gear: str) -> list[dict[str, Any]]:
+    return [{"name": "healthy"}, {"name": "severe", "damage": {**SPALL, "gear": gear, "teeth": 1}}]
+
+
+def run(app: str, *arguments: object) -> str:
+    """Return what a command printed."""
+    words = [str(one) for one in arguments]
+    done = subprocess.run([sys.executable, "-c", CODE.format(app), *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def words_of(file: Path) -> str:
+    """Return all that a file says; of tables names, metadata and texts."""
+    if file.suffix != ".parquet":
+        return file.read_bytes().decode("utf-8", "replace")
+    table = pq.read_table(file)
+    texts = [text for one in table.columns if pa.types.is_string(one.type) for text in one.to_pylist()]
+    return "\n".join([str(table.schema.to_string(truncate_metadata=False)), *map(str, texts)])
+
+
+def said(folder: Path) -> dict[str, list[str]]:
+    """Return file -> lines that call a gear as the short form does."""
+    files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".png"]
+    assert files
+    found = {
+        str(file.relative_to(folder)): [line[:200] for line in words_of(file).splitlines() if "pinion" in line.lower()]
+        for file in files
+    }
+    return {file: lines for file, lines in found.items() if lines}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("mill")
+    sensors = [{"name": "end", "place": "output_bearing"}, {"kind": "encoder", "name": "out", "place": "karl"}]
+    (folder / "mill.yaml").write_text(yaml_text(mill(**COMMON, sensors=sensors, states=states("eva"))))
+    printed = run("siggen", "generate", folder / "mill.yaml", "--out", folder / "set", "--workers", 1)
+    assert "pinion" not in printed
+    return folder
+
+
+def test_plan_set_card_and_records_say_the_users_names_alone(made: Path) -> None:
+    plan = run("siggen", "plan", made / "mill.yaml", "--trial", 0)
+    assert "mesh of fast" in plan
+    assert "mesh of slow" in plan
+    shown = run("siggen", "show", made / "set", "--record", 1, "--png", made / "record.png")
+    shown += run("siggen", "show", made / "set", "--record", 1)
+    assert "pinion" not in plan + shown
+    assert said(made / "set") == {}
+    card = siggen.open(made / "set").card()
+    assert "`slow`, in which eva with 17 teeth drives karl with 52" in " ".join(card.split())
+
+
+def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: Path) -> None:
+    sensors = [{"name": "end", "place": "slow_bearing"}, {"kind": "encoder", "name": "out", "place": "slow.gear"}]
+    stage = {**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}
+    short = siggen.load_config(staged(**COMMON, stages=[stage], sensors=sensors, states=states("slow.pinion")))
+    (other,) = simulate(short, [1])
+    assert isinstance(other, Record)
+    record = siggen.open(made / "set").record(1)
+    for name, signal in other.channels.items():
+        column = {"end_vertical": "accel_end_vertical_m_s2", "out_rotation": "speed_out_rotation_rad_s"}[name]
+        np.testing.assert_array_equal(record[column], signal)
+    names = {
+        "teeth_pinion": "teeth_ida", "teeth_slow_gear": "teeth_karl", "faulty_teeth_slow_pinion": "faulty_teeth_eva",
+        "pinion_shaft_hz": "input_shaft_hz", "slow_shaft_hz": "output_shaft_hz", "mesh_hz": "mesh_fast_hz",
+        "mesh_slow_hz": "mesh_slow_hz", "runout_gear_um": "runout_otto_um", "ghost_orders_pinion": "ghost_orders_ida",
+    }  # fmt: skip
+    assert {short: record[own] for short, own in names.items()} == {short: other.labels[short] for short in names}
+    assert record["faulty_gear"] == "eva"
+    assert siggen.open(made / "set").damage()["gear"].to_pylist() == ["eva"] * 3
+
+
+@pytest.mark.slow
+def test_indicators_and_report_say_the_users_names_alone(made: Path) -> None:
+    run("diagnostics", "indicators", made / "set", "--out", made / "indicators")
+    assert said(made / "indicators") == {}
+    names = pq.read_schema(made / "indicators/indicators.parquet").names
+    assert "sideband_ratio_ida_h1_k3__end_vertical" in names
+    assert "sideband_ratio_eva_h1_k3_slow__end_vertical" in names
+    run("diagnostics", "report", made / "set", "--out", made / "report", "--no-cnn")
+    found = {file: lines for file, lines in said(made / "report").items() if not file.startswith("models")}
+    assert found == {}, "saved models count by the program's own words"
