@@ -264,13 +264,22 @@ class PairLaw:
         moment = spring.moment + damping * (spring.cross * state.rate + spring.turning * state.tilt_rate)
         sums.normal += normal
         sums.across += moment
-        if self.model["rubs"]:
-            _, coefficient = self.lubricated(pair, spring, abs(normal))
-            sliding = state.sliding_0 + pair.position * state.sliding_1
-            friction = coefficient * abs(normal) * math.tanh(sliding / self.model["friction.slip_speed_m_s"])
+        if not self.model["rubs"]:
+            return
+        for share, place in self.parts(pair):
+            _, coefficient = self.lubricated(place, spring, abs(normal))
+            sliding = state.sliding_0 + place * state.sliding_1
+            friction = share * coefficient * abs(normal) * math.tanh(sliding / self.model["friction.slip_speed_m_s"])
             sums.friction += friction
-            sums.friction_moment += pair.position * friction
+            sums.friction_moment += place * friction
             sums.friction_across += friction * moment / normal
+
+    def parts(self, pair):
+        """Return shares of the load and their places: of helical pairs before and behind the pitch point."""
+        if "spread" not in self.model:
+            return [(1.0, pair.position)]
+        before, first, second = (between(row, pair.cell, pair.weight) for row in self.model["spread"])
+        return [(before, pair.position + first), (1.0 - before, pair.position + second)]
 
     def root(self, pair, spring):
         """Return the root of the damper, in parts where the asperities have a say."""
@@ -279,15 +288,15 @@ class PairLaw:
             return law["damping_root_kg"]
         if pair.side < 0:
             return law["damping_structure_root_kg"] + law["damping_film_root_kg"]
-        share, _ = self.lubricated(pair, spring, spring.force)
+        share, _ = self.lubricated(pair.position, spring, spring.force)
         film, asperities = law["damping_film_root_kg"], law["damping_asperities_root_kg"]
         return law["damping_structure_root_kg"] + film * (1.0 - share) + asperities * share
 
-    def lubricated(self, pair, spring, force):
+    def lubricated(self, position, spring, force):
         """Return the share of the load on asperities and the friction coefficient, at force over carrying share."""
         law, line = self.model, self.model["friction.table.line_m"]
         fluids = law["friction.table.fluid"]
-        along, a = place_in(len(fluids), (pair.position - law["friction.table.start_m"]) * law["friction.table.per_m"])
+        along, a = place_in(len(fluids), (position - law["friction.table.start_m"]) * law["friction.table.per_m"])
         held = law["friction.table.start_m"] + (along + a) / law["friction.table.per_m"]
         load = force / max(spring.carrying, 1e-3) * line / (law["friction.table.floor_n_per_m"] * held * (line - held))
         up, b = place_in(len(fluids[0]), math.log(max(load, 1.0)) * law["friction.table.per_log"])

@@ -71,6 +71,18 @@ def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
     assert max(coarse) > 2.0 * max(fine)
 
 
+def test_scipy_gives_the_motion_of_helical_teeth_whose_slices_rub_both_ways() -> None:
+    changed = ("gears.helix_deg=15", "dynamics.mesh.damping=constant", "dynamics.model=8dof", "housing={}")
+    geometry = "dynamics.mesh.damage=geometry"
+    rubbed = (
+        geometry,
+        "dynamics.friction={model: constant, coefficient: 0.08}",
+        *PINION,
+        "dynamics.steps_per_sample=16",
+    )
+    assert max(differences("tests/configs/casing.yaml", *changed, *rubbed, samples=150, rtol=1e-7)) < 2e-3
+
+
 MATRICES = ("mass", "damping", "stiffness")
 VECTORS = ("mesh.0.vector", "mesh.0.sliding_vectors")
 Change = Callable[[np.ndarray], np.ndarray]
