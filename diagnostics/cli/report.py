@@ -59,7 +59,7 @@ def report(
 
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
-    from diagnostics.records.record_classes import check_kind
+    from diagnostics.records.record_classes import check_kind, set_classes
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 
@@ -68,6 +68,7 @@ def report(
     own = load_indicators(indicator)
     classes = check_kind(training.classes, "--classes")
     dataset, second = open_sets(directory, training.test, training.channel or (), classes)
+    set_classes(dataset, classes)  # what has none is refused before anything is computed
     options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
     if models_only:
         typer.echo(str(_models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)))
