@@ -1,7 +1,5 @@
 """Everything that the page's program needs of a set, as one value that JSON can hold.
 
-Damaged flanks of a record to scale: face width, ends of the flank, and the outline of every pit or spall.
-
 Transmission error, mesh force and mesh stiffness of records, where a set stores what no sensor sees.
 """
 
@@ -9,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import acos, cos, pi, radians, tan
 from types import MappingProxyType
 from typing import Any
 
@@ -20,6 +17,7 @@ import pyarrow.compute as pc
 from diagnostics.base.progress import Stage
 from diagnostics.explore.chosen_records import overlaid_records
 from diagnostics.explore.detail import Detail, page_detail
+from diagnostics.explore.flanks import flank_size, outlines
 from diagnostics.explore.packed import packed_floats
 from diagnostics.explore.record_views import PageAxes, highest_order, order_axis, packed_wave, record_views
 from diagnostics.indicators.registry import indicator_definitions, indicator_titles
@@ -27,6 +25,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.channel_quantities import RECORDED, ShownQuantity, channel_quantities
 from diagnostics.records.gear_train import GEARS, PAIR, GearNames
+from diagnostics.records.named_set import words_of
 from diagnostics.records.planetary_members import as_pair, teeth_labels
 from diagnostics.records.recording import Recording, gear_names, recordings
 from siggen.dataset.reading import Dataset
@@ -37,9 +36,6 @@ WAVES_SHOWN = {
     "mesh_stiffness_n_per_m": ("Mesh stiffness", "N/µm", 1e-6),
 }
 """Title, shown unit and factor of the quantities that the page draws, of those that a set may store."""
-
-ELLIPSE_CORNERS = 48
-DIGITS = 3
 
 SHOWN = (
     *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
@@ -86,60 +82,6 @@ def internal_waves(
     return found
 
 
-def flank_size(config: Mapping[str, Any], gear: str, teeth: int) -> dict[str, float] | None:
-    """Return face width and heights of pitch circle and tip above the flank's point on the base circle [mm].
-
-    Heights lie along the tooth's axis, as in the table of damage: r cos(g_r) - R_b cos(g_b) with the half tooth angle
-    g_r = pi/2z + 2 x tan(alpha)/z + inv(alpha) - inv(alpha_r). Source: derived from the involute.
-
-    Returns
-    -------
-    dict or None
-        None where the configuration does not give the gears as plain numbers.
-    """
-    try:
-        gears = config["gears"]
-        module, alpha = float(gears["module_mm"]), radians(float(gears["pressure_angle_deg"]))
-        shift = float(gears[gear].get("profile_shift", 0.0))
-        tip = module * (teeth / 2 + float(gears.get("addendum_coefficient", 1.0)) + shift)
-        face = float(gears["face_width_mm"])
-    except (KeyError, TypeError, ValueError, AttributeError):
-        return None
-    pitch = module * teeth / 2
-    base = pitch * cos(alpha)
-    half = pi / (2 * teeth) + 2 * shift * tan(alpha) / teeth + tan(alpha) - alpha
-
-    def height_mm(radius: float) -> float:
-        slope = acos(base / radius)
-        return round(radius * cos(half - (tan(slope) - slope)) - base * cos(half), DIGITS)
-
-    return {"face_mm": face, "pitch_mm": height_mm(pitch), "tip_mm": height_mm(tip)}
-
-
-def outlines(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the damage of a record: gear, tooth, kind, depth, and corners (face, height) of the outline [mm]."""
-    return [
-        {
-            "gear": row["gear"],
-            "tooth": row["tooth"],
-            "kind": row["kind"],
-            "depth_mm": round(float(row["depth_mm"]), DIGITS),
-            "corners": _corners(row),
-        }
-        for row in rows
-    ]
-
-
-def _corners(row: Mapping[str, Any]) -> list[list[float]]:
-    face, height = np.asarray(row["polygon_face_mm"], float), np.asarray(row["polygon_height_mm"], float)
-    if face.size == 0:
-        angle = 2.0 * np.pi * np.arange(ELLIPSE_CORNERS) / ELLIPSE_CORNERS
-        face = row["face_mm"] + row["semi_axis_face_mm"] * np.cos(angle)
-        height = row["height_mm"] + row["semi_axis_profile_mm"] * np.sin(angle)
-    corners: list[list[float]] = np.round(np.stack([face, height], axis=1), DIGITS).tolist()
-    return corners
-
-
 @dataclass(frozen=True, slots=True)
 class PageSource:
     """What a page is made of, whether of a set or of recordings.
@@ -172,6 +114,8 @@ class PageSource:
         What channels hold; those of recordings are not named.
     named : GearNames
         Shafts whose averages are shown.
+    called : mapping of str to str
+        The user's names of gears, by the program's.
     """
 
     labels: dict[str, np.ndarray]
@@ -189,6 +133,7 @@ class PageSource:
     beside: list[int | None] | None = None
     held: Mapping[str, ShownQuantity] = field(default_factory=dict)
     named: GearNames = PAIR
+    called: Mapping[str, str] = field(default_factory=dict)
 
     def holds(self, channel: str) -> ShownQuantity:
         """Return what a channel holds."""
@@ -218,6 +163,7 @@ def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSo
         held=channel_quantities(dataset),
         named=table.named,
         damage=_damage(dataset, labels["record_id"]),
+        called=dict(words_of(dataset).names.gears),
         flanks=[_flanks(dataset, labels, k) for k in range(rows.size)],
         quantities=shown_internals(dataset),
         internals=lambda detail, fine: internal_waves(dataset, labels["record_id"], detail, fine),
@@ -257,6 +203,7 @@ def page_payload(source: PageSource, stage: Stage, *, full: bool) -> dict[str, A
         "internals": source.internals(axes.detail, fine),
         "measured": source.measured,
         "shafts": list(source.named.shafts),
+        "called": dict(source.called),
         "beside": source.beside,
     }
 
@@ -267,7 +214,8 @@ def chosen_labels(dataset: Dataset, rows: np.ndarray) -> dict[str, np.ndarray]:
     columns = dict(zip(found.column_names, found.columns, strict=True))
     if gear_names(dataset).is_planetary:
         columns = as_pair(columns)
-    present = [name for name in (*SHOWN, *teeth_labels()) if name in columns]
+    further = (f"teeth_{mesh}_{gear}" for mesh in gear_names(dataset).meshes for gear in GEARS)
+    present = [name for name in (*SHOWN, *teeth_labels(), *further) if name in columns]
     return {name: np.asarray(columns[name].to_pylist())[rows] for name in present}
 
 
@@ -294,17 +242,22 @@ def _damage(dataset: Dataset, ids: np.ndarray) -> dict[str, list[dict[str, Any]]
     """Return the outlines of damage by record, empty for a set without a table of damage."""
     if not hasattr(dataset, "damage"):
         return {}
-    table = dataset.damage()
+    table, short = dataset.damage(), {own: gear for gear, own in words_of(dataset).names.gears}
     kept = table.filter(pc.is_in(table.column("record_id"), value_set=pa.array(ids.tolist(), pa.int64()))).to_pylist()
     by_record: dict[str, list[dict[str, Any]]] = {}
     for row in kept:
+        row["gear"] = short.get(row["gear"], row["gear"])
         by_record.setdefault(str(row["record_id"]), []).append(row)
     return {record: outlines(found) for record, found in by_record.items()}
 
 
 def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[str, Any]:
-    named = OF_PLANETS.items() if gear_names(dataset).is_planetary else zip(GEARS, GEARS, strict=True)
-    return {gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear}"][row])) for gear, section in named}
+    names, known = words_of(dataset).names, gear_names(dataset)
+    every = [*GEARS, *(f"{mesh}.{gear}" for mesh in known.meshes for gear in GEARS)]
+    return {
+        gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear.replace('.', '_')}"][row]), names)
+        for gear, section in (OF_PLANETS.items() if known.is_planetary else zip(every, every, strict=True))
+    }
 
 
 def _indicators(table: RecordTable, rows: np.ndarray, held: Mapping[str, ShownQuantity]) -> list[dict[str, Any]]:

@@ -126,3 +126,12 @@ def test_a_report_says_the_users_names_alone(made: Path) -> None:
     run("diagnostics", "report", made / "set", "--out", made / "report", "--no-cnn")
     found = {file: lines for file, lines in said(made / "report").items() if not file.startswith("models")}
     assert found == {}, "saved models count by the program's own words"
+
+
+@pytest.mark.slow
+def test_the_explorer_draws_flanks_of_every_mesh_and_knows_the_users_names(made: Path) -> None:
+    run("diagnostics", "explore", made / "set", "--out", made / "page.html")
+    page = (made / "page.html").read_text()
+    assert '"called":{"pinion":"ida","gear":"otto","slow.pinion":"eva","slow.gear":"karl"}' in page
+    assert '"gear":"slow.pinion","tooth"' in page
+    assert '"slow.pinion":{"face_mm":30.0' in page

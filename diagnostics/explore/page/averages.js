@@ -25,7 +25,7 @@ Explore.showAverages = (section, row, channel, healthy) => {
   const label = Explore.element("label", "Shaft ");
   const select = Explore.element("select", "", { id: "shaft" });
   if (!Explore.data.shafts.includes(Explore.shaft)) Explore.shaft = Explore.data.shafts[0];
-  for (const name of Explore.data.shafts) select.append(Explore.element("option", name, { value: name }));
+  for (const name of Explore.data.shafts) select.append(Explore.element("option", Explore.called(name), { value: name }));
   select.value = Explore.shaft;
   select.addEventListener("change", () => {
     Explore.shaft = select.value;

@@ -13,7 +13,7 @@ Explore.flank = (gear, tooth, damages, size) => {
   const width = size.face_mm + 2 * margin;
   const height = size.tip_mm + 2 * margin;
   const depth = Math.max(...damages.map((damage) => damage.depth_mm));
-  const text = `${gear} tooth ${tooth}: ${damages.length} ${damages.length === 1 ? damages[0].kind : "damages"}, up to ${Explore.number(depth)} mm deep`;
+  const text = `${Explore.called(gear)} tooth ${tooth}: ${damages.length} ${damages.length === 1 ? damages[0].kind : "damages"}, up to ${Explore.number(depth)} mm deep`;
   const figure = Explore.element("figure");
   const drawing = Explore.svg("svg", { viewBox: `${-margin} ${-margin} ${width} ${height}`, width: Math.round(width * 16), height: Math.round(height * 16), role: "img", "aria-label": text });
   const up = (value) => size.tip_mm - value;

@@ -1,7 +1,7 @@
 // What the orders of spectra count: of a planetary set turns of the sun against its carrier.
 Explore.planetary = () => Explore.data.shafts.length > 2;
-Explore.orderWords = () => (Explore.planetary() ? `order of the ${Explore.data.shafts[0]} against the carrier` : "pinion order");
-Explore.turnWords = () => (Explore.planetary() ? `turns of the ${Explore.data.shafts[0]} against the carrier` : "pinion revolutions");
+Explore.orderWords = () => (Explore.planetary() ? `order of the ${Explore.data.shafts[0]} against the carrier` : `${Explore.called("pinion")} order`);
+Explore.turnWords = () => (Explore.planetary() ? `turns of the ${Explore.data.shafts[0]} against the carrier` : `${Explore.called("pinion")} revolutions`);
 
 // Order spectrum with its difference from the healthy record, and the envelope spectrum.
 Explore.orders = (count, step) => Array.from({ length: count }, (_, k) => k * step);
@@ -16,7 +16,7 @@ Explore.spectrumMarks = (row) => (first, last) => {
   for (let h = Math.max(1, Math.floor(first / pinion)); h * pinion <= last + pinion; h++)
     for (let k = 1; k <= 6; k++)
       for (const side of [-1, 1]) {
-        found.push({ at: h * pinion + side * k, faint: true, text: k <= 3 ? `${side > 0 ? "+" : "−"}${k} pinion` : "" });
+        found.push({ at: h * pinion + side * k, faint: true, text: k <= 3 ? `${side > 0 ? "+" : "−"}${k} ${Explore.called("pinion")}` : "" });
         if (last - first < pinion / 3) found.push({ at: h * pinion + (side * k * pinion) / gear, faint: true, colour: "accent", text: "" });
       }
   return found;
@@ -39,7 +39,7 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
   Explore.chart(body, {
     ...shared, title: "Order spectrum", y: `dB over 1 ${Explore.held(channel).unit}`, series, data: base ? [x, own, base] : [x, own],
     summary: `Strongest line at order ${Explore.number(x[top])} with ${Explore.number(own[top])} dB.`,
-    caption: `Hann amplitude over whole ${Explore.turnWords()}; a point is the largest line near it.${Explore.planetary() ? " Planets that pass move lines off the mesh frequency." : " Zoom to a mesh line for its sidebands: pinion, and nearer still the gear."}`,
+    caption: `Hann amplitude over whole ${Explore.turnWords()}; a point is the largest line near it.${Explore.planetary() ? " Planets that pass move lines off the mesh frequency." : ` Zoom to a mesh line for its sidebands: ${Explore.called("pinion")}, and nearer still ${Explore.data.called.gear || "the gear"}.`}`,
   });
   if (!base) return;
   Explore.chart(body, {
@@ -51,7 +51,7 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
 Explore.envelopeMarks = (row) => (first, last) => {
   const { teeth_pinion: pinion, teeth_gear: gear } = Explore.data.records[row];
   const found = [];
-  const [fast, slow] = Explore.planetary() ? [Explore.data.shafts[0], "carrier"] : ["pinion", "gear"];
+  const [fast, slow] = Explore.planetary() ? [Explore.data.shafts[0], "carrier"] : ["pinion", "gear"].map(Explore.called);
   for (let k = 1; k <= 4; k++) found.push({ at: k, text: k < 3 ? `${k}× ${fast}` : "" }, { at: (k * pinion) / gear, faint: true, colour: "accent", text: last - first < 4 && k < 3 ? `${k}× ${slow}` : "" });
   found.push({ at: pinion, text: "mesh" });
   return found;

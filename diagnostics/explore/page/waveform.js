@@ -25,6 +25,7 @@ Explore.entries = (row, first, last) => {
   if (Explore.planetary()) return found; // which tooth meets which planet follows from the carrier, which has no pulse
   const pairs = record.start_angle_rad === undefined ? 0 : Math.ceil(record.start_angle_rad / (2 * Math.PI)) * record.teeth_pinion;
   for (const [gear, tooth] of Explore.damagedTeeth(row)) {
+    if (gear.includes(".")) continue; // of a further mesh, whose shafts turn otherwise
     if (gear === "gear" && record.start_angle_rad === undefined) continue;
     const teeth = gear === "pinion" ? record.teeth_pinion : record.teeth_gear;
     const start = gear === "pinion" ? tooth : (((tooth - pairs) % teeth) + teeth) % teeth;
@@ -32,11 +33,14 @@ Explore.entries = (row, first, last) => {
     for (let n = Math.floor(first / period) - 1; ; n++) {
       const at = start / record.teeth_pinion + n * period;
       if (at > last) break;
-      if (at >= first - 1) found.push({ at, to: at + 1 / record.teeth_pinion, colour: "damage", text: `${gear} tooth ${tooth}` });
+      if (at >= first - 1) found.push({ at, to: at + 1 / record.teeth_pinion, colour: "damage", text: `${Explore.called(gear)} tooth ${tooth}` });
     }
   }
   return found;
 };
+
+// What the user calls a gear.
+Explore.called = (gear) => Explore.data.called[gear] || gear;
 
 Explore.damagedTeeth = (row) => {
   const rows = Explore.data.damage[String(Explore.data.records[row].record_id)] || [];

@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 
 from diagnostics.explore.detail import Detail
-from diagnostics.explore.payload import flank_size, outlines
+from diagnostics.explore.flanks import flank_size, outlines
 from diagnostics.explore.record_views import OrderAxis, PageAxes, record_views
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectrum import envelope_spectrum
+from siggen.config import parse
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.geometry.spur_gear import SpurGear
+from tests.config.mill import mill
+from tests.config.staged import staged
 from tests.diagnostics.explore.unpacked import steps
 
 TEETH = (10, 14)
@@ -92,3 +95,14 @@ def test_an_elliptic_pit_keeps_its_axes() -> None:
     corners = np.array(outlines([row])[0]["corners"])
     assert np.ptp(corners, axis=0).tolist() == [3.0, 1.0]
     assert corners.mean(axis=0).tolist() == pytest.approx([8.0, 2.0], abs=1e-3)
+
+
+def test_flanks_of_a_machine_are_those_of_the_short_form() -> None:
+    own, short = mill(), staged()
+    parsed = parse(own).config
+    assert parsed is not None
+    for gear, teeth in (("pinion", 18), ("gear", 47), ("slow.pinion", 17), ("slow.gear", 52)):
+        found = flank_size(own, gear, teeth, parsed.names)
+        assert found is not None
+        assert found == flank_size(short, gear, teeth)
+        assert found["face_mm"] == (30.0 if "slow" in gear else 20.0)
