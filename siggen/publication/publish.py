@@ -184,12 +184,15 @@ def _texts(
     schemas = _schemas(dataset)
     info = dataset_info(config, schemas, _counts(dataset, tuple(schemas)))
     card = published_card(dataset.card(), config, facts, info, audit_section(config.identity, audit))
-    return {
+    found = {
         CARD: card.encode(),
         CROISSANT: _json(croissant(facts, description, tags(config), schemas, limits)),
         DATACITE: _json(datacite_fields(facts, description, tags(config), size)),
-        ISA_PHM: _json(isa_phm(config, facts, description, dataset.manifest["channels"], _signal_files(dataset))),
     }
+    if config.life is None:  # its studies are states, and an inspection is none
+        studies = isa_phm(config, facts, description, dataset.manifest["channels"], _signal_files(dataset))
+        found[ISA_PHM] = _json(studies)
+    return found
 
 
 def _signal_files(dataset: Dataset) -> list[str]:
