@@ -45,7 +45,8 @@ def report(
 ) -> None:
     """Train classifiers on a set, judge them on gearboxes that they have not seen, and write report.html and models.
 
-    Beside the page: metrics.json, tables and figures.
+    Beside the page: metrics.json, tables and figures. Of gearboxes that run to failure: how well baselines tell their
+    remaining life.
 
     Example: siggen-diagnostics report data/quickstart --studies
 
@@ -55,11 +56,14 @@ def report(
         _refuse({"--explore": pages.explore, "--open": pages.show}, "--models-only writes no page")
     from diagnostics.base.beside import beside
     from diagnostics.base.extras import missing_packages, require_packages
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
 
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
     from diagnostics.records.record_classes import check_kind
+    from diagnostics.report.life_report import write_life_report
+    from diagnostics.report.life_rows import is_lives
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 
@@ -69,10 +73,15 @@ def report(
     classes = check_kind(training.classes, "--classes")
     dataset, second = open_sets(directory, training.test, training.channel or (), classes)
     options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
-    if models_only:
-        typer.echo(str(_models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)))
-        return
-    path = _page((dataset, second), out or beside(dataset.path, "_report"), seed, options, own, explore=pages.explore)
+    if is_lives(dataset):
+        of_states = {"--models-only": models_only, "--test": second, "--studies": training.studies}
+        _refuse({**of_states, "--indicator": own, "--explore": pages.explore}, "for sets of states; this one has lives")
+        path = write_life_report(dataset, out or beside(dataset.path, "_report"), seed, terminal_stage)
+    elif models_only:
+        path = _models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)
+    else:
+        folder = out or beside(dataset.path, "_report")
+        path = _page((dataset, second), folder, seed, options, own, explore=pages.explore)
     typer.echo(str(path))
     if pages.show:
         opened(path)
