@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, Seed, TrainingOptions, opened
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -42,6 +43,7 @@ def report(
     training: TrainingOptions,
     pages: PageOptions,
     seed: Seed = 0,
+    as_json: AsJson = False,
 ) -> None:
     """Train classifiers on a set, judge them on gearboxes that they have not seen, and write report.html and models.
 
@@ -84,7 +86,10 @@ def report(
             path = _models((dataset, second), folder, seed, options, own)
         else:
             path = _page((dataset, second), folder, seed, options, own, explore=pages.explore)
-    typer.echo(str(path))
+    if as_json:
+        echo_json(json.loads(((path if models_only else path.parent) / "metrics.json").read_text(encoding="utf-8")))
+    else:
+        typer.echo(str(path))
     if pages.show:
         opened(path)
 
