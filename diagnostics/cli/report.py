@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, Seed, TrainingOptions, opened
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -42,10 +43,12 @@ def report(
     training: TrainingOptions,
     pages: PageOptions,
     seed: Seed = 0,
+    as_json: AsJson = False,
 ) -> None:
     """Train classifiers on a set, judge them on gearboxes that they have not seen, and write report.html and models.
 
-    Beside the page: metrics.json, tables and figures.
+    Beside the page: metrics.json, tables and figures. Of gearboxes that run to failure: how well baselines tell their
+    remaining life.
 
     Example: siggen-diagnostics report data/quickstart --studies
 
@@ -55,11 +58,14 @@ def report(
         _refuse({"--explore": pages.explore, "--open": pages.show}, "--models-only writes no page")
     from diagnostics.base.beside import beside
     from diagnostics.base.extras import missing_packages, require_packages
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
 
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
     from diagnostics.records.record_classes import check_kind, set_classes
+    from diagnostics.report.life_report import write_life_report
+    from diagnostics.report.life_rows import is_lives
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 
@@ -68,13 +74,22 @@ def report(
     own = load_indicators(indicator)
     classes = check_kind(training.classes, "--classes")
     dataset, second = open_sets(directory, training.test, training.channel or (), classes)
-    set_classes(dataset, classes)  # what has none is refused before anything is computed
     options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
-    if models_only:
-        typer.echo(str(_models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)))
-        return
-    path = _page((dataset, second), out or beside(dataset.path, "_report"), seed, options, own, explore=pages.explore)
-    typer.echo(str(path))
+    if is_lives(dataset):
+        of_states = {"--models-only": models_only, "--test": second, "--studies": training.studies}
+        _refuse({**of_states, "--indicator": own, "--explore": pages.explore}, "for sets of states; this one has lives")
+        path = write_life_report(dataset, out or beside(dataset.path, "_report"), seed, terminal_stage)
+    else:
+        set_classes(dataset, classes)  # what has none is refused before anything is computed
+        folder = out or beside(dataset.path, "_models" if models_only else "_report")
+        if models_only:
+            path = _models((dataset, second), folder, seed, options, own)
+        else:
+            path = _page((dataset, second), folder, seed, options, own, explore=pages.explore)
+    if as_json:
+        echo_json(json.loads(((path if models_only else path.parent) / "metrics.json").read_text(encoding="utf-8")))
+    else:
+        typer.echo(str(path))
     if pages.show:
         opened(path)
 

@@ -1,0 +1,132 @@
+"""The report of a set of gearboxes that run to failure: how well baselines tell their remaining life."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.base.extras import require_packages
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.page import html
+from diagnostics.page.html import Cell
+from diagnostics.page.provenance import origin_sentence, provenance
+from diagnostics.page.wording import counted
+from diagnostics.records.named_set import words_of
+from diagnostics.report.life_rows import INDICATORS, inspections
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.life_scores import BINS, QUANTILES, LifeScores, life_scores
+from diagnostics.training.life_baselines import FOLDS, Inspections, baseline_predictions
+from siggen.dataset.reading import Dataset
+
+PAGE = "report.html"
+RESERVATION = "All lives are simulated, by a law whose parameters were published for one test bench."
+
+
+def write_life_report(dataset: Dataset, folder: Path, seed: int, stage: Stage = silent_stage) -> Path:
+    """Write `report.html` and `metrics.json`; return the page's path.
+
+    Raises
+    ------
+    UsageError
+        If scikit-learn is missing.
+    DatasetError
+        If fewer than four gearboxes failed.
+    """
+    require_packages("the report", "sklearn")
+    found = inspections(dataset, stage)
+    with stage("baselines", 1) as advance:
+        predicted = baseline_predictions(found, seed)
+        advance()
+    scores = {
+        name: life_scores(found.rul_h, values, found.specimen, found.median_life_h, seed)
+        for name, values in predicted.items()
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    metrics = {"seed": seed, **_facts(found), "baselines": {name: one.numbers() for name, one in scores.items()}}
+    text = json.dumps(metrics, indent=1, allow_nan=False)
+    (folder / "metrics.json").write_text(f"{text}\n", encoding="utf-8")
+    page = folder / PAGE
+    page.write_text(_page(dataset, found, scores, seed), encoding="utf-8")
+    return page
+
+
+def _facts(found: Inspections) -> dict[str, object]:
+    """Return what the scores were taken of."""
+    known, third = np.isfinite(found.rul_h), found.median_life_h / BINS
+    return {
+        "gearboxes_judged": int(np.unique(found.specimen[known]).size),
+        "gearboxes_suspended": int(np.unique(found.specimen[~known]).size),
+        "inspections_judged": int(known.sum()),
+        "median_life_h": found.median_life_h,
+        "bins_h": [[0.0, third], [third, 2.0 * third], [2.0 * third, None]],
+    }
+
+
+def _page(dataset: Dataset, found: Inspections, scores: Mapping[str, LifeScores], seed: int) -> str:
+    title = f"Remaining life of {dataset.path.name}"
+    parts = [
+        html.heading(title, 1),
+        *html.summary([f"{origin_sentence(dataset)} {RESERVATION}", *_sentences(found)]),
+        _errors(found, scores),
+        _quantiles(scores),
+        html.paragraph(provenance(dataset, seed), "caption"),
+    ]
+    return html.page(words_of(dataset)(title), [words_of(dataset)(part) for part in parts])
+
+
+def _sentences(found: Inspections) -> list[str]:
+    facts = _facts(found)
+    judged, taken_out = facts["gearboxes_judged"], facts["gearboxes_suspended"]
+    return [
+        f"Judged are {counted(int(found.rul_h[np.isfinite(found.rul_h)].size), 'inspection')} of {judged} gearboxes "
+        f"that failed. {taken_out} suspended ones have no known remaining life: no error is taken of them, and the "
+        f"law of age knows them as at least as long. Half of the failed ones ran for {found.median_life_h:.3g} h.",
+        f"Every gearbox is predicted by baselines that were trained on others ({FOLDS} folds). Five indicators: "
+        f"{', '.join(INDICATORS)}, of every channel and gear. The last two rows know what no sensor tells.",
+    ]
+
+
+def _errors(found: Inspections, scores: Mapping[str, LifeScores]) -> str:
+    third = found.median_life_h / BINS
+    bins = ("all", f"below {third:.3g} h", f"{third:.3g} to {2 * third:.3g} h", f"from {2 * third:.3g} h")
+    rows = [[Cell(name), *map(_hours, (*one.rmse_h, *one.mae_h))] for name, one in scores.items()]
+    head = ["What is known", *(f"{error} [h], {each}" for error in ("RMSE", "MAE") for each in bins)]
+    caption = (
+        "Error of the predicted median, of all inspections and by true remaining life, with 95 % limits from resampled "
+        "gearboxes."
+    )
+    return html.table(head, rows, caption=caption)
+
+
+def _quantiles(scores: Mapping[str, LifeScores]) -> str:
+    rows = [
+        [
+            Cell(name),
+            *(Cell(f"{loss:.2f}", value=loss) for loss in one.pinball_h),
+            _hours(one.coverage, ".2f"),
+            Cell(f"{one.nasa:.1f}", value=one.nasa),
+        ]
+        for name, one in scores.items()
+    ]
+    head = [
+        "What is known",
+        *(f"Pinball loss [h], {q:g}" for q in QUANTILES),
+        "Coverage of 80 % intervals [-]",
+        "NASA score, mean [-]",
+    ]
+    caption = (
+        "Predicted quantiles. NASA score: mean over all inspections of exp(-d/13) - 1 for early and exp(d/10) - 1 for "
+        "late predictions; d in units of median life / 200, and at most 60."
+    )
+    return html.table(head, rows, caption=caption)
+
+
+def _hours(found: Interval, form: str = ".1f") -> Cell:
+    """Return a value with its limits in small print."""
+    if not np.isfinite(found.value):
+        return Cell("none", value=found.value)
+    limits = "" if np.isnan(found.low) else f"{found.low:{form}} … {found.high:{form}}"
+    return Cell(f"{found.value:{form}}", limits, found.value)

@@ -1,0 +1,89 @@
+"""Inspections of a set of gearboxes that run to failure, with their indicators and what is true of them, as arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.base.progress import Stage
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.training.life_baselines import WORST_TEETH, Inspections
+from siggen.dataset.reading import Dataset
+from siggen.errors import DatasetError
+
+INDICATORS = ("rms", "kurtosis", "fm4", "m6a", "energy_ratio")
+OUTLOOK_COLUMNS = ("rul_q10_h", "rul_q50_h", "rul_q90_h")
+FEWEST_FAILED = 4
+
+
+def is_lives(dataset: Dataset) -> bool:
+    """Return whether the gearboxes of a set run to failure."""
+    return dataset.config.get("life") is not None
+
+
+def inspections(dataset: Dataset, stage: Stage) -> Inspections:
+    """Return the inspections of a set that have a record, in the order of gearbox and age.
+
+    Raises
+    ------
+    DatasetError
+        If fewer than four gearboxes failed: nothing could be judged on gearboxes that were not trained on.
+    """
+    units = {row["specimen_id"]: row for row in dataset.life("units").to_pylist()}
+    failed = sum(row["event"] == "failed" for row in units.values())
+    if failed < FEWEST_FAILED:
+        raise DatasetError(
+            f"{dataset.path}: received {failed} failed of {len(units)} gearboxes; allowed: at least {FEWEST_FAILED} "
+            "failed. Generate more (specimens), or look at them for longer (life.most, life.interval_h)."
+        )
+    with stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
+        means = _means(record_table(dataset, advance=advance))
+    keys, rows, outlook = _in_order(dataset.life("inspections"), means), {}, {}
+    for row in dataset.life("inspections").to_pylist():
+        rows[row["specimen_id"], row["inspection"]] = row
+    for row in dataset.life("outlook").to_pylist():
+        outlook[row["specimen_id"], row["inspection"]] = [row[name] for name in OUTLOOK_COLUMNS]
+    shares = _worst_shares(dataset.life("teeth"))
+    return Inspections(
+        specimen=np.array([specimen for specimen, _ in keys]),
+        age_h=np.array([rows[key]["age_h"] for key in keys]),
+        rul_h=np.array([rows[key]["rul_h"] for key in keys], dtype=np.float64),
+        observed_h=np.array([units[specimen]["observed_h"] for specimen, _ in keys]),
+        indicators={name: np.stack([means[key][name] for key in keys]) for name in INDICATORS},
+        worst_shares=np.array([shares.get(key, [0.0] * WORST_TEETH) for key in keys]),
+        outlook_h=np.array([outlook[key] for key in keys]),
+    )
+
+
+Key = tuple[int, int]
+
+
+def _in_order(table: pa.Table, means: dict[Key, dict[str, np.ndarray]]) -> list[Key]:
+    """Return gearbox and number of every inspection of which there is a record."""
+    keys = zip(*(table.column(name).to_pylist() for name in ("specimen_id", "inspection")), strict=True)
+    return sorted(key for key in keys if key in means)
+
+
+def _means(table: RecordTable) -> dict[Key, dict[str, np.ndarray]]:
+    """Return the mean of each column over the records of an inspection, by indicator; NaN where undefined."""
+    labels = table.labels()
+    keys = np.stack([labels["specimen_id"], labels["state_id"]], axis=1)
+    unique, index = np.unique(keys, axis=0, return_inverse=True)
+    found: dict[Key, dict[str, np.ndarray]] = {(int(a), int(b)): {} for a, b in unique}
+    counts = np.bincount(index.reshape(-1))
+    for name in INDICATORS:
+        values = table.values([column for column in table.names() if base_name(column) == name])
+        sums = np.zeros((counts.size, values.shape[1]))
+        np.add.at(sums, index.reshape(-1), values)
+        for key, row in zip(found, sums / counts[:, None], strict=True):
+            found[key][name] = row
+    return found
+
+
+def _worst_shares(table: pa.Table) -> dict[Key, list[float]]:
+    """Return the largest shares of a flank of each inspection with a pitted tooth, the largest first."""
+    shares: dict[Key, list[float]] = {}
+    for row in table.to_pylist():
+        shares.setdefault((row["specimen_id"], row["inspection"]), []).append(row["area_share"])
+    return {key: (sorted(own, reverse=True) + [0.0] * WORST_TEETH)[:WORST_TEETH] for key, own in shares.items()}

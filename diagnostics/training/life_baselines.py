@@ -1,0 +1,133 @@
+"""Baselines of remaining life: what age, indicators and true areas tell of gearboxes that were not trained on.
+
+Age: Weibull law of all lives, those of gearboxes that were taken out as at least as long, given that the gearbox still
+runs. Everything else: gradient boosting of quantiles on the rows of failed gearboxes. Source: standard literature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from diagnostics.base.seeding import Purpose, generator
+from diagnostics.base.single_thread import single_thread
+from diagnostics.statistics.life_scores import QUANTILES, unit_folds
+
+FOLDS = 5
+WORST_TEETH = 3
+CONSTANT, AGE, RMS, FIVE, FIVE_AGE = "constant", "age", "RMS", "five indicators", "five indicators, age"
+AREAS, OUTLOOK = "true areas of the three worst teeth, age", "the true state itself"
+
+
+@dataclass(frozen=True, slots=True)
+class Inspections:
+    """Inspections of a set of lives, with what may be known at each.
+
+    Attributes
+    ----------
+    specimen : (n,) int
+    age_h, rul_h, observed_h : (n,) float64
+        Age, remaining life (NaN where a gearbox was taken out), age at which its gearbox was last known to run.
+    indicators : dict of str to (n, columns) float64
+        The means over an inspection's records, by indicator: of every channel and gear.
+    worst_shares : (n, 3) float64
+        True areas of the worst teeth over that of a flank, 0 where none is pitted.
+    outlook_h : (n, 3) float64
+        Quantiles of the remaining life over continuations of the true state.
+    """
+
+    specimen: np.ndarray
+    age_h: np.ndarray
+    rul_h: np.ndarray
+    observed_h: np.ndarray
+    indicators: dict[str, np.ndarray]
+    worst_shares: np.ndarray
+    outlook_h: np.ndarray
+
+    @property
+    def median_life_h(self) -> float:
+        """Median life of the gearboxes that failed."""
+        _, first = np.unique(self.specimen, return_index=True)
+        return float(np.nanmedian(self.age_h[first] + self.rul_h[first]))
+
+
+@single_thread
+def baseline_predictions(found: Inspections, seed: int) -> dict[str, np.ndarray]:
+    """Return what each baseline predicts, (n, 3) in hours at `QUANTILES`, always by the other gearboxes."""
+    folds = unit_folds(found.specimen, generator(seed, Purpose.FOLDS), FOLDS)
+    age = found.age_h[:, None]
+    five = np.concatenate(list(found.indicators.values()), axis=1)
+    seen = {
+        RMS: found.indicators["rms"],
+        FIVE: five,
+        FIVE_AGE: np.concatenate([five, age], axis=1),
+        AREAS: np.concatenate([found.worst_shares, age], axis=1),
+    }
+
+    def by_folds(predict: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
+        predicted = np.empty((found.specimen.size, len(QUANTILES)))
+        for fold in folds:
+            predicted[fold] = predict(~fold, fold)
+        return predicted
+
+    predicted = {
+        CONSTANT: by_folds(partial(_constant, found)),
+        AGE: by_folds(partial(_by_age, found)),
+    }
+    for name, values in seen.items():
+        predicted[name] = by_folds(partial(_trees, values, found.rul_h, seed))
+    return {**predicted, OUTLOOK: found.outlook_h}
+
+
+def _constant(found: Inspections, train: np.ndarray, test: np.ndarray) -> np.ndarray:
+    """Return the quantiles of the training inspections for all others."""
+    return np.tile(np.nanquantile(found.rul_h[train], QUANTILES), (int(test.sum()), 1))
+
+
+def _by_age(found: Inspections, train: np.ndarray, test: np.ndarray) -> np.ndarray:
+    _, first = np.unique(found.specimen[train], return_index=True)
+    life_h = (found.age_h + found.rul_h)[train][first]
+    failed = np.isfinite(life_h)
+    slope, scale_h = weibull_lives(life_h[failed], found.observed_h[train][first][~failed])
+    return remaining_of_age(found.age_h[test], slope, scale_h)
+
+
+def weibull_lives(failed_h: np.ndarray, taken_out_h: np.ndarray) -> tuple[float, float]:
+    """Return slope and scale of the likeliest Weibull law of lives, of which some are only known to be longer."""
+    from scipy.stats import CensoredData, weibull_min
+
+    slope, _, scale_h = weibull_min.fit(CensoredData(failed_h, right=taken_out_h), floc=0.0)
+    return float(slope), float(scale_h)
+
+
+def remaining_of_age(age_h: np.ndarray, slope: float, scale_h: float) -> np.ndarray:
+    """Return the quantiles of the remaining life, (n, 3), of gearboxes that run at an age; from a Weibull law."""
+    used = (age_h[:, None] / scale_h) ** slope
+    return np.asarray(scale_h * (used - np.log1p(-np.asarray(QUANTILES))) ** (1.0 / slope) - age_h[:, None])
+
+
+def _trees(values: np.ndarray, rul_h: np.ndarray, seed: int, train: np.ndarray, test: np.ndarray) -> np.ndarray:
+    rows = train & np.isfinite(rul_h)
+    defined = np.isfinite(values[rows]).any(axis=0)
+    fitted = [_model(q, seed).fit(values[rows][:, defined], rul_h[rows]) for q in QUANTILES]
+    # three fits know nothing of each other: sorted, none crosses another
+    return np.sort(np.stack([model.predict(values[test][:, defined]) for model in fitted], axis=1), axis=1)
+
+
+def _model(quantile: float, seed: int) -> Any:
+    from sklearn.ensemble import HistGradientBoostingRegressor
+
+    # small trees: some hundred inspections of some dozen gearboxes carry no deeper ones
+    return HistGradientBoostingRegressor(
+        loss="quantile",
+        quantile=quantile,
+        max_iter=60,
+        max_leaf_nodes=6,
+        min_samples_leaf=10,
+        early_stopping=False,
+        random_state=seed,
+    )

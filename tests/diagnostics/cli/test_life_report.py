@@ -1,0 +1,55 @@
+"""`siggen-diagnostics report` of gearboxes that run to failure."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import siggen
+from diagnostics.cli.app import app
+from siggen.checks.loading import load_config
+from siggen.errors import DatasetError, UsageError
+from tests.sets.test_lives import lives
+
+RARE = {"interval_h": 1.5, "most": 6}
+"""Three inspections of each gearbox."""
+
+
+@pytest.fixture(scope="module")
+def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("fleet") / "set"
+    raw = {**lives(RARE), "specimens": 5, "duration_s": 0.25}
+    siggen.generate(load_config(raw), path, workers=0)
+    return path
+
+
+def report(*arguments: str) -> str:
+    """Return what the command says; its errors are raised."""
+    return CliRunner().invoke(app, ["report", *arguments], catch_exceptions=False).output
+
+
+def test_a_report_of_lives_judges_baselines_of_remaining_life(fleet: Path, tmp_path: Path) -> None:
+    metrics = json.loads(report(str(fleet), "--json", "--out", str(tmp_path / "report")))
+    assert "five indicators, age" in (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    assert metrics["gearboxes_judged"] == 5
+    assert list(metrics["baselines"])[:2] == ["constant", "age"]
+    rows = {row["record_id"]: row for row in siggen.open(fleet).life("inspections").to_pylist()}
+    outlook = siggen.open(fleet).life("outlook").to_pylist()
+    error_h = np.array([row["rul_q50_h"] - rows[row["record_id"]]["rul_h"] for row in outlook])
+    known = metrics["baselines"]["the true state itself"]["rmse_h"][0]["value"]
+    assert known == pytest.approx(np.sqrt(np.mean(error_h**2)), rel=1e-12)
+
+
+def test_options_of_sets_of_states_are_refused(fleet: Path) -> None:
+    with pytest.raises(UsageError, match="--studies, --explore: for sets of states; this one has lives"):
+        report(str(fleet), "--studies", "--explore")
+
+
+def test_too_few_failed_gearboxes_are_refused_with_a_way_on(tmp_path: Path) -> None:
+    siggen.generate(load_config({**lives(RARE), "specimens": 1}), tmp_path / "set", workers=0)
+    with pytest.raises(DatasetError, match=r"received 1 failed of 1 gearboxes; allowed: at least 4 .* \(specimens\)"):
+        report(str(tmp_path / "set"))
