@@ -24,7 +24,18 @@ from siggen.planning.plan import planned_record
 from siggen.record.simulation import simulate_specimen
 
 KEPT = ROOT / "tests" / "golden.json"
-PRESETS = ("paper_a", "paper_b", "ideal", "quickstart", "bench", "families", "confusers", "two_stage", "planetary")
+PRESETS = (
+    "paper_a",
+    "paper_b",
+    "ideal",
+    "quickstart",
+    "bench",
+    "families",
+    "confusers",
+    "two_stage",
+    "planetary",
+    "helical",
+)
 """`industrial` is `bench` with longer records."""
 DURATION_S = 0.1
 SAMPLES = 8

@@ -63,7 +63,7 @@ def report(
 
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
-    from diagnostics.records.record_classes import check_kind
+    from diagnostics.records.record_classes import check_kind, set_classes
     from diagnostics.report.life_report import write_life_report
     from diagnostics.report.life_rows import is_lives
     from diagnostics.training.network_training import NetworkOptions, check_device
@@ -79,11 +79,13 @@ def report(
         of_states = {"--models-only": models_only, "--test": second, "--studies": training.studies}
         _refuse({**of_states, "--indicator": own, "--explore": pages.explore}, "for sets of states; this one has lives")
         path = write_life_report(dataset, out or beside(dataset.path, "_report"), seed, terminal_stage)
-    elif models_only:
-        path = _models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)
     else:
-        folder = out or beside(dataset.path, "_report")
-        path = _page((dataset, second), folder, seed, options, own, explore=pages.explore)
+        set_classes(dataset, classes)  # what has none is refused before anything is computed
+        folder = out or beside(dataset.path, "_models" if models_only else "_report")
+        if models_only:
+            path = _models((dataset, second), folder, seed, options, own)
+        else:
+            path = _page((dataset, second), folder, seed, options, own, explore=pages.explore)
     if as_json:
         echo_json(json.loads(((path if models_only else path.parent) / "metrics.json").read_text(encoding="utf-8")))
     else:

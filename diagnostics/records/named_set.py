@@ -16,8 +16,8 @@ import pyarrow as pa
 
 from diagnostics.records.gear_train import GEARS
 from siggen.config.names import NO_NAMES, Names
+from siggen.dataset import reading
 from siggen.dataset.reading import Dataset, RowGroup
-from siggen.dataset.reading import open as open_dataset
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -131,7 +131,7 @@ class NamedSet(Dataset):
 
 def open_set(path: PurePath | str) -> Dataset:
     """Return a set as diagnostics reads it; raises DatasetError as `siggen.open`."""
-    dataset = open_dataset(path)
+    dataset = reading.open(path)
     names, short = dataset.names()
     if names == NO_NAMES:
         return dataset

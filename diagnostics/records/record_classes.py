@@ -106,7 +106,15 @@ def record_classes(labels: Mapping[str, np.ndarray], kind: str = STATE, healthy:
 
 
 def set_classes(dataset: Dataset, kind: str = STATE, healthy: str | None = None) -> RecordClasses:
-    """Return the classes of a set; parameters and errors as of `record_classes`."""
+    """Return the classes of a set; parameters and errors as of `record_classes`, UsageError for lives."""
+    check_kind(kind)
+    if dataset.config.get("life"):
+        raise UsageError(
+            f"{dataset.path}: received a set of lives, which has no classes: an inspection is healthy in one gearbox "
+            "and pitted in another. Allowed: a set with states (siggen inspect life --as-states writes those of one "
+            "gearbox). Ages, phases and remaining lives of this one are in its folder life/; siggen-diagnostics "
+            "indicators and explore show its records"
+        )
     primary = [PRIMARY] if kind == FAULT and PRIMARY in dataset.labels().column_names else []
     table = dataset.labels(columns=["state", "state_id", "fault", *primary])
     labels = {name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}

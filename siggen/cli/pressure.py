@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
@@ -22,7 +22,8 @@ def pressure(
     ] = None,
     picture: PictureOptions,
     gear: Annotated[
-        Literal["pinion", "gear"] | None, typer.Option("--gear", help="Whose flank; by default the damaged gear's.")
+        str | None,
+        typer.Option("--gear", help="Whose flank: pinion, gear, or a gear's own name; by default the damaged gear's."),
     ] = None,
     tooth: Annotated[
         int | None, typer.Option("--tooth", min=0, help="Index of the tooth; by default the first damaged one.")

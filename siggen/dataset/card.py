@@ -72,6 +72,8 @@ def card(config: Config, sidecars: Sequence[Sidecar], quantities: Sequence[Colum
 
 def faults(config: Config) -> tuple[str, ...]:
     """Return the kinds of fault of a set, in the order of its states; none of a set of healthy gearboxes."""
+    if config.life is not None:
+        return tuple(section.words[0] for section in config.damages)
     return tuple(dict.fromkeys(state.fault for state in config.states if state.faulty))
 
 
@@ -119,13 +121,14 @@ none is a copy or a cut of another one. **The data are synthetic**: they were co
 
 
 def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
-    names = list(config.state_names)
+    names = ["inspections"] if config.life is not None else list(config.state_names)
     lines = ["## Contents", "", f"| split | specimens | records | {' | '.join(names)} | MB |"]
     lines.append("|---" * (len(names) + 4) + "|")
     for split in splits:
         own = [sidecar for sidecar in sidecars if sidecar.split == split]
         specimens = sum(last - first + 1 for sidecar in own for first, last in sidecar.specimens)
-        states = [str(sum(sidecar.rows_per_state[name] for sidecar in own)) for name in names]
+        rows_of = [sum(sidecar.rows_per_state[name] for sidecar in own) for name in config.state_names]
+        states = [str(count) for count in (rows_of if config.life is None else [_inspections(config, rows_of)])]
         rows = sum(sidecar.data.rows for sidecar in own)
         size_mb = sum(sidecar.data.bytes for sidecar in own) / 1e6
         lines.append(f"| {split} | {specimens} | {rows} | {' | '.join(states)} | {size_mb:.1f} |")
@@ -138,6 +141,11 @@ def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]
             "",
         ]
     )
+
+
+def _inspections(config: Config, records: Sequence[int]) -> int:
+    """Return how many inspections records are of; each has them at every operating point, repeats included."""
+    return sum(records) // (len(config.operating_points) * config.repeats)
 
 
 def _limits(config: Config) -> str:

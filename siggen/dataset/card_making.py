@@ -45,6 +45,11 @@ BACKGROUND = {
 
 CHANGED = "A state that changes keys is the healthy gearbox with the same draws, but for these keys (`changed_keys`)."
 
+LIVES = (
+    "Every gearbox is new at its first inspection and runs until a tooth fails, or until it is taken out. Pits begin, "
+    "grow and spread by the law in `life.damage`; between two inspections damage never shrinks."
+)
+
 
 def making(config: Config) -> str:
     """Return the section `How it was made` of a set's card."""
@@ -55,8 +60,17 @@ def making(config: Config) -> str:
         f"4. **Sensing.** {_sensing_text(config)}",
     )
     listed = "\n".join(fill(step, WIDTH, subsequent_indent="   ", break_on_hyphens=False) for step in steps)
-    states = "\n".join(_state_text(state) for state in config.states)
-    return config.names.text(f"## How it was made\n\n{listed}\n\nStates:\n\n{states}\n")
+    return config.names.text(f"## How it was made\n\n{listed}\n\n{_states_text(config)}\n")
+
+
+def _states_text(config: Config) -> str:
+    """List the states; inspections have no list, since every gearbox has its own."""
+    if config.life is None:
+        return "\n".join(["States:\n", *map(_state_text, config.states)])
+    return (
+        "A state is one inspection of one life: the same number is another damage in another gearbox. Ages, phases\n"
+        "and remaining lives are in `life/`."
+    )
 
 
 def _state_text(state: State) -> str:
@@ -126,6 +140,8 @@ def _ends(values: Sequence[float]) -> tuple[float, float]:
 
 def damage_text(config: Config) -> str:
     """Say how the kinds of damage act on the teeth."""
+    if config.life is not None:
+        return LIVES
     shown = (section for state in config.states if state.damaged for section in state.damages)
     kinds = list(dict.fromkeys(type(section) for section in shown))
     changed = [CHANGED] if any(state.changes for state in config.states) else []

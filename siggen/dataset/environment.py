@@ -16,7 +16,7 @@ from siggen.sources import CHARACTERS, sources_digest
 PACKAGES = ("siggen", "numpy", "scipy", "numba", "llvmlite", "pyarrow")
 MAKES_RECORDS = (
     *("arrays.py", "compiled.py", "seeding.py", "lanes/**/*.py", "keys/**/*.py", "faults/**/*.py"),
-    *("noise/**/*.py", "sensors/**/*.py", "config/**/*.py", "rig/**/*.py"),
+    *("noise/**/*.py", "sensors/**/*.py", "life/**/*.py", "config/**/*.py", "rig/**/*.py"),
     *("planning/**/*.py", "checks/quantity_names.py"),
     *("gears/**/*.py", "dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py"),
     *("columns/**/*.py", "record/**/*.py"),

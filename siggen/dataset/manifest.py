@@ -112,7 +112,9 @@ def read_manifest(storage: Storage) -> Inventory:
     try:
         facts = manifest_facts(MANIFEST, storage.get(MANIFEST))
     except VerificationError as error:
-        raise DatasetError(f"{storage.location}: {error}; `siggen verify` names every damaged file") from error
+        raise DatasetError(
+            f"{storage.location}: {error}; `siggen generate` with the set's config.yaml makes it again from its shards"
+        ) from error
     if not isinstance(facts, Inventory):
         raise DatasetError(
             f"{storage.location}: received schema version {facts.schema_version[:20]}; allowed is "

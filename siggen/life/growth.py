@@ -13,7 +13,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
 
 from siggen.arrays import FloatArray, IntArray
 
@@ -93,6 +92,8 @@ def grown(seeds: Seeds, wander_sd: float, steps: int, teeth: int) -> Grown:
 
 def _wandering(seeds: Seeds, wander_sd: float, first: int, steps: int) -> FloatArray:
     """Return exp(X - s²/2) of every pit over the steps (n, steps); X is stationary from the start."""
+    from scipy.signal import lfilter
+
     keeps = float(np.exp(-STEP / WANDER))
     own = np.concatenate([seeds.wander[:, :1], np.sqrt(1.0 - keeps**2) * seeds.wander[:, 1:]], axis=1)
     walks = wander_sd * lfilter([1.0], [1.0, -keeps], own, axis=1)

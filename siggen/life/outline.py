@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.irregular import drawn_waves
@@ -190,6 +189,8 @@ def sizes_m(shapes: Sequence[PitShape], areas_m2: Sequence[float], width_m: floa
 
 
 def _size_m(shape: PitShape, outlines: list[Edges], wanted_m2: float, width_m: float) -> float:
+    from scipy.optimize import brentq
+
     def missing(size_m: float) -> float:
         return union_m2([*outlines, shape.edges(size_m)], width_m) - wanted_m2
 

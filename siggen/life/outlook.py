@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.life.growth import STEP, WANDER
@@ -75,6 +74,8 @@ class Chances:
 
 def through_share(shape: PitShape, flank_m2: float) -> float:
     """Return the share of a flank at which a pit by itself reaches both ends of the face."""
+    from scipy.optimize import brentq
+
     width = float(shape.stations_m[-1])
     wanted = 2.0 * max(shape.middle_m, width - shape.middle_m)
     if shape.lengths_m(shape.largest_m)[1] < wanted:

@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 
 from siggen.config.planetary import NAMES, RING
+from siggen.dataset.card import faults
+from siggen.faults.registry import HEALTHY
+from siggen.planning.lived import SEVERITIES
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -36,6 +39,13 @@ def dataset_info(
 
 def class_names(config: Config) -> dict[str, tuple[str, ...]]:
     """Return the values of the columns of texts that are classes, in the order of their numbers."""
+    if config.life is not None:
+        return {
+            "state": config.state_names,
+            "fault": (HEALTHY, *faults(config)),
+            "severity": SEVERITIES,
+            "faulty_gear": _faulty_gears(config),
+        }
     return {
         "state": tuple(state.name for state in config.states),
         "fault": tuple(dict.fromkeys(state.fault for state in config.states)),

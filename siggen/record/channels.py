@@ -159,7 +159,7 @@ def _disturbances(
         )
         found[channel.name] = ChannelDisturbance(channel, about, draws)
         rng, floor = white_noise(config, record, channel, draws)
-        recorders[channel.name].finish(
+        recorders[channel.name].begin_conversion(
             limit=channel.sensor.limit,
             bits=channel.sensor.bits,
             rng=rng,

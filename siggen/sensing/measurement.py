@@ -1,4 +1,4 @@
-"""Measurement: what a data logger stores of a quantity, in its unit: gain, white noise, clipping, quantisation.
+"""Measurement: what a data logger stores of a quantity, in its unit, clipped and quantised; `recorder` adds noise.
 
 Model: standard measurement chain (reference: standard literature); the power-of-two step is derived: it makes every
 stored value an exact float32.

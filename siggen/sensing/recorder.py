@@ -35,7 +35,7 @@ class Recorder:
         self._done += amplified.size
         self._spread.take(amplified)
 
-    def finish(
+    def begin_conversion(
         self,
         *,
         limit: float,
@@ -44,7 +44,21 @@ class Recorder:
         noise_floor: float | None,
         gaps: Sequence[tuple[int, int]] = (),
     ) -> None:
-        """Begin to convert what was taken; arguments as those of `measurement.measure`."""
+        """Say how `convert` turns what was taken into what is stored.
+
+        Parameters
+        ----------
+        limit : float
+            Values beyond it are clipped.
+        bits : int or None
+            Of the converter; None: not quantised.
+        rng : Generator
+            Of the white noise.
+        noise_floor : float or None
+            Its standard deviation; None without.
+        gaps : sequence of (first, end)
+            Samples that are lost.
+        """
         self._limit, self._bits, self._rng, self._gaps = limit, bits, rng, gaps
         self._rms = self._spread.std
         self._floor = noise_floor

@@ -11,6 +11,7 @@ import pyarrow as pa
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
+from siggen.config.names import Names
 from siggen.errors import UsageError
 from siggen.gears.contact.kind_row import KindRow, kind_row
 from siggen.gears.contact.loads_under_force import loads_under_force
@@ -73,7 +74,8 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
     ----------
     config : Config
     record_id : int
-    gear, tooth : 'pinion' or 'gear', and an index; None: the first damaged tooth, else tooth 0 of the pinion
+    gear, tooth : 'pinion' or 'gear', of a machine their own names, and an index; None: the first damaged tooth, else
+        tooth 0 of the pinion
 
     Raises
     ------
@@ -87,6 +89,7 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
             "dynamics.mesh.law: received linear; allowed: pairs, whose tooth pairs have forces of their own"
         )
     refuse_planetary(config, "pressures of a flank")
+    gear = None if gear is None else _gear_called(config.names, gear)
     record = planned_record(config, record_id)
     config = state_config(config, record.specimen_id, record.state_id)
     torque_nm = draw_operating_point(config, record.specimen_id, record.operating_point_id).torque_nm
@@ -96,8 +99,8 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
             "record with a torque from 0, which loads the drive flanks, where damage is"
         )
     state, point, angle_rad, found = record_internals(config, record)
-    gear, tooth = _looked_at(state.pair, state.damage, gear, tooth)
-    engagement = _engagement(state.pair, angle_rad, gear, tooth)
+    gear, tooth = _looked_at(state.pair, state.damage, gear, tooth, config.names)
+    engagement = _engagement(state.pair, angle_rad, gear, tooth, config.names)
     with refused_as("outside_model"):
         return _solved(config, record, state, point, (gear, tooth, engagement), angle_rad, found)
 
@@ -118,7 +121,15 @@ def pressure_table(pressure: FacePressure) -> pa.Table:
     return pa.table(columns)
 
 
-def _looked_at(pair: GearPair, damage: Damage, gear: str | None, tooth: int | None) -> tuple[str, int]:
+def _gear_called(names: Names, gear: str) -> str:
+    """Return pinion or gear of the first mesh, which alone is solved across the face here, by what a user calls it."""
+    called = {names.gear(which): which for which in ("pinion", "gear")}
+    if gear not in called:
+        raise UsageError(f"--gear {gear}; allowed: {' or '.join(called)}, which are in mesh where the motor drives")
+    return called[gear]
+
+
+def _looked_at(pair: GearPair, damage: Damage, gear: str | None, tooth: int | None, names: Names) -> tuple[str, int]:
     damaged = [(which, index) for which in ("pinion", "gear") for index in damaged_teeth(damage, which)]
     if gear is None:
         gear = damaged[0][0] if damaged and tooth is None else "pinion"
@@ -126,11 +137,12 @@ def _looked_at(pair: GearPair, damage: Damage, gear: str | None, tooth: int | No
         tooth = next((index for which, index in damaged if which == gear), 0)
     count = pair.member(gear).teeth
     if not 0 <= tooth < count:
-        raise UsageError(f"--tooth {tooth}: the {gear} has {count} teeth; allowed: 0 to {count - 1}")
+        called = names.text(f"the {gear}")
+        raise UsageError(f"--tooth {tooth}: {called} has {count} teeth; allowed: 0 to {count - 1}")
     return gear, tooth
 
 
-def _engagement(pair: GearPair, angle_rad: FloatArray, gear: str, tooth: int) -> int:
+def _engagement(pair: GearPair, angle_rad: FloatArray, gear: str, tooth: int, names: Names) -> int:
     """Return the number of the first engagement of a tooth that lies within the record."""
     pitch, teeth = 2.0 * pi / pair.pinion.teeth, pair.member(gear).teeth
     first = ceil(float(angle_rad[0]) / pitch)
@@ -139,7 +151,8 @@ def _engagement(pair: GearPair, angle_rad: FloatArray, gear: str, tooth: int) ->
     if last > angle_rad[-1]:
         turns = (angle_rad[-1] - angle_rad[0]) / (2.0 * pi)
         raise UsageError(
-            f"{gear} tooth {tooth} goes through mesh nowhere within the record, {turns:.2f} turns of the pinion; "
+            f"{names.gear(gear)} tooth {tooth} goes through mesh nowhere within the record, {turns:.2f} turns of the "
+            f"{names.gear('pinion')}; "
             "allowed: another --tooth, or a longer record (--set duration_s=...)"
         )
     return number

@@ -208,15 +208,13 @@ def test_a_sensor_leaks_a_share_of_the_motion_across_its_axis() -> None:
 
 
 def test_other_machines_and_hum_are_where_the_labels_say() -> None:
-    sensor = {
-        **RIGID,
-        "mains": {"amplitude_m_s2": 5.0, "frequency_hz": 50.0, "harmonics": 1},
-        "inverter": {"carrier_hz": 4000.0, "amplitude_m_s2": 2.0},
-    }
-    channels, labels = record(loaded(sensor)).channels, record(loaded(sensor)).labels
-    added = channels["lid_vertical"].astype(float) - record(loaded(RIGID)).channels["lid_vertical"]
-    spectrum = np.abs(np.fft.rfft(added)) * 2.0 / added.size
+    plain = record(loaded(RIGID)).channels["lid_vertical"]
+    hum = record(loaded({**RIGID, "mains": {"amplitude_m_s2": 5.0, "frequency_hz": 50.0, "harmonics": 1}}))
+    spectrum = np.abs(np.fft.rfft(hum.channels["lid_vertical"].astype(float) - plain)) * 2.0 / plain.size
     assert spectrum[5] == pytest.approx(5.0, rel=1e-5)
-    assert spectrum[400] == pytest.approx(2.0, rel=1e-5)
-    assert labels["mains_lid_vertical_m_s2"] == pytest.approx(5.0 / np.sqrt(2.0))
-    assert added.var() == pytest.approx(0.5 * (25.0 + 4.0 * (1.0 + 2.0 / 4.0 + 2.0 / 9.0)), rel=1e-5)
+    assert hum.labels["mains_lid_vertical_m_s2"] == pytest.approx(5.0 / np.sqrt(2.0))
+    inverter = {**RIGID, "inverter": {"carrier_hz": 4000.0, "amplitude_m_s2": 2.0}}
+    added = record(loaded(inverter)).channels["lid_vertical"].astype(float) - plain
+    # sidebands at twice and four times a drawn 45 to 50 Hz are no whole turns of 0.1 s: lines leak 1/(pi 90 Hz 0.1 s)
+    assert np.abs(np.fft.rfft(added))[400] * 2.0 / added.size == pytest.approx(2.0, rel=0.05)
+    assert added.var() == pytest.approx(0.5 * 4.0 * (1.0 + 2.0 / 4.0 + 2.0 / 9.0), rel=0.05)

@@ -20,7 +20,7 @@ def measured(signal: np.ndarray = SINE, seed: int = 5, **changes) -> Measurement
     parts = np.array_split(signal, 3)
     for part in parts:
         recorder.take(part)
-    recorder.finish(rng=np.random.default_rng(seed), **chain)
+    recorder.begin_conversion(rng=np.random.default_rng(seed), **chain)
     for part in parts:
         recorder.convert(part.size, None)
     return recorder.measurement()

@@ -10,11 +10,14 @@ import yaml
 from typer.testing import CliRunner
 
 import siggen
+from diagnostics.records.named_set import open_set
+from diagnostics.records.record_classes import set_classes
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
-from siggen.errors import ConfigError
+from siggen.errors import ConfigError, UsageError
 from siggen.planning.gearbox import gearbox_life
 from siggen.planning.plan import plan
+from siggen.publication.dataset_info import class_names
 from siggen.sets.extension import extend
 from tests.config.minimal import minimal
 
@@ -166,3 +169,23 @@ def test_plan_tells_a_schedule_that_sees_no_end(tmp_path: Path, life: dict[str, 
 
 def test_plan_counts_the_records_that_there_will_be(fleet: Path) -> None:
     assert plan(load_config(lives())).count == len(siggen.open(fleet).labels())
+
+
+def test_a_card_of_lives_tells_damage_and_counts_inspections_in_one_column(fleet: Path) -> None:
+    card = " ".join(siggen.open(fleet).card().split())
+    assert "| split | specimens | records | inspections | MB |" in card
+    assert "runs until a tooth fails" in card
+    assert "synthetic gearbox vibration, pitting" in card
+    assert "every state is healthy" not in card
+
+
+def test_published_classes_of_lives_hold_every_word_of_their_labels(fleet: Path) -> None:
+    labels = siggen.open(fleet).labels()
+    for column, words in class_names(load_config(lives())).items():
+        assert set(labels.column(column).to_pylist()) <= set(words)
+
+
+def test_classifiers_refuse_lives_and_name_what_shows_them(fleet: Path) -> None:
+    for kind in ("state", "fault"):
+        with pytest.raises(UsageError, match=r"has no classes: .* folder life/; siggen-diagnostics indicators"):
+            set_classes(open_set(fleet), kind)

@@ -16,9 +16,12 @@ import pyarrow.parquet as pq
 import pytest
 
 import siggen
+from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.config import yaml_text
+from siggen.errors import UsageError
 from siggen.record.simulation import simulate
+from siggen.views.face_pressure import face_pressure
 from tests.config.mill import mill
 from tests.config.staged import SLOW, SPALL, staged
 
@@ -100,6 +103,13 @@ def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: 
     assert {short: record[own] for short, own in names.items()} == {short: other.labels[short] for short in names}
     assert record["faulty_gear"] == "eva"
     assert siggen.open(made / "set").damage()["gear"].to_pylist() == ["eva"] * 3
+
+
+def test_a_flank_is_asked_for_by_the_name_of_its_gear(made: Path) -> None:
+    config = load_config(made / "mill.yaml")
+    with pytest.raises(UsageError, match="--gear pinion; allowed: ida or otto"):
+        face_pressure(config, 1, "pinion")
+    assert face_pressure(config, 1, "otto", 0).view.gear == "otto"
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""MeshLaw: pair stiffness tables by position, and the one compiled mesh force that every integrator calls.
+"""MeshLaw: pair stiffness tables by position, and the mesh force of `law: linear`; `pair_law` is that of pairs.
 
 Equations: F = K f(δ) + c δ̇ in contact with f the centred backlash function (reference: standard literature);
 K = sum over the pairs in contact (paper A: Influence of Tooth Pitting on TVMS and Vibration Response of a Spur Gear

@@ -1,5 +1,8 @@
 r"""Force and moment across the face of one tooth pair at one position, from the approach and the tilt.
 
+It is called while tables are made (`force_curve`, `contact_table`), where damage is a notch and a floor (`face_gaps`);
+in the time loop `dynamics/mesh/contact_spring` reads what it found.
+
 The face is cut into equal slices that carry the line loads q_j = u_j/κ >= 0. Derived: the complementary energy
 
     Ψ = (w/κ) [½ u·(K(a) + T) u + Σ_j ∫ e_j du] + ½ C F²,   F = w Σ q_j,   a² = 2 R √(w Σ u²/L)

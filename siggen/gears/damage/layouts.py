@@ -8,7 +8,6 @@ the first ones of more.
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
 from siggen.arrays import FloatArray
 
@@ -102,6 +101,8 @@ def clustered_centres(
 
 
 def _cut_normal(uniform: FloatArray, mean: float, spread: float, low: float, high: float) -> FloatArray:
+    from scipy.special import ndtr, ndtri
+
     if not spread >= 0.0:
         raise ValueError(f"received spread {spread!r} m; allowed: at least 0")
     if spread == 0.0:

@@ -6,8 +6,6 @@ from functools import lru_cache
 from math import pi, tan
 from typing import NamedTuple
 
-from scipy.optimize import brentq
-
 from siggen.gears.geometry.spur_gear import SpurGear
 
 TANGENT_RAD = pi / 6.0
@@ -33,6 +31,7 @@ def root_chord(gear: SpurGear) -> RootChord:
     Source: ISO 6336-3 (memory); derived: at gamma the common normal has the slope gamma - turn, so the tangent makes
     this angle with the centre line. It falls from the root circle to the involute.
     """
+    from scipy.optimize import brentq
 
     def over(gamma: float) -> float:
         turn = (gear.rack_round_depth_m / tan(gamma) + gear.rack_round_offset_m) / gear.pitch_radius_m

@@ -11,7 +11,6 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt, tan
 
 import numpy as np
-from scipy.optimize import brentq
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
@@ -102,6 +101,8 @@ def undercut_handover(
     ValueError
         If they do not cross: the whole flank is cut away.
     """
+    from scipy.optimize import brentq
+
     base_radius = pitch_radius_m * cos(pressure_angle_rad)
 
     def surplus(gamma: float) -> float:

@@ -185,7 +185,9 @@ def test_pinions_of_different_teeth_get_the_same_steps_per_revolution(monkeypatc
         for i in range(2)
     ]
     labels = pa.table({"teeth_pinion": list(teeth)})
-    dataset = SimpleNamespace(labels=labels.select, channels=[SimpleNamespace(name="a")])
+    dataset = SimpleNamespace(
+        labels=lambda columns=None: labels.select(columns or ["teeth_pinion"]), channels=[SimpleNamespace(name="a")]
+    )
     monkeypatch.setattr(windows, "recordings", lambda _: iter(found))
     records = order_records(dataset)  # type: ignore[arg-type]
     assert records.settings.samples_per_revolution == 24 * 16
