@@ -32,6 +32,7 @@ NOT_RUN = {
     "docs/start/load_a_set.md": ["needs: lightning", "needs: transformers", "needs: accelerate"],
     "docs/understand/run_to_failure.md": ["not run: minutes"],
     "docs/start/publish.md": ["not run: installs isatools; tests/publication/test_isa_phm.py does the same"],
+    "docs/understand/run_to_failure.md": ["not run: minutes", "not run: minutes"],
 }
 """Page -> what no test runs of it, and why. Nothing is added here that a smaller set or a local server could run."""
 
