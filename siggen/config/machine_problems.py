@@ -95,10 +95,9 @@ def _gears(machine: Machine) -> Iterator[Problem]:
     for index, gear in enumerate(machine.gears):
         own = meshes.get(gear.name, [])
         received = f"'{gear.name}', in {len(own)} meshes{': ' if own else ''}{', '.join(own)}"
-        if len(own) > 2:
-            yield Problem(f"machine.gears.{index}.name", received, "allowed: one mesh; more in a planetary set alone")
-        elif len(own) != 1:
-            allowed = "allowed: one mesh; give each mesh a gear of its own on the shaft"
+        if len(own) != 1:
+            more = "give each mesh a gear of its own on the shaft" if own else "leave the gear out, or let it mesh"
+            allowed = f"allowed: one mesh; {more}"
             yield Problem(f"machine.gears.{index}.name", received, allowed)
 
 

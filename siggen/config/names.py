@@ -108,6 +108,8 @@ class Names:
             return problem
         mesh = self._mesh_at(problem.path)
         path, received, allowed = (self.text(one, mesh) for one in (problem.path, problem.received, problem.allowed))
+        keys = {short: own for short, own in KEYS if short not in {DRIVER, DRIVEN}}
+        path = ".".join(keys.get(part, part) for part in path.split("."))
         return replace(problem, path=path, received=received, allowed=allowed)
 
     def _mesh_at(self, path: str) -> str:
@@ -167,4 +169,6 @@ def _prose(text: str, shafts: Sequence[str], driver: str, driven: str) -> str:
         text = re.sub(rf"\b[Tt]he {short} shaft\b", shaft, text)
     text = re.sub(r"\bpinion(,| and| or) (?:the )?gear\b", rf"{driver}\1 {driven}", text)
     text = re.sub(r"\b(?:[Tt]he )?(?:first )?pinion\b", driver, text)
-    return re.sub(r"\b[Tt]he gear(?! (?:pair|body|bodies|in front))\b|'gear'|^gear(?= [a-z]+$)", driven, text)
+    return re.sub(
+        r"\b[Tt]he gear(?! (?:pair|body|bodies|in front))\b|'gear'|^gear(?= [a-z]+$)|(?<=place )gear\b", driven, text
+    )
