@@ -63,7 +63,7 @@ def report(
 
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
-    from diagnostics.records.record_classes import check_kind, set_classes
+    from diagnostics.records.record_classes import check_kind
     from diagnostics.report.life_report import write_life_report
     from diagnostics.report.life_rows import is_lives
     from diagnostics.training.network_training import NetworkOptions, check_device
@@ -80,7 +80,6 @@ def report(
         _refuse({**of_states, "--indicator": own, "--explore": pages.explore}, "for sets of states; this one has lives")
         path = write_life_report(dataset, out or beside(dataset.path, "_report"), seed, terminal_stage)
     else:
-        set_classes(dataset, classes)  # what has none is refused before anything is computed
         folder = out or beside(dataset.path, "_models" if models_only else "_report")
         if models_only:
             path = _models((dataset, second), folder, seed, options, own)

@@ -113,7 +113,7 @@ def set_classes(dataset: Dataset, kind: str = STATE, healthy: str | None = None)
             f"{dataset.path}: received a set of lives, which has no classes: an inspection is healthy in one gearbox "
             "and pitted in another. Allowed: a set with states (siggen inspect life --as-states writes those of one "
             "gearbox). Ages, phases and remaining lives of this one are in its folder life/; siggen-diagnostics "
-            "indicators and explore show its records"
+            "report judges what tells them"
         )
     primary = [PRIMARY] if kind == FAULT and PRIMARY in dataset.labels().column_names else []
     table = dataset.labels(columns=["state", "state_id", "fault", *primary])

@@ -187,5 +187,5 @@ def test_published_classes_of_lives_hold_every_word_of_their_labels(fleet: Path)
 
 def test_classifiers_refuse_lives_and_name_what_shows_them(fleet: Path) -> None:
     for kind in ("state", "fault"):
-        with pytest.raises(UsageError, match=r"has no classes: .* folder life/; siggen-diagnostics indicators"):
+        with pytest.raises(UsageError, match=r"has no classes: .* folder life/; siggen-diagnostics report"):
             set_classes(open_set(fleet), kind)
