@@ -82,7 +82,7 @@ MISTAKES: dict[str, tuple[dict[str, Any], str, str]] = {
         beside(
             ELSE, {**ELSE, "name": "more", "shaft": "input"},
             meshes=tuple({**MESH, "name": f"m_{one}", "driver": "otto", "driven": one} for one in ("else", "more")),
-        ), "machine.gears.2.name", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh; give each mesh a gear",
+        ), "machine.gears.2.name", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh; give each mesh",
     ),
     "a shaft apart": (beside(name="far"), "machine.shafts.3.name", "'far', which no mesh joins with the shaft output"),
     "a loop that cannot turn": (loop(23), "machine.meshes.1", "a loop: by this mesh the shaft middle turns"),
