@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from siggen.config.names import NO_NAMES, Names
 from siggen.dataset.reading import RowGroup
 
 if TYPE_CHECKING:
@@ -52,6 +53,9 @@ class MemoryDataset:
     manifest: dict[str, Any] = field(default_factory=lambda: {"identity": "0" * 64, "name": "memory"})
     fs_hz: float = FS_HZ
     duration_s: float = 1.0
+
+    def names(self) -> tuple[Names, dict[str, str]]:
+        return NO_NAMES, {}
 
     @property
     def channels(self) -> tuple[SimpleNamespace, ...]:

@@ -12,6 +12,7 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
+from siggen.config.names import NO_NAMES, Names
 
 STATES = ("healthy", "slight", "severe")
 TEETH = (18, 47)
@@ -31,6 +32,9 @@ class PlantedSet:
     fs_hz: float = FS_HZ
     duration_s: float = DURATION_S
     splits: tuple[str, ...] = ("all",)
+
+    def names(self) -> tuple[Names, dict[str, str]]:
+        return NO_NAMES, {}
 
     @property
     def channels(self) -> tuple[SimpleNamespace, ...]:
