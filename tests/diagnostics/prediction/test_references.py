@@ -182,6 +182,22 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
     assert healthy["state"] == "healthy"
 
 
+def test_several_recordings_are_answered_each_in_its_first_line_and_folder(
+    trained: tuple[Path, Path],
+    other: Any,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    folder, file = trained
+    assert other.table.num_rows == 6
+    predict(monkeypatch, folder, f"{file}:2,3", tmp_path / "answer", "--reference", f"{file}:0")
+    first = [line for line in capsys.readouterr().out.splitlines() if line.startswith(file.name)]
+    assert [line.split(": ")[0] for line in first] == [f"{file.name}:2", f"{file.name}:3"]
+    assert [line.split("most like ")[1].split(" (")[0] for line in first] == ["severe", "healthy"]
+    assert sorted(path.name for path in (tmp_path / "answer").iterdir()) == [f"{file.name}_2", f"{file.name}_3"]
+
+
 def test_a_reference_is_judged_against_none_on_the_records_that_have_one(training: Training) -> None:
     assert training.referenced is not None
     found = training_metrics(training)["beside_a_healthy_record"]
