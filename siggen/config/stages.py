@@ -19,8 +19,8 @@ STAGE_NAME = AllowedText("lower-case letters, digits and _, beginning with a let
 
 
 SPAN = (
-    "distance of the bearings of a shaft with two gears, in `stages` of the one in front, as thick as the thinner bore "
-    "of both; null: twice both face widths (assumed)"
+    "distance of the bearings of the shaft with two gears, which is as thick as the thinner bore of both; null: twice "
+    "both face widths (assumed)"
 )
 DIRECTION = (
     "of the line from the driving to the driven gear against that of the first mesh, in the sense in which the first "
