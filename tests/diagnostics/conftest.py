@@ -15,6 +15,7 @@ import pytest
 
 from siggen.config.names import NO_NAMES, Names
 from siggen.dataset.reading import RowGroup
+from tests.diagnostics.column_roles import ListedRoles
 
 if TYPE_CHECKING:
     from diagnostics.indicators.table import RecordTable
@@ -44,7 +45,7 @@ def shaft_record(
 
 
 @dataclass
-class MemoryDataset:
+class MemoryDataset(ListedRoles):
     """Rows in memory behind the interface of a set on disk."""
 
     table: pa.Table

@@ -15,7 +15,6 @@ import pytest
 
 import diagnostics
 from diagnostics.indicators.classifier_table import feature_matrix
-from diagnostics.indicators.matrix import LABEL_ROLES
 from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
 from diagnostics.scoring.score import Scored, ScoreRow
@@ -178,7 +177,7 @@ def test_predictions_of_another_set_are_refused(dataset: Any, damage: dict[str, 
 
 def test_a_table_has_a_role_for_every_column(features: pa.Table) -> None:
     table = feature_matrix(features)
-    assert set(LABEL_NAMES) <= set(LABEL_ROLES)
+    assert set(LABEL_NAMES) <= set(table.labels)
     assert set(table.roles) == {*table.names, *table.labels}
     assert table.roles["rms__bearing_vertical"] == "measured"
     assert table.classes == CLASSES
