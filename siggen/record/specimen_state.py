@@ -22,6 +22,7 @@ from siggen.record.stage_labels import stage_labels
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_uniforms
 from siggen.specimen.back_flanks import with_back_flanks, with_static_back
+from siggen.specimen.clocking import clocked_pitches
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
@@ -136,9 +137,10 @@ def _with_stages(
     """Return the state of the first mesh with those behind it; how their teeth stand is drawn for the gearbox."""
     uniform = named_uniforms(config.seed, Consumer.GEARS, specimen.specimen_id)
     names = [stage.name for stage in specimen.stages]
+    clockings = clocked_pitches([first.pair, *(one.pair for one in behind)], specimen, uniform)
     meshes = tuple(
-        MeshBehind(one.mesh, turning, uniform(f"stages.{name}.clocking") * one.pair.pinion.teeth * one.pair.gear.teeth)
-        for one, turning, name in zip(behind, turns(specimen), names, strict=True)
+        MeshBehind(one.mesh, turning, turned)
+        for one, turning, turned in zip(behind, turns(specimen), clockings, strict=True)
     )
     labels = stage_labels(first.labels, dict(zip(names, (one.labels for one in behind), strict=True)))
     return replace(first, mesh=replace(first.mesh, behind=meshes, back=None), labels=labels, behind=behind)
