@@ -126,9 +126,10 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
 def _planetary_state(config: Config, made: MadeGears, state_id: int, assembled: Structure) -> SpecimenState:
     """Return the state of a planetary set: that of the sun with its first planet, with all meshes behind it."""
     states = [_mesh_state(one, state_id, assembled) for one in made_meshes(made, config)]
-    first, ring = states[0], states[len(states) // 2]
+    suns, ring = states[: len(states) // 2], states[len(states) // 2]
     mesh = with_planets(config, made.specimen, [one.mesh for one in states])
-    return replace(first, mesh=mesh, labels=with_ring_labels(first.labels, ring.labels), ring=ring)
+    labels = with_ring_labels(config, [one.labels for one in suns], ring.labels)
+    return replace(suns[0], mesh=mesh, labels=labels, ring=ring)
 
 
 def _with_stages(
