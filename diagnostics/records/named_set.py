@@ -18,6 +18,7 @@ from diagnostics.records.gear_train import GEARS
 from siggen.config.names import NO_NAMES, Names
 from siggen.dataset import reading
 from siggen.dataset.reading import Dataset, RowGroup
+from siggen.keys.column import Role
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -107,6 +108,14 @@ class NamedSet(Dataset):
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return labels as `Dataset.labels`."""
         return self._renamed(super().labels(split, self._there(columns)))
+
+    def role(self, name: str) -> Role:
+        """Return a role as `Dataset.role`."""
+        return super().role(self._own.get(name, name))
+
+    def section(self, name: str) -> str:
+        """Return a section as `Dataset.section`."""
+        return super().section(self._own.get(name, name))
 
     def records(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None

@@ -176,11 +176,11 @@ def _notes(config: Config) -> dict[str, Any]:
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
         "damage_notes": [*_of_every_pair(config, damage_notes), *section_notes(config)],
         "state_notes": state_notes(config),
-        "implausible": implausible(config),
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }
     own = {kind: [config.names.text(note) for note in found] for kind, found in notes.items()}
-    return {"stiffness_tables": table_error_text(config), "manufacture": _manufacture(config), **own}
+    said = {"stiffness_tables": table_error_text(config), "manufacture": _manufacture(config)}
+    return {**said, **own, "implausible": implausible(config)}
 
 
 def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> list[str]:

@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.config.planetary import RING
-from siggen.keys.column import HERTZ, Column, list_of
+from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -31,12 +31,16 @@ RENAMED = {
 }
 """Column of a pair -> its name and its meaning in a planetary set."""
 EACH = "_each_planet"
-ADDED = (
-    Column("faulty_teeth_ring", list_of(pa.int32()), "", "indices of the ring's damaged teeth"),
+ADDED = in_role(
+    Role.CONDITION,
+    Column("faulty_teeth_ring", list_of(pa.int32()), "", "indices of the ring's damaged teeth", Role.TARGET),
     Column("teeth_ring", pa.int32(), "", "number of teeth of the ring"),
     Column("planet_positions_deg", list_of(pa.float64()), "deg", "where the planets stand on the carrier"),
     Column("carrier_hz", pa.float64(), HERTZ, "rotation frequency of the carrier"),
-    Column("pin_errors_um", list_of(pa.float64()), "um", "how far each planet's pin is ahead of its place"),
+    Column(
+        "pin_errors_um", list_of(pa.float64()), "um", "how far each planet's pin is ahead of its place", Role.PROVENANCE
+    ),
+    section="planetary",
 )
 
 

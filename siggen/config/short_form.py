@@ -12,6 +12,7 @@ from typing import Any
 
 from siggen.config.dynamics import Rotor
 from siggen.config.gears import ToothForm, Wheel
+from siggen.config.inheritance import REPLACED
 from siggen.config.machine import Machine
 from siggen.config.machine_problems import idlers, train
 from siggen.config.names import DRIVEN, DRIVER, KEYS, Names, renamed_keys
@@ -20,8 +21,6 @@ from siggen.errors import Problem
 from siggen.keys.problems import nearest, received_text
 from siggen.keys.section import Section
 
-REPLACED = ("gears", "stages", "planetary")
-"""Sections that a machine takes the place of."""
 WITH_KEYS = ("dynamics", "manufacture", "sensors", "background")
 """Sections with keys of their own for driver and driven gear."""
 

@@ -74,7 +74,7 @@ def _columns_twice(stages: tuple[Stage, ...]) -> Iterator[Problem]:
                 yield Problem(f"stages.{index}.name", received, "allowed: a name whose columns are its own")
 
 
-BESIDE = "in a set with stages"
+BESIDE = "with several meshes"
 
 
 def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
@@ -87,7 +87,7 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
         yield from _of_gears(sections["gears"], sections["stages"])
     background = sections.get("background")
     if background is not None and background.second_stage is not None:
-        yield Problem("background.second_stage", "a section", f"allowed: null {BESIDE}, which has one of its own")
+        yield Problem("background.second_stage", "a section", f"allowed: null {BESIDE}, which are all simulated")
     for index, point in enumerate(sections.get("operating_points", ())):
         if bounds(point.torque_nm)[0] <= 0.0:
             yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")

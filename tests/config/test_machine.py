@@ -88,7 +88,12 @@ MISTAKES: dict[str, tuple[dict[str, Any], str, str]] = {
         ), "machine.gears.2.name", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh, or two of an idler",
     ),
     "a shaft apart": (beside(name="far"), "machine.shafts.3.name", "'far', which no mesh joins with the shaft output"),
-    "a loop that cannot turn": (loop(23), "machine.meshes.1", "a loop: by this mesh the shaft middle turns"),
+    "a loop that cannot turn": (
+        loop(23), "machine.meshes.2.name",
+        "'back', which closes a loop with slow, fast and cannot turn: by its teeth the shaft input makes -0.8696 turns "
+        "per turn of output, by theirs 7.987; allowed: one way from the motor to the load; leave one mesh of the loop",
+    ),
+    "a gear called as a mesh": (with_machine("gears", 0, name="fast"), "machine.gears.0.name", "as a mesh is called"),
     "a span of one gear's shaft": (with_machine("shafts", 1, span_mm=90.0), "machine.shafts.1.span_mm", "one gear"),
     "a branch": (
         beside(
@@ -183,8 +188,21 @@ def test_a_loop_whose_ratios_agree_turns_but_has_two_ways_for_power() -> None:
     )]  # fmt: skip
     meshes = [*MACHINE["meshes"], {**MESH, "name": "twin", "driver": "p", "driven": "q"}]
     (problem,) = parse(mill(machine={**MACHINE, "gears": gears, "meshes": meshes})).problems
-    assert problem.path == "machine.meshes"
-    assert "two ways" in problem.received
+    assert problem.path == "machine.meshes.2.name"
+    assert problem.received == "'twin', which closes a loop with fast"
+
+
+def test_a_machine_takes_the_place_of_gears_and_shafts_that_its_file_extends() -> None:
+    own = {key: mill()[key] for key in ("machine", "sensors", "states")}
+    found = load_config({"extends": "quickstart", **own, "housing": {"kind": "rigid"}, "background": None})
+    assert found.gears.pinion.teeth == 18
+    assert found.dynamics.shafts is None
+    assert found.dynamics.pinion.mass_kg is None
+    with pytest.raises(ConfigError) as refused:
+        load_config({"extends": "quickstart", **own, "gears": {"module_mm": 2.0}, "dynamics": {"shafts": {}}})
+    told = [problem.path for problem in refused.value.problems]
+    assert sorted(told) == sorted({*told}), "one sentence at each key"
+    assert {"gears", "dynamics.shafts"} < {*told}
 
 
 OTHERS: dict[str, tuple[dict[str, Any], str, str]] = {
