@@ -20,6 +20,7 @@ import pyarrow as pa
 from diagnostics.base.beside import beside
 from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.grade import PROBABILITY
+from diagnostics.scoring.size import AREA
 from diagnostics.scoring.tasks import TASKS
 from diagnostics.scoring.truth import Truth
 from diagnostics.statistics.evaluation import Predictions
@@ -124,22 +125,23 @@ def _shown(records: np.ndarray) -> str:
 
 @dataclass(frozen=True, slots=True)
 class PredictedRecords:
-    """What a classifier of a training says of the records of one split."""
+    """What a classifier of a training says of the records of one split; `area_mm2` (n,) is what it expects."""
 
     classifier: str
     split: str
     record_id: np.ndarray
     predictions: Predictions
+    area_mm2: np.ndarray
 
 
-def write_predictions(entries: Sequence[PredictedRecords], identity: str, folder: Path, kind: str = STATE) -> Path:
-    """Write the probabilities of all classifiers into the folder of their models; return the file's path.
+def write_predictions(parts: Sequence[pa.Table], identity: str, folder: Path, kind: str = STATE) -> Path:
+    """Write the predictions of all classifiers into the folder of their models; return the file's path.
 
     `identity` is that of the set, `kind` what the classes are.
     """
     from pyarrow import parquet
 
-    table = pa.concat_tables([_rows(entry) for entry in entries]).replace_schema_metadata(
+    table = pa.concat_tables(list(parts)).replace_schema_metadata(
         {IDENTITY_KEY: identity.encode(), KIND_KEY: kind.encode()}
     )
     path = folder / PREDICTIONS_FILE
@@ -147,11 +149,12 @@ def write_predictions(entries: Sequence[PredictedRecords], identity: str, folder
     return path
 
 
-def _rows(entry: PredictedRecords) -> pa.Table:
+def predicted_rows(entry: PredictedRecords) -> pa.Table:
+    """Return the rows of a classifier: probabilities of its classes and the damaged area that they expect."""
     found = entry.predictions
     columns = {f"{PROBABILITY}{name}": found.probability[:, k] for k, name in enumerate(found.classes)}
     names = {CLASSIFIER: [entry.classifier] * entry.record_id.size, SPLIT: [entry.split] * entry.record_id.size}
-    return pa.table({**names, RECORD: pa.array(entry.record_id, pa.int64()), **columns})
+    return pa.table({**names, RECORD: pa.array(entry.record_id, pa.int64()), **columns, AREA: entry.area_mm2})
 
 
 def prediction_table(predictions: Any) -> pa.Table:

@@ -26,6 +26,7 @@ from diagnostics.scoring.prediction_file import (
     matched_columns,
     prediction_table,
 )
+from diagnostics.scoring.score_row import ScoreRow
 from diagnostics.scoring.task import Measure, Task
 from diagnostics.scoring.tasks import TASKS, truth_of
 from diagnostics.scoring.truth import Truth
@@ -44,34 +45,6 @@ FEWEST_GEARBOXES = 6
 
 YOURS, TEST = "yours", "test"
 Answers = dict[str, np.ndarray]
-
-
-@dataclass(frozen=True, slots=True)
-class ScoreRow:
-    """One score.
-
-    Attributes
-    ----------
-    task, measure, records, name : str
-        What was asked, how it was measured, on which records, and whose predictions they are.
-    score : Interval
-        With 95 % limits over gearboxes.
-    chance : float
-        What an answer without knowledge reaches.
-    difference : Interval or None
-        The first predictions minus these, on the same resampled gearboxes; None for the first themselves.
-    falls : bool
-        Whether less is better.
-    """
-
-    task: str
-    measure: str
-    records: str
-    name: str
-    score: Interval
-    chance: float
-    difference: Interval | None
-    falls: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +89,7 @@ class Scores:
         """Return a figure with every score, its limits and chance; needs matplotlib."""
         from diagnostics.scoring.score_figure import score_figure
 
-        return score_figure(self)
+        return score_figure(self.rows)
 
     def _entry(self, row: ScoreRow) -> dict[str, object]:
         apart = row.difference or Interval(math.nan, math.nan, math.nan)

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import require_packages
+from diagnostics.scoring.score_row import ScoreRow
 from diagnostics.statistics.judgement import TITLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from diagnostics.scoring.score import ScoreRow, Scores
-
 LINE_INCHES, HEAD_INCHES, WIDTH_INCHES = 0.22, 0.75, 7.0
 
 
-def score_figure(scores: Scores) -> Figure:
+def score_figure(scores: Sequence[ScoreRow]) -> Figure:
     """Return the figure; chance is a dotted line.
 
     Raises
@@ -28,7 +28,7 @@ def score_figure(scores: Scores) -> Figure:
     from matplotlib.figure import Figure
 
     blocks: dict[tuple[str, str, str], list[ScoreRow]] = {}
-    for row in scores.rows:
+    for row in scores:
         blocks.setdefault((row.task, row.measure, row.records), []).append(row)
     heights = [HEAD_INCHES + LINE_INCHES * len(rows) for rows in blocks.values()]
     figure = Figure(figsize=(WIDTH_INCHES, sum(heights)), layout="constrained")

@@ -60,15 +60,15 @@ def _names(machine: Machine) -> Iterator[Problem]:
             if name in TAKEN:
                 allowed = f"allowed: another name than {', '.join(TAKEN)}"
                 yield Problem(f"machine.{key}.{index}.name", f"'{name}', which means something else", allowed)
+    meshes = [one.name for one in machine.meshes]
+    for index, gear in enumerate(machine.gears):
+        if gear.name in meshes:
+            yield Problem(f"machine.gears.{index}.name", f"'{gear.name}', as a mesh is called", "allowed: another name")
     flanks = {f"{mesh.name}_{name}" for mesh in machine.meshes for name in idlers(machine)}
     for index, gear in enumerate(machine.gears):
         if gear.name in flanks:
             received = f"'{gear.name}', as columns name a flank of an idler by its mesh"
             yield Problem(f"machine.gears.{index}.name", received, "allowed: a name whose columns are its own")
-    meshes = [one.name for one in machine.meshes]
-    for index, gear in enumerate(machine.gears):
-        if gear.name in meshes:
-            yield Problem(f"machine.gears.{index}.name", f"'{gear.name}', as a mesh is called", "allowed: another name")
     columns = {f"mesh_{one.name}_hz" for one in machine.meshes}
     for index, shaft in enumerate(machine.shafts):
         if f"{shaft.name}_shaft_hz" in columns:

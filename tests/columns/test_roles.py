@@ -9,6 +9,7 @@ import pytest
 
 import siggen
 from siggen.columns.record import damage_schema, listed_columns, record_schema
+from siggen.columns.state_columns import has_sham
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
@@ -29,6 +30,15 @@ def test_every_column_of_records_and_of_damage_has_a_role(preset: str) -> None:
     config = siggen.load_config(ROOT / "configs" / preset)
     for schema in (record_schema(config), damage_schema(config)):
         assert {name for name in schema.names if role(schema, name) not in set(Role)} == set()
+
+
+NEVER_FOR_SCORES = {"ideal.yaml", "linear_pits.yaml", "paper_a.yaml", "paper_b.yaml"}
+
+
+@pytest.mark.parametrize("preset", [name for name in PRESETS if name not in NEVER_FOR_SCORES])
+def test_every_preset_for_scores_has_a_sham_unless_it_runs_to_failure(preset: str) -> None:
+    config = siggen.load_config(ROOT / "configs" / preset)
+    assert has_sham(config) != bool(config.life)
 
 
 def test_what_the_simulation_alone_knows_is_neither_condition_nor_measured() -> None:

@@ -18,7 +18,7 @@ import diagnostics
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.scoring.abstain import risks
-from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
+from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
 from diagnostics.scoring.score import ScoreRow, Scores
 from diagnostics.scoring.tasks import truth_of
 from diagnostics.statistics.evaluation import Predictions
@@ -247,7 +247,15 @@ def written(dataset: Any, folder: Path, identity: str = "0" * 64) -> np.ndarray:
     own /= own.sum(axis=1, keepdims=True)
     guess = np.full_like(own, 1.0 / 3.0)
     entries = [
-        PredictedRecords(name, "test", truth.record_id, Predictions(CLASSES, truth.label, found, truth.specimen))
+        predicted_rows(
+            PredictedRecords(
+                name,
+                "test",
+                truth.record_id,
+                Predictions(CLASSES, truth.label, found, truth.specimen),
+                np.zeros(truth.label.size),
+            )
+        )
         for name, found in (("boosting", own), ("rms", guess))
     ]
     write_predictions(entries, identity, folder)
