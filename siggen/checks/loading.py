@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,16 @@ def emptied_pairs(raw: Mapping[str, Any]) -> Iterator[Problem]:
     if not isinstance(gears, Mapping) or gears.get("pairs") not in ([], ()) or set(Gears.model_fields) <= set(gears):
         return
     yield Problem("gears.pairs", "a list without a pair", "allowed: one pair at least, or null for none")
+
+
+def _beyond(told: Sequence[Problem], of_physics: Iterable[Problem]) -> Iterator[Problem]:
+    """Yield what physics finds at keys that nothing was said of, nor of their section; each key once."""
+    paths = {problem.path for problem in told}
+    for problem in of_physics:
+        parts = problem.path.split(".")
+        if paths.isdisjoint(".".join(parts[:end]) for end in range(1, len(parts) + 1)):
+            paths.add(problem.path)
+            yield problem
 
 
 def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> Config:
@@ -62,7 +72,8 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         *response_problems(parsed.sections),
         *mode_problems(parsed.sections),
     ]
-    problems = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *map(parsed.names.problem, of_physics)]
+    told = [*written, *parsed.problems, *unread, *unread_modes, *unusable]
+    problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:
         from siggen.checks.quantity_names import quantity_problems
 

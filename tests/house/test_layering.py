@@ -30,7 +30,9 @@ PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")
 PHYSICS_MAY_IMPORT = {"numpy", "scipy", "numba", "siggen", "__future__", "collections", "dataclasses", "enum"} | {
     "fractions", "functools", "itertools", "math", "typing",
 }  # fmt: skip
-DOOR = {"siggen", "siggen.errors", "siggen.columns.record", "siggen.config.names", "siggen.dataset.reading"}
+DOOR = {"siggen", "siggen.errors", "siggen.columns.record", "siggen.config.names", "siggen.dataset.reading"} | {
+    "siggen.keys.column"
+}
 SHARED = {"siggen.cli.option_groups", "siggen.cli.json_output"}
 """What both programs are built with; it knows no set."""
 TREE = {package: modules(package) for package in ROOMS}
