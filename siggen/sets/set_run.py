@@ -9,7 +9,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from siggen.columns.internals import internals_schema
-from siggen.columns.record import RecordFailure, channels, record_schema
+from siggen.columns.record import RecordFailure, channels, listed_columns, record_schema
 from siggen.dataset.card import card
 from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.environment import environment, fingerprint
@@ -52,6 +52,7 @@ def manifest_facts(config: Config, quantities: Sequence[Column]) -> dict[str, An
         "duration_s": float(config.duration_s),
         "rows_per_group": rows_per_group(config),
         "channels": [asdict(channel) for channel in channels(config)],
+        "columns": listed_columns(record_schema(config)),
         **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
     }
 
