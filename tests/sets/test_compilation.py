@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,6 +14,7 @@ from siggen.config import Config
 from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.time import exponential_step
 from siggen.engines.processes import ProcessEngine
+from siggen.engines.serial import SerialEngine
 from siggen.gears.damage import whole_loss
 from siggen.record import compilation
 from siggen.record.compilation import CompilationPart, is_compiled, run_part, to_compile
@@ -65,12 +67,16 @@ def test_a_run_compiles_before_its_first_record(short: Config, monkeypatch: pyte
 
     class Noting(ProcessEngine):
         def map(self, function, tasks):
-            for index, task in enumerate(tasks):
+            def noted(task):
                 mapped.append(type(task))
-                yield index, function(task)
+                return function(task)
+
+            return SerialEngine().map(noted, tasks)
 
     monkeypatch.setattr(compilation, "is_compiled", lambda config: False)
     storage = LocalFolder(tmp_path / "set")
     with storage.writing(), Interruption() as interruption:
         set_run(short, storage, Noting(1), None, interruption).finish()
-    assert [kind.__name__ for kind in mapped] == ["CompilationPart", "CompilationPart", "Chunk"]
+    # On a busy machine the chunk comes back before its last record, and its rest is one more.
+    assert [kind.__name__ for kind, _ in groupby(mapped)] == ["CompilationPart", "Chunk"]
+    assert mapped.count(CompilationPart) == 2
