@@ -65,7 +65,7 @@ class Rotor(PlainRotor):
 
     eccentricity_um: Annotated[Number, Within(least=0, most=200)] = Field(
         default=0.0,
-        description="of the gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
+        description="of its gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
         "allows; needs manufacture",
     )
     bearing_stiffness_z_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1e8, description=BEARINGS)

@@ -64,7 +64,7 @@ class Accelerometer(SourceKeys, Sensor):
     place: Annotated[str, IN_MOTION] = Field(
         default="pinion_bearing",
         description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
-        "modal or a path, rims with the model torsional, NAME_bearing with stages",
+        "modal or a path, rims with the model torsional, NAME_bearing with several meshes",
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,
