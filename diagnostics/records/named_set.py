@@ -59,7 +59,8 @@ class Words:
         if not mesh or name.startswith("teeth_"):
             return f"{self.names.column(own)}{behind}{channel}"
         for role in GEARS:
-            own = re.sub(rf"(?<![a-z0-9]){role}(?![a-z0-9])", self.names.gear(f"{mesh}.{role}"), own)
+            gear = self.names.gear(f"{mesh}.{role}").replace(".", "_")
+            own = re.sub(rf"(?<![a-z0-9]){role}(?![a-z0-9])", gear, own)
         return f"{own}{behind}{channel}"
 
     def _identifier(self, found: re.Match[str]) -> str:

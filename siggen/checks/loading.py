@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,16 @@ def emptied_pairs(raw: Mapping[str, Any]) -> Iterator[Problem]:
     yield Problem("gears.pairs", "a list without a pair", "allowed: one pair at least, or null for none")
 
 
+def _beyond(told: Sequence[Problem], of_physics: Iterable[Problem]) -> Iterator[Problem]:
+    """Yield what physics finds at keys that nothing was said of, nor of their section; each key once."""
+    paths = {problem.path for problem in told}
+    for problem in of_physics:
+        parts = problem.path.split(".")
+        if paths.isdisjoint(".".join(parts[:end]) for end in range(1, len(parts) + 1)):
+            paths.add(problem.path)
+            yield problem
+
+
 def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> Config:
     """Return the configuration in a YAML file or mapping, with overrides such as `gears.module_mm=3.5` applied.
 
@@ -39,19 +49,18 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         If anything is wrong with the configuration; names every problem of form and physics at once, each with the line
         of the file or the override that its value comes from.
     """
-    # compile nothing, but load the physics
-    from siggen.checks.density_files import with_density_files
-    from siggen.checks.mode_files import mode_problems, with_mode_file
-    from siggen.checks.physical_problems import physical_problems
-    from siggen.checks.quantity_names import quantity_problems
-    from siggen.checks.state_problems import state_problems
-    from siggen.specimen.measured_path import response_problems, with_measured_responses
-
     if isinstance(source, Mapping):
         raw, folder, read_from, file = source, Path(), "configuration", None
     else:
         file = config_file(source)
         raw, folder, read_from = read_yaml(file), file.parent, str(source)
+    # They load the physics, which takes as long as all else: behind a file that is missing or no YAML.
+    from siggen.checks.density_files import with_density_files
+    from siggen.checks.mode_files import mode_problems, with_mode_file
+    from siggen.checks.physical_problems import physical_problems
+    from siggen.checks.state_problems import state_problems
+    from siggen.specimen.measured_path import response_problems, with_measured_responses
+
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)
     with_modes, unread_modes = with_mode_file(filled, folder)
@@ -63,8 +72,11 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         *response_problems(parsed.sections),
         *mode_problems(parsed.sections),
     ]
-    problems = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *map(parsed.names.problem, of_physics)]
+    told = [*written, *parsed.problems, *unread, *unread_modes, *unusable]
+    problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:
+        from siggen.checks.quantity_names import quantity_problems
+
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:
         files = () if file is None else extended_files(file)

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import accumulate
 from math import pi, sqrt
+from operator import mul
 
 from siggen.config import Config, Housing, ModalHousing, RigidHousing
 from siggen.errors import counted
@@ -67,7 +69,8 @@ def implausible(config: Config) -> tuple[str, ...]:
     """Return a sentence on every implausible number of a configuration, in the order of its sections."""
     if config.gears.pairs:
         return (*_of_pairs(config), *missing(config))
-    return (*(str(quantity) for quantity in quantities(config) if quantity.implausible), *missing(config))
+    found = (config.names.text(str(quantity)) for quantity in quantities(config) if quantity.implausible)
+    return (*found, *missing(config))
 
 
 def _of_pairs(config: Config) -> Iterator[str]:
@@ -246,13 +249,24 @@ def _teeth(config: Config, pair: GearPair) -> Iterator[Quantity]:
 
 def _record(config: Config) -> Iterator[Quantity]:
     slowest = min(min(map(abs, bounds(point.speed_hz))) for point in config.operating_points)
-    turns = config.duration_s * slowest * config.gears.pinion.teeth / config.gears.gear.teeth
-    yield Quantity(
-        "duration_s", "turns of the gear in a record", (turns, turns), 3.0, 1e5, "averages need several turns"
-    )
+    shaft, order = _slowest_shaft(config)
+    turns = config.duration_s * slowest * order
+    yield Quantity("duration_s", f"turns of {shaft} in a record", (turns, turns), 3.0, 1e5, "averages need several")
     for i, sensor in enumerate(config.sensors):
         what = f"range [{sensor.quantity.shown_unit}]"
         yield _of(f"sensors.{i}.{sensor.limit_key}", what, sensor.limit, *sensor.plausible)
+
+
+def _slowest_shaft(config: Config) -> tuple[str, float]:
+    """Return what turns slowest, and its turns per turn of the first shaft."""
+    if config.planetary is not None:
+        return "the carrier", 1.0 / (1.0 + config.planetary.ring_teeth / config.gears.pinion.teeth)
+    pairs = [config.gears, *(stage.gears for stage in config.stages)]
+    orders = accumulate((pair.pinion.teeth / pair.gear.teeth for pair in pairs), mul, initial=1.0)
+    words = ["the pinion shaft", "the gear shaft", *(f"the shaft of {stage.name}.gear" for stage in config.stages)]
+    own = [f"the shaft {name}" for _, name in config.names.shafts]
+    order, shaft = min(zip(orders, own or words, strict=True))
+    return shaft, order
 
 
 def _of(path: str, what: str, number: Number, least: float, most: float, hint: str = "", over: float = 1.0) -> Quantity:

@@ -69,7 +69,9 @@ def _printed(found: SpecimenModes) -> Table:
 
     from siggen.views.natural_modes import kinetic_shares
 
-    table = Table(title=f"natural modes at a mesh stiffness of {found.mesh_stiffness_n_per_m:.3g} N/m")
+    means = found.mesh_stiffness_n_per_m.items()
+    stiffness = ", ".join(f"{value:.3g}{f' ({mesh})' if len(means) > 1 else ''}" for mesh, value in means)
+    table = Table(title=f"natural modes at a mean mesh stiffness of {stiffness} N/m")
     for name in ("mode", "frequency [Hz]", "mesh strain energy [%]"):
         table.add_column(name, justify="right")
     table.add_column("moves most (share of kinetic energy)")

@@ -56,6 +56,6 @@ def check_wanted(out: Path | None, png: Path | None, command: str) -> None:
         check_table_file(out)
     elif png is None:
         raise UsageError(
-            f"siggen {command}: nothing to write; give --out {command}.csv for the table, --png {command}.png for the "
-            "picture, or --open to see it"
+            f"siggen inspect {command}: nothing to write; give --out {command}.csv for the table, --png {command}.png "
+            "for the picture, or --open to see it"
         )

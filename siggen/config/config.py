@@ -54,7 +54,7 @@ class Splits(Section):
     test: Annotated[Whole, Field(ge=0)] = Field(default=4, description=SHARES)
     by: Literal["gearbox", "pair"] = Field(
         default="gearbox",
-        description="what splits never share; pair: gear pairs (gears.pairs), so that test holds gears never seen",
+        description="what splits never share; pair: gear pairs, so that test holds gears never seen",
     )
 
     @model_validator(mode="after")

@@ -36,7 +36,7 @@ class ToothForm(Section):
     )
     helix_deg: Annotated[Number, Within(least=-45, most=45)] = Field(
         default=0.0,
-        description="helix angle on the pitch cylinder, positive: right-handed pinion; modules, coefficients and "
+        description="helix angle on the pitch cylinder, positive: right-handed driving gear; modules, coefficients and "
         "pressure angle stay those of the normal section",
     )
     face_width_mm: Annotated[Number, Within(above=0)] = Field(description="width of the teeth in contact")

@@ -13,6 +13,9 @@ from siggen.errors import ConfigError, Problem, UsageError
 from siggen.keys.problems import received_text
 
 EXTENDS = "extends"
+REPLACED = ("gears", "stages", "planetary")
+"""Sections that a machine takes the place of."""
+REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
 DEEPEST = 8
 """Files that may extend each other in a row."""
 
@@ -21,7 +24,7 @@ def inherited(raw: Mapping[str, Any], folder: Path = Path(), source: str = "conf
     """Return a raw configuration in which `extends` is resolved; without that key, a copy.
 
     Mappings are merged key by key. Everything else replaces what it extends: numbers, lists, null, and mappings that
-    have a `kind` of their own, such as distributions.
+    have a `kind` of their own, such as distributions. A `machine` takes the place of gears and of their shafts.
 
     Parameters
     ----------
@@ -66,7 +69,16 @@ def _resolved(raw: Mapping[str, Any], folder: Path, source: str, seen: tuple[Pat
         circle = "a circle" if file in seen else f"more than {DEEPEST} files in a row"
         raise ConfigError([Problem(EXTENDS, f"{received_text(raw[EXTENDS])}, {circle}", "allowed: a chain that ends")])
     base = _anchored(_resolved(read_yaml(file), file.parent, str(file), (*seen, file)), file.parent)
-    return merged(base, {key: value for key, value in raw.items() if key != EXTENDS})
+    own = {key: value for key, value in raw.items() if key != EXTENDS}
+    return merged(_without_drivetrain(base) if own.get("machine") else base, own)
+
+
+def _without_drivetrain(base: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is extended without what a machine says itself: gears, and the shafts that they stand on."""
+    rest = {key: value for key, value in base.items() if key not in REPLACED}
+    if isinstance(dynamics := rest.get("dynamics"), Mapping):
+        rest["dynamics"] = {key: value for key, value in dynamics.items() if key not in REPLACED_OF_DYNAMICS}
+    return rest
 
 
 def _extended(name: object, folder: Path, source: str) -> Path:

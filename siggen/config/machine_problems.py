@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from siggen.config.machine import Machine, MachineMesh
+from siggen.config.stages import IDLER
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 
-SAME_RATIO = 1e-12
-"""Ratios of speed round a loop that differ by less are one; fractions of teeth differ by nothing or by more."""
 TAKEN = ("motor", "load", "casing", "either", "both", "several", "none", "mesh")
 """Words with a meaning of their own in places of sensors and in labels."""
 
@@ -47,6 +46,11 @@ def train(machine: Machine) -> Train:
     return Train(tuple(meshes), tuple(shafts))
 
 
+def idlers(machine: Machine) -> frozenset[str]:
+    """Return the names of the gears that one gear drives and that drive another one."""
+    return frozenset({mesh.driver for mesh in machine.meshes} & {mesh.driven for mesh in machine.meshes})
+
+
 def _names(machine: Machine) -> Iterator[Problem]:
     for key in Machine.model_fields:
         names = [one.name for one in getattr(machine, key)]
@@ -56,6 +60,15 @@ def _names(machine: Machine) -> Iterator[Problem]:
             if name in TAKEN:
                 allowed = f"allowed: another name than {', '.join(TAKEN)}"
                 yield Problem(f"machine.{key}.{index}.name", f"'{name}', which means something else", allowed)
+    meshes = [one.name for one in machine.meshes]
+    for index, gear in enumerate(machine.gears):
+        if gear.name in meshes:
+            yield Problem(f"machine.gears.{index}.name", f"'{gear.name}', as a mesh is called", "allowed: another name")
+    flanks = {f"{mesh.name}_{name}" for mesh in machine.meshes for name in idlers(machine)}
+    for index, gear in enumerate(machine.gears):
+        if gear.name in flanks:
+            received = f"'{gear.name}', as columns name a flank of an idler by its mesh"
+            yield Problem(f"machine.gears.{index}.name", received, "allowed: a name whose columns are its own")
     columns = {f"mesh_{one.name}_hz" for one in machine.meshes}
     for index, shaft in enumerate(machine.shafts):
         if f"{shaft.name}_shaft_hz" in columns:
@@ -87,7 +100,7 @@ def _pairs(machine: Machine) -> Iterator[Problem]:
 
 
 def _gears(machine: Machine) -> Iterator[Problem]:
-    """Yield gears that mesh with none or with too many."""
+    """Yield gears that mesh with none or with too many; two that a gear drives, or is driven in, are a branch."""
     meshes: dict[str, list[str]] = {}
     for mesh in machine.meshes:
         for name in (mesh.driver, mesh.driven):
@@ -95,15 +108,15 @@ def _gears(machine: Machine) -> Iterator[Problem]:
     for index, gear in enumerate(machine.gears):
         own = meshes.get(gear.name, [])
         received = f"'{gear.name}', in {len(own)} meshes{': ' if own else ''}{', '.join(own)}"
-        if len(own) != 1:
+        if len(own) not in {1, 2}:
             more = "give each mesh a gear of its own on the shaft" if own else "leave the gear out, or let it mesh"
-            allowed = f"allowed: one mesh; {more}"
+            allowed = f"allowed: one mesh, or two of an idler, which is driven in one and drives in the other; {more}"
             yield Problem(f"machine.gears.{index}.name", received, allowed)
 
 
 def _connected(machine: Machine) -> Iterator[Problem]:
     """Yield shafts that no mesh joins with the first one."""
-    reached, first = set(_speeds(machine)), machine.shafts[0].name
+    reached, first = _reached(machine, 0, machine.meshes), machine.shafts[0].name
     for index, shaft in enumerate(machine.shafts):
         if index not in reached:
             received = f"'{shaft.name}', which no mesh joins with the shaft {first}"
@@ -111,22 +124,22 @@ def _connected(machine: Machine) -> Iterator[Problem]:
 
 
 def _loops(machine: Machine) -> Iterator[Problem]:
-    """Yield meshes that close a loop; one whose ratios disagree could not turn at all."""
-    speeds, shaft_of = _speeds(machine), _shaft_of(machine)
-    closing = len(machine.meshes) - len(machine.shafts) + 1
+    """Yield each mesh that closes a loop with those before it, and whether its shafts could turn at all."""
+    shaft_of = _shaft_of(machine)
     for index, mesh in enumerate(machine.meshes):
         driving, driven = shaft_of[mesh.driver], shaft_of[mesh.driven]
-        turned, else_turned = speeds[driving] * _ratio(machine, mesh), speeds[driven]
-        if abs(turned / else_turned - 1) > SAME_RATIO:
-            received = (
-                f"a loop: by this mesh the shaft {machine.shafts[driven].name} turns {turned} times per turn of "
-                f"{machine.shafts[0].name}, by the others {else_turned} times"
-            )
-            yield Problem(f"machine.meshes.{index}", received, "allowed: teeth that turn each shaft at one speed")
-            return
-    if closing > 0:
-        received = f"{closing} more than join all shafts, so power has two ways"
-        yield Problem("machine.meshes", received, "allowed: one way from the motor to the load")
+        before = _reached(machine, driving, machine.meshes[:index])
+        if driven in before:
+            turns, ratio = before[driven].turns, _ratio(machine, mesh)
+            received = f"'{mesh.name}', which closes a loop with {', '.join(before[driven].meshes)}"
+            if turns != ratio:
+                names = machine.shafts[driven].name, machine.shafts[driving].name
+                received += (
+                    f" and cannot turn: by its teeth the shaft {names[0]} makes {float(ratio):.4g} turns per turn of "
+                    f"{names[1]}, by theirs {float(turns):.4g}"
+                )
+            allowed = "allowed: one way from the motor to the load; leave one mesh of the loop out, with its gears"
+            yield Problem(f"machine.meshes.{index}.name", received, allowed)
 
 
 def _branches(machine: Machine) -> Iterator[Problem]:
@@ -141,12 +154,15 @@ def _branches(machine: Machine) -> Iterator[Problem]:
 
 
 def _spans(machine: Machine) -> Iterator[Problem]:
-    inner = train(machine).shafts[1:-1]
+    inner, of_idlers = train(machine).shafts[1:-1], {_shaft_of(machine)[name] for name in idlers(machine)}
     for index, shaft in enumerate(machine.shafts):
-        if shaft.span_mm is not None and index not in inner:
-            yield Problem(
-                f"machine.shafts.{index}.span_mm", str(shaft.span_mm), "allowed: null of a shaft with one gear"
-            )
+        path, received = f"machine.shafts.{index}.span_mm", str(shaft.span_mm)
+        if index in of_idlers and shaft.span_mm not in (None, IDLER):
+            yield Problem(path, received, "allowed: idler or null of a shaft with one gear in two meshes")
+        elif index not in inner and shaft.span_mm is not None:
+            yield Problem(path, received, "allowed: null of a shaft with one gear")
+        elif index not in of_idlers and shaft.span_mm == IDLER:
+            yield Problem(path, received, "allowed: a number, null, or one gear in two meshes on the shaft")
 
 
 def _shaft_of(machine: Machine) -> dict[str, int]:
@@ -160,15 +176,23 @@ def _ratio(machine: Machine, mesh: MachineMesh) -> Fraction:
     return -Fraction(teeth[mesh.driver], teeth[mesh.driven])
 
 
-def _speeds(machine: Machine) -> Mapping[int, Fraction]:
-    """Return shaft -> turns per turn of the first one, for the shafts that meshes join with it."""
-    shaft_of, speeds, waiting = _shaft_of(machine), {0: Fraction(1)}, [0]
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """Turns of a shaft per turn of another one, and the names of the meshes from that to it."""
+
+    turns: Fraction
+    meshes: tuple[str, ...]
+
+
+def _reached(machine: Machine, first: int, meshes: Sequence[MachineMesh]) -> Mapping[int, _Way]:
+    """Return shaft -> the way to it from the first one, for the shafts that meshes join with that."""
+    shaft_of, ways, waiting = _shaft_of(machine), {first: _Way(Fraction(1), ())}, [first]
     while waiting:
         shaft = waiting.pop()
-        for mesh in machine.meshes:
+        for mesh in meshes:
             ends, ratio = (shaft_of[mesh.driver], shaft_of[mesh.driven]), _ratio(machine, mesh)
-            for here, there, turned in ((*ends, ratio), (*ends[::-1], 1 / ratio)):
-                if here == shaft and there not in speeds:
-                    speeds[there] = speeds[shaft] * turned
+            for (here, there), turned in ((ends, ratio), (ends[::-1], 1 / ratio)):
+                if here == shaft and there not in ways:
+                    ways[there] = _Way(ways[here].turns * turned, (*ways[here].meshes, mesh.name))
                     waiting.append(there)
-    return speeds
+    return ways

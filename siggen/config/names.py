@@ -24,6 +24,13 @@ KEYS: Table = (
 )  # fmt: skip
 """Keys of the short form and those of a file with a `machine`."""
 START, END = r"(?<![\w.])", r"(?![\w])"
+COORDINATE = re.compile(r"(?P<axis>[xyz]|theta|phi|phi_x|phi_y)_(?P<body>\d+|[mlcb])(?P<unit>(?:_rad|_m)?)")
+"""Degrees of freedom: gears by their number in the order of power, and by a letter what is no gear."""
+BODIES = {"m": "motor", "l": "load", "c": "casing", "b": "base"}
+CHANGED = re.compile(r"states\.\d+\.changes\.")
+"""In front of a key that a state changes."""
+NAMED_GEAR = re.compile(r"\b[Tt]he (?=[a-z0-9_]+\.(?:pinion|gear)\b(?! shaft))")
+"""An article that a name has not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +39,7 @@ class Names:
 
     Attributes
     ----------
-    gears : pinion, gear, SLOW.pinion, ... and the user's names
+    gears : pinion, gear, SLOW.pinion, ... and the user's names; an idler has two, MESH.NAME by the mesh of each flank
     shafts : pinion, gear, SLOW (the shaft of SLOW.gear) and the user's names
     meshes : the empty name of the first mesh, SLOW, ... and the user's names
     paths : keys of the short form, such as stages.0.gears.pinion, and where the user wrote them
@@ -80,6 +87,8 @@ class Names:
             return name
         if name == "mesh_hz":
             return f"mesh_{self.mesh('')}_hz"
+        if found := COORDINATE.fullmatch(name):
+            return f"{found['axis']}_{self._body(found['body'])}{found['unit']}"
         words = _column_words(self)
         return _found(tuple(words), r"(?<![a-z0-9])", r"(?![a-z0-9])").sub(lambda one: words[one[0]], name)
 
@@ -93,6 +102,7 @@ class Names:
             )
         words = _text_words(self)
         text = re.sub(r", stages: [a-z0-9_, ]+", "", text)
+        text = NAMED_GEAR.sub("", text)
         text = _found(tuple(words), START, END).sub(lambda one: words[one[0]], text)
         place = [name for name, _ in self.meshes].index(mesh)
         shafts = [f"the {own} shaft" for _, own in self.shafts[place : place + 2]]
@@ -110,7 +120,12 @@ class Names:
         path, received, allowed = (self.text(one, mesh) for one in (problem.path, problem.received, problem.allowed))
         keys = {short: own for short, own in KEYS if short not in {DRIVER, DRIVEN}}
         path = ".".join(keys.get(part, part) for part in path.split("."))
+        if changed := CHANGED.match(path):
+            path = changed[0] + self.text(path.removeprefix(changed[0]))
         return replace(problem, path=path, received=received, allowed=allowed)
+
+    def _body(self, code: str) -> str:
+        return self.gears[int(code) - 1][1] if code.isdigit() else BODIES[code]
 
     def _mesh_at(self, path: str) -> str:
         found = re.match(r"stages\.(\d+)", path)
@@ -143,7 +158,7 @@ def _words(names: Names) -> dict[str, str]:
 def _column_words(names: Names) -> dict[str, str]:
     """Return parts of the names of columns."""
     of_shafts = {f"{short}_shaft": f"{own}_shaft" for short, own in names.shafts}
-    gears = {short.replace(".", "_"): own for short, own in names.gears}
+    gears = {short.replace(".", "_"): own.replace(".", "_") for short, own in names.gears}
     return {**of_shafts, **names.places, **gears}
 
 

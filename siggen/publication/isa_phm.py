@@ -14,7 +14,8 @@ from siggen.keys.number import Number, bounds
 from siggen.publication.publication_facts import Author, PublicationFacts
 
 if TYPE_CHECKING:
-    from siggen.config import Config, State
+    from siggen.config import Config, Stage, State
+    from siggen.config.names import Names
 
 ISA_PHM = "i_investigation.json"
 """As the working group names the file."""
@@ -132,15 +133,16 @@ def _assay(
     }
 
 
-def _position(state: State) -> str:
+def _position(config: Config, state: State) -> str:
     """Return where a state is damaged, as the configuration names it."""
-    named = dict.fromkeys(one.position for one in state.damages)
+    names = {**config.names.places, **config.names.damaged}
+    named = dict.fromkeys(names.get(one.position, one.position) for one in state.damages)
     return " and ".join(named) if state.damaged else "none"
 
 
 def _samples(config: Config, state: State) -> Iterator[dict[str, Any]]:
     """Yield the gear pair in a state at each operating point."""
-    position = _position(state)
+    position = _position(config, state)
     fault = {"fault_type": state.fault, "fault_position": position, "fault_severity": state.severity}
     for number, point in enumerate(config.operating_points):
         conditions = {"speed": _range(point.speed_hz), "torque": _range(point.torque_nm)}
@@ -170,7 +172,16 @@ def _characteristics(config: Config) -> dict[str, tuple[str, float | str, str]]:
         },
         "module": ("Normal module", _span([pair.module_mm for pair in gears.pairs]) or _range(gears.module_mm), "mm"),
         "face_width": ("Face width", widths, "mm"),
+        **{key: value for stage in config.stages for key, value in _of_stage(stage, names)},
     }
+
+
+def _of_stage(stage: Stage, names: Names) -> Iterator[tuple[str, tuple[str, float | str, str]]]:
+    for gear in ("pinion", "gear"):
+        teeth = str(stage.gears.teeth_of(gear)[0])
+        yield names.column(f"teeth_{stage.name}_{gear}"), (names.text(f"Teeth of the {stage.name}.{gear}"), teeth, "")
+    for key, name in (("module", "Normal module"), ("face_width", "Face width")):
+        yield f"{key}_{stage.name}", (f"{name} of {stage.name}", _range(getattr(stage.gears, f"{key}_mm")), "mm")
 
 
 def _factors() -> Iterator[dict[str, Any]]:

@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, TypeAlias
 
+from siggen.config.changes import Change
+from siggen.config.inheritance import REPLACED, REPLACED_OF_DYNAMICS
 from siggen.dataset.card_making import drive_text, friction_text
+from siggen.errors import Problem
 from siggen.keys.section import Section
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 NOT_NUMBERS = ("name", "seed", "specimens", "kind")
+WORDS = ("gear", "bearing", "place", "shaft")
+"""Keys that hold a gear, a shaft or a place of a machine."""
+_Row: TypeAlias = tuple[str, str, str, bool]
+"""Key, value, meaning and whether it is the default."""
 
 
 def physics_section(config: Config) -> str:
     """Return a table of what the simulation of this set has and has not."""
     lines = [f"| {what} | {'on' if on else 'off'} | {how} |" for what, on, how in _physics(config)]
-    return "\n".join(["## Physics that is on and off", "", "| what | | how |", "|---|---|---|", *lines, ""])
+    text = "\n".join(["## Physics that is on and off", "", "| what | | how |", "|---|---|---|", *lines, ""])
+    return config.names.text(text)
 
 
 def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
@@ -45,7 +53,7 @@ def assumed_numbers_section(config: Config) -> str:
 
     A default says nothing about any machine: it is what siggen takes where nobody says otherwise.
     """
-    rows = list(_numbers("", config))
+    rows = list(_own(config) if config.machine is not None else _numbers("", config, {}))
     chosen = sum(from_default is False for *_, from_default in rows)
     chosen_by = {True: "default", False: "configuration"}
     lines = [f"| `{path}` | {value} | {chosen_by[default]} | {meaning} |" for path, value, meaning, default in rows]
@@ -58,7 +66,19 @@ def assumed_numbers_section(config: Config) -> str:
     return "\n".join([head, "| key | value | chosen by | meaning |", "|---|---|---|---|", *lines, ""])
 
 
-def _numbers(path: str, section: Section) -> Iterator[tuple[str, str, str, bool]]:
+def _own(config: Config) -> Iterator[_Row]:
+    """Yield the rows of a machine in the words of its file."""
+    names = config.names
+    words = {**names.damaged, **names.places, **dict(names.shafts)}
+    for path, value, meaning, default in _numbers("", config, words):
+        parts = path.split(".")
+        if parts[0] in REPLACED or (parts[0] == "dynamics" and parts[1] in REPLACED_OF_DYNAMICS[:2]):
+            continue
+        said = names.of_any_mesh(meaning) if parts[0] == "machine" else names.text(meaning)
+        yield names.problem(Problem(path, "", "")).path, value, said, default
+
+
+def _numbers(path: str, section: Section, words: Mapping[str, str]) -> Iterator[_Row]:
     """Yield path, value, meaning and whether it is the default of every leaf of a section."""
     for name, field in type(section).model_fields.items():
         value = getattr(section, name)
@@ -68,18 +88,24 @@ def _numbers(path: str, section: Section) -> Iterator[tuple[str, str, str, bool]
             continue
         if items:
             for place, item in enumerate(items):
-                yield from _numbers(f"{below}.{place}", item)
+                if isinstance(item, Change):
+                    yield f"{below}.{item.path}", f"{item.how} {item.value}", str(field.description), False
+                else:
+                    yield from _numbers(f"{below}.{place}", item, words)
         elif isinstance(value, Section) and "kind" not in type(value).model_fields:
-            yield from _numbers(below, value)
+            yield from _numbers(below, value, words)
         else:
             default = not field.is_required() and value == field.get_default(call_default_factory=True)
-            yield below, _text(value), str(field.description or ""), default
+            yield below, _text(name, value, words), str(field.description or ""), default
 
 
-def _text(value: object) -> str:
+def _text(name: str, value: object, words: Mapping[str, str]) -> str:
     if isinstance(value, Section):
         parts = value.model_dump()
         kind = parts.pop("kind", "")
-        return f"{kind} {', '.join(f'{key} {part}' for key, part in parts.items() if part is not None)}".strip()[:120]
+        told = [f"{key} {_text(key, part, words)}" for key, part in parts.items() if part is not None]
+        return f"{kind} {', '.join(told)}".strip()[:120]
     text = "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+    if name in WORDS:
+        text = words.get(text, text)
     return (text if len(text) <= 120 else f"{text[:117]}...").replace("|", "/").replace("\n", " ")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, pi
 
@@ -11,17 +11,18 @@ import pyarrow as pa
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
-from siggen.config.names import Names
+from siggen.dynamics.mesh.contact_names import PAIR_PREFIX
 from siggen.errors import UsageError
 from siggen.gears.contact.kind_row import KindRow, kind_row
 from siggen.gears.contact.loads_under_force import loads_under_force
 from siggen.gears.contact.slice_pressures import slice_pressures
 from siggen.gears.contact.table_columns import TableSolver, row_faces, table_solver
 from siggen.gears.contact.table_options import face_slices
-from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, has_extent, pits_of
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
+from siggen.keys.problems import nearest
 from siggen.planning.plan import PlannedRecord, planned_record
-from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
+from siggen.planning.stages import stage_config, stage_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.internals import record_internals
 from siggen.record.specimen_state import SpecimenState, refused_as
@@ -74,8 +75,8 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
     ----------
     config : Config
     record_id : int
-    gear, tooth : 'pinion' or 'gear', of a machine their own names, and an index; None: the first damaged tooth, else
-        tooth 0 of the pinion
+    gear, tooth : as damage names it, such as 'pinion' or 'slow.gear', of a machine by its own name, and an index; None:
+        the first damaged tooth, else tooth 0 of the first pinion
 
     Raises
     ------
@@ -89,7 +90,7 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
             "dynamics.mesh.law: received linear; allowed: pairs, whose tooth pairs have forces of their own"
         )
     refuse_planetary(config, "pressures of a flank")
-    gear = None if gear is None else _gear_called(config.names, gear)
+    called = None if gear is None else _gear_called(config, gear)
     record = planned_record(config, record_id)
     config = state_config(config, record.specimen_id, record.state_id)
     torque_nm = draw_operating_point(config, record.specimen_id, record.operating_point_id).torque_nm
@@ -99,10 +100,11 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
             "record with a torque from 0, which loads the drive flanks, where damage is"
         )
     state, point, angle_rad, found = record_internals(config, record)
-    gear, tooth = _looked_at(state.pair, state.damage, gear, tooth, config.names)
-    engagement = _engagement(state.pair, angle_rad, gear, tooth, config.names)
+    meshes = _meshes(config, draw_specimen(config, record.specimen_id), state, point, angle_rad)
+    mesh, which, tooth = _looked_at(meshes, called, tooth)
+    engagement = _engagement(mesh, which, tooth)
     with refused_as("outside_model"):
-        return _solved(config, record, state, point, (gear, tooth, engagement), angle_rad, found)
+        return _solved(mesh, record, (which, tooth, engagement), found)
 
 
 def pressure_table(pressure: FacePressure) -> pa.Table:
@@ -121,29 +123,69 @@ def pressure_table(pressure: FacePressure) -> pa.Table:
     return pa.table(columns)
 
 
-def _gear_called(names: Names, gear: str) -> str:
-    """Return pinion or gear of the first mesh, which alone is solved across the face here, by what a user calls it."""
-    called = {names.gear(which): which for which in ("pinion", "gear")}
+@dataclass(frozen=True, slots=True)
+class _Mesh:
+    """One mesh of a record, as if it were its only one; `words`: what its pinion and its gear are called."""
+
+    name: str
+    config: Config
+    specimen: Specimen
+    state: SpecimenState
+    point: OperatingPoint
+    angle_rad: FloatArray
+    words: Mapping[str, str]
+
+    @property
+    def prefix(self) -> str:
+        """What quantities of its pairs begin with."""
+        return f"{self.name}_{PAIR_PREFIX}" if self.name else PAIR_PREFIX
+
+
+def _meshes(
+    config: Config, specimen: Specimen, state: SpecimenState, point: OperatingPoint, angle_rad: FloatArray
+) -> list[_Mesh]:
+    """Return every mesh of a record, each with the angle of its own pinion."""
+    found = [_Mesh("", config, specimen, state, point, angle_rad, _words(config, ""))]
+    for index, (own, behind) in enumerate(zip(state.behind, state.mesh.behind, strict=True)):
+        alone, name = stage_config(config, specimen, index), specimen.stages[index].name
+        turned = angle_rad * behind.turning + behind.turned_pitches * 2.0 * pi / own.pair.pinion.teeth
+        of_mesh = stage_specimen(specimen, index)
+        found.append(_Mesh(name, alone, of_mesh, own, behind.at(point), turned, _words(config, name)))
+    return found
+
+
+def _words(config: Config, mesh: str) -> Mapping[str, str]:
+    return {which: config.names.gear(f"{mesh}.{which}" if mesh else which) for which in ("pinion", "gear")}
+
+
+def _gear_called(config: Config, gear: str) -> str:
+    """Return what a user calls a gear if there is one of that name."""
+    called = [word for mesh in ("", *(one.name for one in config.stages)) for word in _words(config, mesh).values()]
     if gear not in called:
-        raise UsageError(f"--gear {gear}; allowed: {' or '.join(called)}, which are in mesh where the motor drives")
-    return called[gear]
+        raise UsageError(f"--gear {gear}; allowed: {', '.join(called)}{nearest(gear, called)}")
+    return gear
 
 
-def _looked_at(pair: GearPair, damage: Damage, gear: str | None, tooth: int | None, names: Names) -> tuple[str, int]:
-    damaged = [(which, index) for which in ("pinion", "gear") for index in damaged_teeth(damage, which)]
-    if gear is None:
-        gear = damaged[0][0] if damaged and tooth is None else "pinion"
+def _looked_at(meshes: Sequence[_Mesh], called: str | None, tooth: int | None) -> tuple[_Mesh, str, int]:
+    """Return the mesh, which of its gears, and the tooth that are looked at."""
+    gears = [(mesh, which) for mesh in meshes for which in ("pinion", "gear")]
+    teeth = [(mesh, which, index) for mesh, which in gears for index in damaged_teeth(mesh.state.damage, which)]
+    if called is None:
+        mesh, which = teeth[0][:2] if teeth and tooth is None else gears[0]
+    else:
+        mesh, which = next(one for one in gears if one[0].words[one[1]] == called)
     if tooth is None:
-        tooth = next((index for which, index in damaged if which == gear), 0)
-    count = pair.member(gear).teeth
+        tooth = next((index for one, gear, index in teeth if one is mesh and gear == which), 0)
+    count = mesh.state.pair.member(which).teeth
     if not 0 <= tooth < count:
-        called = names.text(f"the {gear}")
-        raise UsageError(f"--tooth {tooth}: {called} has {count} teeth; allowed: 0 to {count - 1}")
-    return gear, tooth
+        article = "" if mesh.config.names.gears else "the "
+        raise UsageError(f"--tooth {tooth}: {article}{mesh.words[which]} has {count} teeth; allowed: 0 to {count - 1}")
+    return mesh, which, tooth
 
 
-def _engagement(pair: GearPair, angle_rad: FloatArray, gear: str, tooth: int, names: Names) -> int:
+def _engagement(mesh: _Mesh, gear: str, tooth: int) -> int:
     """Return the number of the first engagement of a tooth that lies within the record."""
+    pair, angle_rad = mesh.state.pair, mesh.angle_rad
     pitch, teeth = 2.0 * pi / pair.pinion.teeth, pair.member(gear).teeth
     first = ceil(float(angle_rad[0]) / pitch)
     number = first + (tooth - first) % teeth
@@ -151,25 +193,18 @@ def _engagement(pair: GearPair, angle_rad: FloatArray, gear: str, tooth: int, na
     if last > angle_rad[-1]:
         turns = (angle_rad[-1] - angle_rad[0]) / (2.0 * pi)
         raise UsageError(
-            f"{names.gear(gear)} tooth {tooth} goes through mesh nowhere within the record, {turns:.2f} turns of the "
-            f"{names.gear('pinion')}; "
-            "allowed: another --tooth, or a longer record (--set duration_s=...)"
+            f"{mesh.words[gear]} tooth {tooth} goes through mesh nowhere within the record, {turns:.2f} turns of the "
+            f"{mesh.words['pinion']}; allowed: another --tooth, or a longer record (--set duration_s=...)"
         )
     return number
 
 
 def _solved(
-    config: Config,
-    record: PlannedRecord,
-    state: SpecimenState,
-    point: OperatingPoint,
-    looked_at: tuple[str, int, int],
-    angle_rad: FloatArray,
-    found: Mapping[str, FloatArray],
+    mesh: _Mesh, record: PlannedRecord, looked_at: tuple[str, int, int], found: Mapping[str, FloatArray]
 ) -> FacePressure:
     gear, tooth, number = looked_at
-    pair, specimen = state.pair, draw_specimen(config, record.specimen_id)
-    options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair), pair)
+    config, state, pair, angle_rad = mesh.config, mesh.state, mesh.state.pair, mesh.angle_rad
+    options = face_options(mesh.specimen.dynamics, largest_force_n(config.operating_points, pair), pair)
     errors = specimen_errors(config, pair, record.specimen_id, record.state_id)
     slices = face_slices(pair, options)
     lead = np.zeros(slices) if errors is None else errors.lead_m(slices)
@@ -179,17 +214,17 @@ def _solved(
     row = kind_row(pair, state.options, options, POSITIONS, (pits[0], pits[1]))
     entered = number * 2.0 * pi / pair.pinion.teeth
     roll = (row.position_m - pair.contact_start_m) / pair.pinion.base_radius_m
-    slot = number % sum(name.endswith("_force_n") and name.startswith("pair_") for name in found)
+    slot = number % sum(name.endswith("_force_n") and name.startswith(mesh.prefix) for name in found)
     # a back flank that is met on the way is another flank
-    force = np.interp(entered + roll, angle_rad, np.maximum(found[f"pair_{slot}_force_n"], 0.0))
+    force = np.interp(entered + roll, angle_rad, np.maximum(found[f"{mesh.prefix}{slot}_force_n"], 0.0))
     tilt = np.interp(entered + roll, angle_rad, found.get("mesh_tilt_rad", np.zeros(angle_rad.size)))
     load, pressure, at_edge = _over_positions(solver, row, force, tilt)
     member = pair.member(gear)
     along = row.position_m if gear == "pinion" else pair.line_of_action_m - row.position_m
     view = flank_view(pair, config.states[record.state_id].name, gear, tooth, pits_of(shown, gear, tooth))
     return FacePressure(
-        view=replace(view, gear=config.names.gear(gear)),
-        point=point,
+        view=replace(view, gear=mesh.words[gear]),
+        point=mesh.point,
         roll_deg=np.degrees(roll),
         arc_mm=1e3 * along**2 / (2.0 * member.base_radius_m),
         face_mm=1e3 * pair.face_width_m * (np.arange(slices) + 0.5) / slices,

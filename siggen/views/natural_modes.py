@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,13 +18,16 @@ from siggen.specimen.gears import gear_pair, mesh_options, stiffness_options
 from siggen.specimen.planetary_numbers import planets_in_ring
 from siggen.specimen.structure import structure
 
+FIRST = "first"
+"""The mesh without a name."""
+
 
 @dataclass(frozen=True, slots=True)
 class SpecimenModes:
-    """Modes of a healthy specimen at its mean mesh stiffness, with the names of the degrees of freedom."""
+    """Modes of a healthy specimen at the mean stiffness of each mesh, with the names of the degrees of freedom."""
 
     coordinates: tuple[str, ...]
-    mesh_stiffness_n_per_m: float
+    mesh_stiffness_n_per_m: Mapping[str, float]
     mass: FloatArray
     modes: Modes
 
@@ -44,7 +48,10 @@ def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
     specimen = draw_specimen(config, specimen_id)
     stiffness = _mean_stiffness(specimen)
     assembled = structure(config, specimen)
-    return SpecimenModes(assembled.coordinates, stiffness[0], assembled.mass, natural_modes(assembled, stiffness))
+    coordinates = tuple(map(config.names.column, assembled.coordinates))
+    meshes = (config.names.mesh(mesh.name) or FIRST for mesh in assembled.meshes)
+    of_mesh = dict(zip(meshes, stiffness, strict=True))
+    return SpecimenModes(coordinates, of_mesh, assembled.mass, natural_modes(assembled, stiffness))
 
 
 def _mean_stiffness(specimen: Specimen) -> list[float]:

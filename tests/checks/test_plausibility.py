@@ -7,6 +7,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.errors import ConfigError
+from tests.config.mill import mill, with_machine
 
 SLIPS = {
     "modulus in Pa": "gears.youngs_modulus_gpa=206e9",
@@ -55,6 +56,13 @@ def test_a_slip_of_units_is_refused_or_named(slip: str) -> None:
         found = str(error)
     key = SLIPS[slip].partition("=")[0]
     assert SAID_OF.get(slip, key) in found
+
+
+def test_a_record_is_measured_by_the_turns_of_the_slowest_shaft_which_is_called_by_name() -> None:
+    found = "\n".join(implausible(load_config(mill(duration_s=0.5, machine=with_machine("meshes", 1, module_mm=60.0)))))
+    assert "turns of the shaft output in a record 1.88; usual" in found  # 0.5 s x 30 Hz x 18/47 x 17/52
+    assert "turns of the carrier in a record 2" in "\n".join(implausible(load_config("planetary", ["duration_s=0.4"])))
+    assert "machine.meshes.1.module_mm: module [mm] 60" in found
 
 
 def test_idealised_sets_say_what_they_lack() -> None:

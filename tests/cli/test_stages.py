@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
+import json
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,8 @@ import yaml
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
+from tests.command import Ended, command
+from tests.config.mill import mill
 from tests.config.staged import SLOW, SPALL, staged
 
 SENSORS = [
@@ -26,14 +27,8 @@ SENSORS = [
 ]
 
 
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", "from siggen.cli.app import main; main()", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=600,
-    )
+def run(*arguments: str) -> Ended:
+    return command("siggen", *arguments)
 
 
 def written(folder: Path, **changes: Any) -> str:
@@ -160,10 +155,16 @@ def test_a_stage_is_looked_at_by_its_name(tmp_path: Path, made: Path) -> None:
     assert "severe_n_per_m" in curves.read_text(encoding="utf-8").splitlines()[0]
 
 
-def test_modes_are_those_of_all_shafts(tmp_path: Path) -> None:
+def test_modes_are_those_of_all_shafts_and_call_a_machines_gears_by_name(tmp_path: Path) -> None:
     done = run("inspect", "modes", written(tmp_path), "--json")
     assert done.returncode == 0, done.stderr
     assert "shape_theta_4" in done.stdout
+    file = tmp_path / "mill.yaml"
+    file.write_text(yaml.safe_dump(mill()), encoding="utf-8")
+    found = json.loads(run("inspect", "modes", str(file), "--json").stdout)
+    assert list(found["mesh_stiffness_n_per_m"]) == ["fast", "slow"]
+    moving = {name.partition("shape_theta_")[2] for name in found["modes"][0] if "theta" in name}
+    assert moving == {"motor", "ida", "otto", "eva", "karl", "load"}
 
 
 def test_the_preset_of_two_stages_is_generated_and_verified(tmp_path: Path) -> None:

@@ -15,10 +15,13 @@ from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.publication.dataset_info import class_names
+from siggen.publication.isa_phm import isa_phm
+from siggen.publication.physics_sections import assumed_numbers_section, physics_section
 from siggen.publication.publication_facts import TEMPLATE, read_publication_facts
 from siggen.publication.publish import publish
 from siggen.publication.spdx_licence import _identifiers
 from siggen.sets.verification import verify
+from tests.config.mill import mill
 from tests.config.planets import planets
 from tests.config.staged import staged
 from tests.publication.conftest import facts_file
@@ -128,6 +131,21 @@ def test_the_card_says_what_is_on_what_was_assumed_and_who_says_so(published: Pa
     ):
         assert line in card
     assert "under the licence `cc-by-4.0`" in card
+
+
+def test_the_card_of_a_machine_says_what_its_file_says(tmp_path: Path) -> None:
+    config = load_config(mill())
+    text = assumed_numbers_section(config)
+    rows = {cells[1].strip(" `"): cells[2].strip() for line in text.splitlines() if len(cells := line.split("|")) > 2}
+    assert "pinion" not in text + physics_section(config)
+    assert not [key for key in rows if key.startswith(("gears", "stages", "planetary", "dynamics.gear"))]
+    expected = {"machine.gears.3.teeth": "17", "sensors.0.place": "input_bearing"}
+    assert {key: rows[key] for key in expected} == expected
+    assert "gear eva" in rows["states.1.damage"]
+    made = isa_phm(config, read_publication_facts(facts_file(tmp_path)), "", [], [])
+    values = [one["value"] for one in made["studies"][1]["materials"]["samples"][0]["factorValues"]]
+    assert "eva" in values
+    assert "teeth_karl" in str(made["studies"][0]["characteristicCategories"])
 
 
 def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(kept: Path, tmp_path: Path) -> None:

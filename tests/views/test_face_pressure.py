@@ -15,6 +15,8 @@ from siggen.errors import UsageError
 from siggen.planning.plan import planned_record
 from siggen.record.internals import record_internals
 from siggen.views.face_pressure import FacePressure, face_pressure
+from tests.config.mill import mill
+from tests.config.staged import SPALL as SPALL_OF_STAGE
 
 CONFIG = "configs/quickstart.yaml"
 SPALL = "{kind: irregular, profile_length_mm: 1.2, face_share: 0.6, face_centre_mm: 8, edge_radius_mm: 0.15}"
@@ -76,6 +78,20 @@ def test_a_healthy_tooth_of_the_gear_has_no_edges() -> None:
     assert not found.at_edge.any()
     # Contact climbs the pinion's flank and goes down the gear's.
     assert np.all(np.diff(found.arc_mm) < 0.0)
+
+
+def test_a_further_mesh_is_found_by_its_gear_and_its_damaged_tooth_alone_is_unloaded() -> None:
+    damage = {**SPALL_OF_STAGE, "face_length_mm": 30.0, "profile_length_mm": 2.0, "gear": "eva", "teeth": [3]}
+    states = [{"name": "healthy"}, {"name": "severe", "damage": damage}]
+    config = load_config(mill(duration_s=0.2, fs_hz=12_800.0, states=states))
+    damaged, before = face_pressure(config, 1), face_pressure(config, 1, "eva", 0)
+    assert (damaged.view.gear, damaged.view.tooth) == ("eva", 3)
+    assert damaged.point.torque_nm == pytest.approx(20.0 * 47 / 18)
+    single = slice(60, 90)  # where one pair carries all
+    assert damaged.force_n[single].min() < 0.3 * before.force_n[single].min()  # others differ by less than a tenth
+    assert before.force_n[single].mean() == pytest.approx(20.0 * 47 / 18 / (0.5 * 17 * 3e-3 * 0.9397), rel=0.05)
+    with pytest.raises(UsageError, match="--gear pinion; allowed: ida, otto, eva, karl"):
+        face_pressure(config, 1, "pinion")
 
 
 def run(*arguments: object) -> tuple[int, str]:
