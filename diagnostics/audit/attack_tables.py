@@ -97,13 +97,18 @@ def _auc(value: float) -> str:
 
 
 def verdict_words(audit: Audit, state: str) -> str:
-    """Say by what a state is found best; where it is not found, by which probes it was looked for in vain."""
+    """Say by what a state is found best; where it is not found, by which probes it was looked for in vain.
+
+    What an attacker reaches on a sham is no damage.
+    """
     probes = audit.probes(state)
     if not probes:
         return "not judged"
     best = max(probes, key=lambda name: probes[name])
     if audit.gearboxes_needed:
         return f"too few gearboxes to tell ({_auc(probes[best])} by {best})"
+    if audit.on_sham(best) >= probes[best] >= lost_below(audit, state):
+        return f"not shown to be damage: {best} reaches {_auc(probes[best])}, and {_auc(audit.on_sham(best))} on a sham"
     if probes[best] >= max(TEACHABLE_AUC, lost_below(audit, state)):
         return f"can be found, best by {best} ({_auc(probes[best])})"
     tried = joined([f"{name} ({_auc(auc)})" for name, auc in probes.items()])

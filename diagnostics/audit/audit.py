@@ -74,6 +74,15 @@ class Audit:
     reference: ReferenceComparison | None = None
     shams: tuple[ShamFound, ...] = ()
 
+    def on_sham(self, attacker: str) -> float:
+        """Return the AUC that an attacker reaches on a sham; NaN where it was not asked.
+
+        Of one that was not, the AUC of the strongest that tells a sham more often than chance does.
+        """
+        own = [found.reached[attacker] for found in self.shams if attacker in found.reached]
+        told = [found.auc.value for found in self.shams if found.told]
+        return max(own or told, default=math.nan)
+
     @property
     def gearboxes_needed(self) -> int | None:
         """The least number of gearboxes that may tell, where chance alone looks like damage; else None."""

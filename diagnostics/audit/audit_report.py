@@ -26,7 +26,7 @@ from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
 from diagnostics.audit.separability_findings import separability_findings, verdict
-from diagnostics.audit.sham import ShamFound, shams_found
+from diagnostics.audit.sham import ShamFound, sham_traps, shams_found
 from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
@@ -37,6 +37,9 @@ from diagnostics.records.named_set import words_of
 from diagnostics.records.recording import gear_names
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
+
+SEEN_ALONE, BESIDE = "alone", "beside a healthy record"
+"""What attackers see of a record."""
 
 
 def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
@@ -206,6 +209,7 @@ def audit_set(
         best = best_indicators(measured.matrix(), seed)
     attacked, chance, shams = _attacks(measured, seed, stage)
     found |= attacked
+    findings += sham_traps(shams)
     compared = realism(measured, options.speed) if options.with_realism else None
     beside = None
     if real is not None:
@@ -246,8 +250,11 @@ def _attacks(
         bank = signal_attackers(measured, seed, advance)
     with stage("attacking", len(bank)) as advance:
         found = bank_detections(measured, bank, seed, advance)
+    sides = {
+        side: [one for one in bank if is_referenced(one.name) == (side == BESIDE)] for side in (SEEN_ALONE, BESIDE)
+    }
     with stage("permuted states", len(damaged_states(measured))) as advance:
-        return found, chance_limit(measured, bank, seed, advance), shams_found(measured, bank, seed)
+        return found, chance_limit(measured, bank, seed, advance), shams_found(measured, sides, seed)
 
 
 def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realism: bool) -> list[str]:

@@ -85,13 +85,13 @@ def _number(value: float) -> Cell:
 
 
 def audit_summary(audit: Audit) -> list[str]:
-    """Return the verdict, what it rests on, realism where asked for, the hardest state, the size that is found."""
+    """Return what shams tell, the verdict and its basis, realism if asked for, the hardest state, the size found."""
     found = [basis_sentence(audit)]
     found += [_realism_sentence(audit.realism)] if audit.realism else []
     found += reference_sentences(audit.reference) if audit.reference else []
     return [
-        audit.verdict,
         *sham_sentences(audit.shams),
+        audit.verdict,
         *found,
         *_hardest_sentence(audit),
         *([] if audit.gearboxes_needed else _size_sentence(shown_ladders(audit))),

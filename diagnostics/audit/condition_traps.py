@@ -20,7 +20,7 @@ import numpy as np
 
 from diagnostics.audit.bank_detections import bank_maxima, damaged_states, permuted
 from diagnostics.audit.column_attackers import all_columns, best_column
-from diagnostics.audit.finding import Finding, column_group
+from diagnostics.audit.finding import Finding, must_not_tell
 from diagnostics.audit.held_out import Attacker, HeldOut, dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 from diagnostics.indicators.background_levels import NOISE_LEVELS
@@ -69,7 +69,7 @@ def _metadata(measured: MeasuredSet) -> dict[str, np.ndarray]:
     found = {
         name: values.astype(np.float64)
         for name, values in measured.labels.items()
-        if values.ndim == 1 and values.dtype.kind in "biuf" and column_group(name) is not None
+        if values.ndim == 1 and values.dtype.kind in "biuf" and must_not_tell(measured.roles, name)
     }
     return found | {name: measured.values[name][:, 0] for name in (*PULSES, "samples") if name in measured.values}
 

@@ -1,76 +1,32 @@
 """A finding of the separability audit: what was measured, against which bound, and how to mend the configuration.
 
-Which label columns are conditions of a record, by group, and how a tie of the state to one is mended.
+Which label columns must not tell the state, and how a tie of the state to one is mended: by role and section, which the
+set says of every column. A column of which it says nothing is a condition.
 """
 
 from __future__ import annotations
 
-import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from siggen.keys.column import Role
 
-@dataclass(frozen=True, slots=True)
-class ColumnGroup:
-    """Label columns that one part of the configuration draws."""
+TOLD_BY_NOTHING = (Role.CONDITION, Role.PROVENANCE)
+"""Roles whose columns must not tell the state; damage and what follows from it may, names of records do."""
 
-    name: str
-    pattern: str
-    mend: str
-
-
-GROUPS = (
-    ColumnGroup(
-        "solver",
-        r"integrator|solver|steps?_per|time_step|tolerance|table_points|damping_option",
-        "Use one solver setting for all states.",
-    ),
-    ColumnGroup(
-        "start",
-        r"start_(angle|turn)|seed",
-        "Draw start angle and seeds per record, by one law for all states.",
-    ),
-    ColumnGroup(
-        "noise",
-        r"noise|floor|mains|hum|background|tone|bearing_tone",
-        "Draw the noise by one law for all states, in the unit of the channel and not from the level of the record.",
-    ),
-    ColumnGroup(
-        "path",
-        r"path|sensor|gain|sensitivity|mount|cross_axis|axis|delay|resonance|mode_|residue",
-        "Draw the transfer path per specimen and use it for all states of that specimen.",
-    ),
-    ColumnGroup(
-        "manufacture",
-        r"error|pitch_dev|runout|eccentric|misalign|lead|f_pt|f_p_|f_ha|f_fa|grade|iso|manufactur|relief|tolerance_share",
-        "Draw the errors per specimen and keep them in all its states, or draw them anew in every state alike.",
-    ),
-    ColumnGroup(
-        "length",
-        r"^samples$|duration|revolutions|length_s$",
-        "Give all records the same length. Do not pad.",
-    ),
-    ColumnGroup(
-        "operation",
-        r"speed|torque|_hz$|load|temperature|ripple|slip|pulses_per_s|operating",
-        "Use the same operating points for all states of a specimen.",
-    ),
-    ColumnGroup("status", r"^status", "Find out why records of one state fail or end otherwise, and draw again."),
-    ColumnGroup("other", r"", "Draw this quantity by one law for all states."),
-)
-
-CONSEQUENCES = re.compile(
-    r"^(record_id|specimen_id|state_id|state|split|repeat|fault|severity|faulty_.*|damage.*|contact_length_loss.*|"
-    r"mesh_stiffness_loss.*|through_face|sham|changed_keys|has_.*|sink_depth_.*|contact_loss_share|integration_error|snr_.*|clipped_share_.*|"
-    r"(.*_)?(pits?|spalls?|film|lambda|asperity|friction)(_.*)?)$"
-)
-"""Identities, what the damage is, and what follows from it: these may differ between states."""
+MENDS = {
+    "duration_s": "Give all records the same length. Do not pad.",
+    "operating_points": "Use the same operating points for all states of a specimen, and draw start angles per record.",
+    "sensors": "Draw path and noise by one law for all states of a specimen, not from the level of the record.",
+    "manufacture": "Draw the errors per specimen and keep them in all its states, or draw them anew in every state.",
+}
+"""By the section of the configuration that draws a column."""
+MEND = "Draw this quantity by one law for all states, or say that it follows from the damage (its role)."
 
 
-def column_group(name: str) -> ColumnGroup | None:
-    """Return the group of a label column, or None for identities, damage and its consequences."""
-    if CONSEQUENCES.match(name):
-        return None
-    return next(group for group in GROUPS if re.search(group.pattern, name.lower()))
+def must_not_tell(roles: Mapping[str, Role], name: str) -> bool:
+    """Return whether a label column must not tell the state."""
+    return roles.get(name, Role.CONDITION) in TOLD_BY_NOTHING
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +36,7 @@ class Finding:
     Attributes
     ----------
     trap : str
-        Which trap: a fixed word, such as `state_tied_to_operation`.
+        Which trap: a fixed word, such as `state_tied_to_sensors`.
     measured : str
         What was measured.
     bound : str

@@ -26,6 +26,7 @@ from diagnostics.records.sample_bytes import BYTES
 from diagnostics.records.state_classes import HEALTHY, ordered_states
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
+from siggen.keys.column import Role
 
 TORQUE_TOLERANCE = 0.01
 SPEED_TOLERANCE = 0.002
@@ -106,6 +107,8 @@ class MeasuredSet:
         Configuration and failed records of the set.
     other_quantities : dict of str to str
         Channel name -> quantity, of the channels that hold no acceleration.
+    roles, sections : dict of str
+        Role of the label columns, and the section of the configuration that draws them; of others conditions.
     """
 
     labels: dict[str, np.ndarray]
@@ -118,6 +121,8 @@ class MeasuredSet:
     config: dict[str, Any]
     failures: list[dict[str, Any]]
     other_quantities: dict[str, str] = field(default_factory=dict)
+    roles: dict[str, Role] = field(default_factory=dict)
+    sections: dict[str, str] = field(default_factory=dict)
 
     @property
     def accelerations(self) -> np.ndarray:
@@ -185,6 +190,8 @@ def measured_set(
         config=dict(dataset.config),
         failures=list(dataset.manifest.get("failures", [])),
         other_quantities={c.name: c.quantity for c in dataset.channels if c.quantity != RECORDED.word},
+        roles=_of_labels(dataset, dataset.role),
+        sections=_of_labels(dataset, dataset.section),
     )
 
 
@@ -211,10 +218,14 @@ def _values(table: RecordTable, indicators: Sequence[str]) -> dict[str, np.ndarr
 
 
 def _scalar_labels(dataset: Dataset) -> dict[str, Any]:
+    table = dataset.labels()
+    return _of_labels(dataset, table.column)
+
+
+def _of_labels(dataset: Dataset, fact: Callable[[str], Any]) -> dict[str, Any]:
+    """Return a fact of every label column, of planetary sets those of a pair besides."""
     signals = {channel.column for channel in dataset.channels} | {TACHO_NAME}
-    names = [field.name for field in dataset.labels().schema if field.name not in signals]
-    table = dataset.labels(columns=names)
-    found = {name: table.column(name) for name in names}
+    found = {name: fact(name) for name in dataset.labels().column_names if name not in signals}
     return as_pair(found) if gear_names(dataset).is_planetary else found
 
 

@@ -19,9 +19,11 @@ from itertools import combinations
 
 import numpy as np
 
-from diagnostics.audit.finding import ColumnGroup, Finding, column_group
+from diagnostics.audit.finding import MEND as GENERAL_MEND
+from diagnostics.audit.finding import MENDS, Finding, must_not_tell
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.base.seeding import Purpose, generator
+from siggen.keys.column import Role
 
 HARMONICS, SIDEBANDS = 5, 6
 ANGLES = 2048
@@ -32,6 +34,7 @@ SHARE_ALLOWED = 0.1
 MOST_SPECIMENS = 24
 """Pairs among the first specimens are enough to see one draw for all."""
 
+MANUFACTURE = "manufacture"
 MEND = "Draw the manufacturing errors anew for every specimen."
 
 CHANGED = "changed_keys"
@@ -45,8 +48,8 @@ LARGEST_DEVIATIONS = 5.0
 LARGEST_EXCESS = 0.03
 """Share of the state's entropy beyond chance; less is a tie nobody could use."""
 
-MEASURED_COLUMNS = ("samples", "pulses_per_s", "start_turn")
-"""Conditions read off the signals and pulses, in case a label is missing or wrong."""
+MEASURED_COLUMNS = {"samples": "duration_s", "pulses_per_s": "operating_points", "start_turn": "operating_points"}
+"""Conditions read off signals and pulses, in case a label is missing or wrong, and the section that draws them."""
 
 
 def error_draws(measured: MeasuredSet) -> list[Finding]:
@@ -58,7 +61,7 @@ def equal_error_labels(measured: MeasuredSet) -> list[Finding]:
     """Return a finding if the error labels of all healthy specimens agree though they are not zero."""
     healthy = measured.healthy
     _, first = np.unique(measured.labels["specimen_id"][healthy], return_index=True)
-    names = [name for name in measured.labels if (group := column_group(name)) and group.name == "manufacture"]
+    names = [name for name, section in measured.sections.items() if section == MANUFACTURE and name in measured.labels]
     columns = {name: measured.labels[name][healthy][first] for name in names}
     numeric = {name: column for name, column in columns.items() if column.dtype.kind in "fiu" and np.any(column != 0)}
     varied = [name for name, column in numeric.items() if len(set(column.tolist())) > 1]
@@ -143,26 +146,26 @@ class Tie:
 
 
 def state_ties(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
-    """Return one finding per group of columns that tells the state."""
+    """Return one finding for the columns of each section that tell the state."""
     return [_finding(group, ties) for group, ties in tied_columns(measured, seed).items()] + failed_states(measured)
 
 
-def tied_columns(measured: MeasuredSet, seed: int = 0) -> dict[ColumnGroup, list[Tie]]:
-    """Return the columns that tell the state, by group; states that change keys of the machine tell by design."""
+def tied_columns(measured: MeasuredSet, seed: int = 0) -> dict[str, list[Tie]]:
+    """Return the columns that tell the state, by section of the configuration, else by role.
+
+    States that change keys of the machine tell by design.
+    """
     kept = unchanged(measured)
     state = _codes(measured.labels["state"][kept])
     if state.max(initial=0) == 0:
         return {}
     specimen = _codes(measured.labels["specimen_id"][kept])
     permuted = permuted_states(state, specimen, seed)
-    found: dict[ColumnGroup, list[Tie]] = {}
+    found: dict[str, list[Tie]] = {}
     for name, values in _columns(measured).items():
-        group = column_group(name)
-        if group is None:
-            continue
         tie = strongest_tie(name, values[kept], state, specimen, permuted)
         if tie is not None and tie.is_found:
-            found.setdefault(group, []).append(tie)
+            found.setdefault(_group(measured, name), []).append(tie)
     return found
 
 
@@ -173,9 +176,18 @@ def unchanged(measured: MeasuredSet) -> np.ndarray:
 
 
 def _columns(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    labels = {name: values for name, values in measured.labels.items() if values.ndim == 1}
+    labels = {
+        name: values
+        for name, values in measured.labels.items()
+        if values.ndim == 1 and must_not_tell(measured.roles, name)
+    }
     seen = {name: measured.values[name][:, 0] for name in MEASURED_COLUMNS if name in measured.values}
     return {**labels, **seen}
+
+
+def _group(measured: MeasuredSet, name: str) -> str:
+    section = MEASURED_COLUMNS.get(name) or measured.sections.get(name)
+    return section or measured.roles.get(name, Role.CONDITION)
 
 
 def permuted_states(state: np.ndarray, specimen: np.ndarray, seed: int, count: int = PERMUTATIONS) -> np.ndarray:
@@ -244,15 +256,15 @@ def _bins(values: np.ndarray) -> np.ndarray:
     return _codes(np.searchsorted(edges, values, side="right"))
 
 
-def _finding(group: ColumnGroup, ties: list[Tie]) -> Finding:
+def _finding(group: str, ties: list[Tie]) -> Finding:
     strongest = max(ties, key=lambda tie: tie.observed)
-    others = f" (and {len(ties) - 1} more columns of this group)" if len(ties) > 1 else ""
+    others = f" (and {len(ties) - 1} more columns of {group})" if len(ties) > 1 else ""
     return Finding(
-        f"state_tied_to_{group.name}",
+        f"state_tied_to_{group}",
         f"`{strongest.column}`{others} explains {strongest.observed:.0%} of the state's entropy",
         f"chance with permuted states gives {strongest.chance:.1%} (spread {strongest.spread:.1%}), at most "
         f"{LARGEST_EXCESS:.0%} more is allowed",
-        group.mend,
+        MENDS.get(group, GENERAL_MEND),
     )
 
 

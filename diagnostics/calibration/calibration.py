@@ -110,10 +110,17 @@ def rig_teeth(rig: Path) -> tuple[dict[str, Any], tuple[int, int]]:
         If its model has no bearings, it has further meshes, or its gears are drawn.
     """
     config = siggen.load_config(rig).canonical()
+    if (machine := config.get("machine")) is not None:
+        raise UsageError(
+            f"{rig}: machine: received the meshes {', '.join(mesh['name'] for mesh in machine['meshes'])}; a "
+            "calibration is of one pair of gears. Write that pair as `gears` and leave `machine` out: lines of another "
+            "stage are then found in the recordings. `siggen-diagnostics baseline --config` takes all meshes"
+        )
     if stages := config.get("stages"):
         raise UsageError(
             f"{rig}: stages: received {', '.join(stage['name'] for stage in stages)}; a calibration is of the pair of "
-            "`gears` alone. Leave `stages` out: lines of another stage are then found in the recordings."
+            "`gears` alone. Leave `stages` out: lines of another stage are then found in the recordings. "
+            "`siggen-diagnostics baseline --config` takes all meshes"
         )
     if config.get("planetary") is not None:
         raise UsageError(

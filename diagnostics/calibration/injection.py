@@ -27,6 +27,7 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from siggen.errors import UsageError
+from siggen.keys.column import Role
 
 TRAIN, VALIDATION, TEST = "train", "validation", "test"
 RECORDED, INJECTED = "recorded", "injected"
@@ -35,16 +36,20 @@ OF_DAMAGE = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm
 """Labels of the simulated damage; 0 for a recording as it is."""
 
 ORIGIN = pa.schema(
-    {
-        "recording": pa.string(),
-        "origin": pa.string(),
-        "simulated_gearbox": pa.int64(),
-        "path_number": pa.int64(),
-        "identity": pa.string(),
-        "difference_db": pa.float64(),
-        "difference_torque_nm": pa.float64(),
-    }
+    [
+        pa.field(name, kind, metadata={"role": Role.KEY if name == "recording" else Role.CONSEQUENCE})
+        for name, kind in {
+            "recording": pa.string(),
+            "origin": pa.string(),
+            "simulated_gearbox": pa.int64(),
+            "path_number": pa.int64(),
+            "identity": pa.string(),
+            "difference_db": pa.float64(),
+            "difference_torque_nm": pa.float64(),
+        }.items()
+    ]
 )
+"""What was added to a recording; it differs between states because they are made so."""
 TEXT = """# Recordings with injected damage
 
 Rows with `origin` recorded are your healthy recordings. Rows with `origin` injected are the same recordings plus the

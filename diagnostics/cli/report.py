@@ -65,7 +65,7 @@ def report(
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
     from diagnostics.records.record_classes import check_kind
     from diagnostics.report.life_report import write_life_report
-    from diagnostics.report.life_rows import is_lives
+    from diagnostics.scoring.truth import is_lives
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 

@@ -19,14 +19,19 @@ def score(
         Path,
         typer.Argument(
             metavar="FILE",
-            help="Predictions, .parquet or .csv: record_id, and damage (a number that rises with damage), "
-            "p_CLASS of every class (probabilities), or class (its name).",
+            help="Predictions, .parquet or .csv: record_id, and the columns of a task: damage (a number that rises "
+            "with damage), p_CLASS of every class or class, gear and tooth, area_mm2, rul_h, confidence.",
             show_default=False,
         ),
     ],
     baselines: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Folder that `report` wrote: its classifiers are judged on the same records."),
+        typer.Option(
+            metavar="DIR",
+            help="Folder that `report` wrote: its classifiers are judged on the same records. SET_report or SET_models "
+            "unless told.",
+            show_default=False,
+        ),
     ] = None,
     split: Annotated[str, typer.Option(metavar="test|validation", help="Whose records are judged.")] = "test",
     out: Annotated[
@@ -40,11 +45,11 @@ def score(
 
     Missing, doubled and unknown records and values that cannot be are refused in one list.
 
-    Example: siggen-diagnostics score data/quickstart mine.parquet --baselines data/quickstart_report
+    Example: siggen-diagnostics score data/quickstart mine.parquet
     """
     from diagnostics.indicators.classifier_table import check_suffix, write_table
-    from diagnostics.records.named_set import open_set
     from diagnostics.scoring.score import score as scored
+    from siggen.dataset.reading import open as open_set
 
     if out:
         check_suffix(out)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +27,7 @@ from diagnostics.records.state_classes import CLASS
 from diagnostics.records.usable_records import RecordCheck
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
+from siggen.keys.column import Role
 
 BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
 SETTINGS_KEY = b"diagnostics.indicators"
@@ -69,7 +70,8 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1,
     notes = check_table(found, dataset)
     for note in notes:
         warnings.warn(f"{dataset.path}: {note}", stacklevel=2)
-    return feature_matrix(classifier_table(found, notes), told)
+    matrix = feature_matrix(classifier_table(found, notes), told)
+    return replace(matrix, label_roles={**{name: dataset.role(name) for name in LABEL_NAMES}, CLASS: Role.TARGET})
 
 
 def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:

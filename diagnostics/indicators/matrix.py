@@ -1,6 +1,4 @@
-"""Labels and indicators of records as arrays.
-
-What the columns of a table of records are to whoever learns from them: condition, target, key; read, never guessed.
+"""Labels and indicators of records as arrays, with the role of every column as the set has it.
 
 Only a target is to be predicted, and only a condition is known before a measurement. What follows from the damage, as
 the loss of mesh stiffness does, would give the answer away.
@@ -8,22 +6,13 @@ the loss of mesh stiffness does, would give the answer away.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from diagnostics.records.state_classes import CLASS
-
-KEY, CONDITION, MEASURED, CONSEQUENCE, TARGET = "key", "condition", "measured", "consequence", "target"
-LABEL_ROLES = {
-    **dict.fromkeys(("record_id", "specimen_id", "state_id", "operating_point_id", "repeat", "split"), KEY),
-    **dict.fromkeys(("teeth_pinion", "teeth_gear", "speed_hz", "torque_nm"), CONDITION),
-    **dict.fromkeys(("state", CLASS, "fault", "severity", "damaged_area_mm2", "damaged_area_share"), TARGET),
-    **dict.fromkeys(("through_face", "sham"), TARGET),  # where a set has them
-    "mesh_stiffness_loss": CONSEQUENCE,
-}
-"""Role of every label that goes along with indicators."""
+from siggen.keys.column import Role
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +27,14 @@ class FeatureMatrix:
         Column names, `<indicator>__<channel>`.
     labels : dict of str to (records,)
         Label columns, and `class`: what classifiers tell apart.
+    label_roles : mapping of str to Role
+        Of labels, as the set says them; others are conditions.
     """
 
     values: np.ndarray
     names: tuple[str, ...]
     labels: dict[str, np.ndarray]
+    label_roles: Mapping[str, Role] = field(default_factory=dict)
 
     @property
     def groups(self) -> np.ndarray:
@@ -56,9 +48,10 @@ class FeatureMatrix:
         return tuple(dict.fromkeys(self.labels[CLASS][order].tolist()))
 
     @property
-    def roles(self) -> dict[str, str]:
+    def roles(self) -> dict[str, Role]:
         """Role of every column: `measured` of indicators; `key`, `condition`, `consequence`, `target` of labels."""
-        return {**dict.fromkeys(self.names, MEASURED), **{name: LABEL_ROLES[name] for name in self.labels}}
+        labels = {name: self.label_roles.get(name, Role.CONDITION) for name in self.labels}
+        return {**dict.fromkeys(self.names, Role.MEASURED), **labels}
 
     def split(self, name: str) -> FeatureMatrix:
         """Return the records of a split: train, validation or test."""
@@ -66,9 +59,9 @@ class FeatureMatrix:
 
     def rows(self, mask: np.ndarray) -> FeatureMatrix:
         """Return the chosen records."""
-        return FeatureMatrix(self.values[mask], self.names, {k: v[mask] for k, v in self.labels.items()})
+        return replace(self, values=self.values[mask], labels={k: v[mask] for k, v in self.labels.items()})
 
     def columns(self, names: Sequence[str]) -> FeatureMatrix:
         """Return the chosen columns."""
         place = {name: k for k, name in enumerate(self.names)}
-        return FeatureMatrix(self.values[:, [place[name] for name in names]], tuple(names), self.labels)
+        return replace(self, values=self.values[:, [place[name] for name in names]], names=tuple(names))

@@ -19,11 +19,12 @@ from diagnostics.indicators.indicator import base_name
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
 from diagnostics.prediction.release import Release, release, save_release
 from diagnostics.records.record_classes import STATE
-from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
+from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import Judged
 from diagnostics.training.classifier_file import save_classifier
 from diagnostics.training.realism import meaning_of_scores
+from diagnostics.training.severity import expected_area
 from diagnostics.training.splits import TEST, VALIDATION, SpecimenSplit
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
@@ -247,12 +248,14 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     return notes
 
 
-def _predicted(training: Training, table: pa.Table) -> list[PredictedRecords]:
+def _predicted(training: Training, table: pa.Table) -> list[pa.Table]:
     """Return what every classifier says of the validation and test records of the table."""
     record_id, split = np.asarray(table.column("record_id").to_pylist()), training.split
     parts = [(VALIDATION, split.validation, "validation"), (TEST, split.test, "predictions")]
     return [
-        PredictedRecords(judged.name, name, record_id[mask], found)
+        predicted_rows(
+            PredictedRecords(judged.name, name, record_id[mask], found, expected_area(found, training.class_areas))
+        )
         for judged in training.judged
         for name, mask, attribute in parts
         if (found := getattr(judged, attribute)) is not None

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import siggen
 from diagnostics.records.gear_train import GEARS, Mesh, gear_train, teeth_columns
@@ -18,8 +16,8 @@ def configured_train(file: Path) -> tuple[Mesh, ...]:
     Parameters
     ----------
     file : Path
-        As `siggen init` writes it, with or without `stages` or `planetary`; anything of it but teeth and places of
-        planets counts nothing.
+        As `siggen init` writes it, with or without `stages` or `planetary`, or a `machine`; anything of it but teeth
+        and places of planets counts nothing.
 
     Raises
     ------
@@ -28,19 +26,14 @@ def configured_train(file: Path) -> tuple[Mesh, ...]:
     ConfigError
         If it cannot be used.
     """
-    config = siggen.load_config(file).canonical()
-    pinion, gear = _teeth(config["gears"], file)
-    if (planetary := config.get("planetary")) is not None:
-        places = tuple(float(degrees) / 360.0 for degrees in planetary["positions_deg"])
-        return gear_train(planet_labels(Planets((pinion, gear, int(planetary["ring_teeth"])), places)))
-    labels = {"teeth_pinion": pinion, "teeth_gear": gear}
-    for stage in config.get("stages") or ():
-        labels |= zip(teeth_columns([stage["name"]]), _teeth(stage["gears"], file), strict=True)
-    return gear_train(labels)
-
-
-def _teeth(gears: Any, file: Path) -> tuple[int, int]:
-    found = [gears[name]["teeth"] for name in GEARS] if isinstance(gears, Mapping) and not gears.get("pairs") else []
-    if len(found) != 2 or not all(isinstance(z, int) for z in found):
+    config = siggen.load_config(file)
+    if config.gears.pairs:
         raise UsageError(f"{file}: gears: received gears that differ within a set; allowed: one pair of known teeth")
-    return found[0], found[1]
+    pinion, gear = config.gears.pinion.teeth, config.gears.gear.teeth
+    if (planetary := config.planetary) is not None:
+        places = tuple(float(degrees) / 360.0 for degrees in planetary.positions_deg)
+        return gear_train(planet_labels(Planets((pinion, gear, planetary.ring_teeth), places)))
+    labels = {"teeth_pinion": pinion, "teeth_gear": gear}
+    for stage in config.stages:
+        labels |= zip(teeth_columns([stage.name]), (getattr(stage.gears, name).teeth for name in GEARS), strict=True)
+    return gear_train(labels)

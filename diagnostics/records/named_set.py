@@ -18,6 +18,7 @@ from diagnostics.records.gear_train import GEARS
 from siggen.config.names import NO_NAMES, Names
 from siggen.dataset import reading
 from siggen.dataset.reading import Dataset, RowGroup
+from siggen.keys.column import Role
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,7 +59,8 @@ class Words:
         if not mesh or name.startswith("teeth_"):
             return f"{self.names.column(own)}{behind}{channel}"
         for role in GEARS:
-            own = re.sub(rf"(?<![a-z0-9]){role}(?![a-z0-9])", self.names.gear(f"{mesh}.{role}"), own)
+            gear = self.names.gear(f"{mesh}.{role}").replace(".", "_")
+            own = re.sub(rf"(?<![a-z0-9]){role}(?![a-z0-9])", gear, own)
         return f"{own}{behind}{channel}"
 
     def about(self, column: str, text: str) -> str:
@@ -117,6 +119,14 @@ class NamedSet(Dataset):
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return labels as `Dataset.labels`."""
         return self._renamed(super().labels(split, self._there(columns)))
+
+    def role(self, name: str) -> Role:
+        """Return a role as `Dataset.role`."""
+        return super().role(self._own.get(name, name))
+
+    def section(self, name: str) -> str:
+        """Return a section as `Dataset.section`."""
+        return super().section(self._own.get(name, name))
 
     def records(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None

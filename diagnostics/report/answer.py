@@ -217,11 +217,26 @@ def answer_sentences(found: Detectors, *, error_free: bool = False) -> list[tupl
             )
         ]
     return [
+        *([("On a sham", sham)] if (sham := sham_sentence(found)) else []),
         ("From which size", size_sentence(best)),
         ("By what", detector_sentence(found, best)),
         ("With a healthy record of the same gearbox", reference_sentence(found)),
         ("How sure", " ".join([*([ERROR_FREE] if error_free else []), certainty_sentence(best)])),
     ]
+
+
+def sham_sentence(found: Detectors) -> str:
+    """Say what detectors reach on damage without effect, and which states they find no better; empty without one."""
+    sides = {"alone": found.strongest, "beside a healthy record": found.strongest_referenced}
+    asked = {side: (one, one.sham) for side, one in sides.items() if one is not None and one.sham is not None}
+    if not asked:
+        return ""
+    reached = joined([f"{decimal(sham.value)} ({limits(sham)}) {side}" for side, (_, sham) in asked.items()])
+    said = f"Damage without any effect is told from healthy records with an AUC of {reached}; 0.5 is chance."
+    for side, (one, sham) in asked.items():
+        if lost := [name for name, state in one.states.items() if not state.auc.value > sham.value]:
+            said += f" What is found of {joined(lost)} {side} is no more than that, so it counts as not found."
+    return said
 
 
 def size_sentence(best: Detector) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 
 from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
@@ -16,6 +17,8 @@ from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.wording import counted
 from diagnostics.records.named_set import words_of
 from diagnostics.report.life_rows import INDICATORS, inspections
+from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
+from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.life_scores import BINS, QUANTILES, LifeScores, life_scores
 from diagnostics.training.life_baselines import FOLDS, Inspections, baseline_predictions
@@ -26,7 +29,7 @@ RESERVATION = "All lives are simulated, by a law whose parameters were published
 
 
 def write_life_report(dataset: Dataset, folder: Path, seed: int, stage: Stage = silent_stage) -> Path:
-    """Write `report.html` and `metrics.json`; return the page's path.
+    """Write `report.html`, `metrics.json` and `predictions.parquet`; return the page's path.
 
     Raises
     ------
@@ -48,9 +51,18 @@ def write_life_report(dataset: Dataset, folder: Path, seed: int, stage: Stage = 
     metrics = {"seed": seed, **_facts(found), "baselines": {name: one.numbers() for name, one in scores.items()}}
     text = json.dumps(metrics, indent=1, allow_nan=False)
     (folder / "metrics.json").write_text(f"{text}\n", encoding="utf-8")
+    identity = str(dataset.manifest["identity"])
+    write_predictions([_predicted_rows(name, found, values) for name, values in predicted.items()], identity, folder)
     page = folder / PAGE
     page.write_text(_page(dataset, found, scores, seed), encoding="utf-8")
     return page
+
+
+def _predicted_rows(name: str, found: Inspections, predicted_h: np.ndarray) -> pa.Table:
+    """Return what a baseline says of the inspections of all splits; lives are never below 0."""
+    quantiles = dict(zip(COLUMNS, np.maximum(predicted_h, 0.0).T, strict=True))
+    names = {CLASSIFIER: [name] * found.record_id.size, SPLIT: found.split}
+    return pa.table({**names, RECORD: pa.array(found.record_id, pa.int64()), **quantiles})
 
 
 def _facts(found: Inspections) -> dict[str, object]:

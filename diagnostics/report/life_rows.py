@@ -17,11 +17,6 @@ OUTLOOK_COLUMNS = ("rul_q10_h", "rul_q50_h", "rul_q90_h")
 FEWEST_FAILED = 4
 
 
-def is_lives(dataset: Dataset) -> bool:
-    """Return whether the gearboxes of a set run to failure."""
-    return dataset.config.get("life") is not None
-
-
 def inspections(dataset: Dataset, stage: Stage) -> Inspections:
     """Return the inspections of a set that have a record, in the order of gearbox and age.
 
@@ -46,7 +41,9 @@ def inspections(dataset: Dataset, stage: Stage) -> Inspections:
         outlook[row["specimen_id"], row["inspection"]] = [row[name] for name in OUTLOOK_COLUMNS]
     shares = _worst_shares(dataset.life("teeth"))
     return Inspections(
+        record_id=np.array([rows[key]["record_id"] for key in keys]),
         specimen=np.array([specimen for specimen, _ in keys]),
+        split=np.array([rows[key]["split"] for key in keys]),
         age_h=np.array([rows[key]["age_h"] for key in keys]),
         rul_h=np.array([rows[key]["rul_h"] for key in keys], dtype=np.float64),
         observed_h=np.array([units[specimen]["observed_h"] for specimen, _ in keys]),

@@ -1,6 +1,6 @@
 """Predictions as columns: read from a file or taken from Python, and written by every training.
 
-One row per record and classifier: `record_id`, the columns of a task (`diagnostics.scoring.tasks`), and `classifier`
+One row per record and classifier: `record_id`, the columns of a task (`diagnostics.scoring.task`), and `classifier`
 where a file holds several. What trainings write names the set in its metadata, so that it is never laid beside another
 one.
 
@@ -17,18 +17,22 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.base.beside import beside
 from diagnostics.records.record_classes import STATE
-from diagnostics.records.state_classes import CLASS
-from diagnostics.scoring.tasks import DAMAGE, PROBABILITY, TASKS, Truth, probabilities
+from diagnostics.scoring.grade import PROBABILITY
+from diagnostics.scoring.size import AREA
+from diagnostics.scoring.tasks import TASKS
+from diagnostics.scoring.truth import Truth
 from diagnostics.statistics.evaluation import Predictions
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
 
-SUM_TOLERANCE = 1e-3
-"""How far probabilities may be from 1 together: float32, and files that round to four digits."""
 SHOWN = 5
 
 PREDICTIONS_FILE, MODELS_FOLDER = "predictions.parquet", "models"
 RECORD, CLASSIFIER, SPLIT = "record_id", "classifier", "split"
+BESIDE = ("_report", "_models")
+"""Folders beside a set that `siggen-diagnostics report` writes unless told otherwise."""
 IDENTITY_KEY, KIND_KEY = b"diagnostics.identity", b"diagnostics.classes"
 
 
@@ -54,11 +58,12 @@ def matched_columns(table: pa.Table, truth: Truth, where: Any) -> dict[str, np.n
     columns = {} if place is None else _columns(table.take(pa.array(place)), truth, problems)
     if problems:
         lines = "\n".join(f"  {problem}" for problem in problems)
-        takes = "; ".join(f"{task.name} takes {task.takes}" for task in TASKS)
+        takes = "; ".join(f"{task.name} takes {task.takes}" for task in TASKS if task.parts(truth))
+        classes = f" Classes: {', '.join(truth.classes)}." if truth.classes else ""
         raise UsageError(
             f"{where}: {counted(len(problems), 'problem')}\n{lines}\nOne row is needed for each of the "
             f"{counted(truth.record_id.size, 'record')} of the split {truth.split}, with {RECORD} and the columns of a "
-            f"task: {takes}. Classes: {', '.join(truth.classes)}."
+            f"task: {takes}.{classes}"
         )
     return columns
 
@@ -93,65 +98,24 @@ def _doubled(found: np.ndarray) -> np.ndarray:
 def _columns(table: pa.Table, truth: Truth, problems: list[str]) -> dict[str, np.ndarray]:
     """Return the columns of tasks of a table in the order of the truth, as far as they can be used."""
     record_id = table.column(RECORD).to_numpy(zero_copy_only=False)
-    known = {DAMAGE, *(PROBABILITY + name for name in truth.classes)}
+    known = {taken.name: taken for task in TASKS for taken in task.columns(truth)}
     columns: dict[str, np.ndarray] = {}
     for name in table.column_names:
         if name in known:
-            columns[name] = _numbers(table.column(name), name, record_id, problems)
-        elif name == CLASS:
-            columns[name] = _classes(table.column(name).to_pylist(), truth, record_id, problems)
+            columns[name], found = known[name].read(table.column(name))
+            problems += [_bad(f"{name} {what}", record_id[bad], known[name].allowed) for what, bad in found]
         elif name.startswith(PROBABILITY):
             problems.append(f"column {name} is of no class")
-    _check_probabilities(columns, truth, record_id, problems)
+    for task in TASKS:
+        problems += [_bad(what, record_id[bad], allowed) for what, bad, allowed in task.problems(columns, truth)]
     if not problems and all(task.answers(columns, truth) is None for task in TASKS):
         problems.append(f"no columns of a task; received {', '.join(table.column_names)}")
     return columns
 
 
-def _numbers(column: pa.ChunkedArray, name: str, record_id: np.ndarray, problems: list[str]) -> np.ndarray:
-    if not (pa.types.is_integer(column.type) or pa.types.is_floating(column.type)):
-        problems.append(f"{name} holds {column.type}; allowed: numbers")
-        return np.zeros(record_id.size)
-    values = np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
-    bad = ~np.isfinite(values)
-    if name.startswith(PROBABILITY):
-        bad |= (values < -SUM_TOLERANCE) | (values > 1.0 + SUM_TOLERANCE)
-    if bad.any():
-        allowed = "0 to 1" if name.startswith(PROBABILITY) else "finite numbers"
-        problems.append(_bad(name, f"is {values[bad][0]:g}", record_id[bad], allowed))
-    return values
-
-
-def _classes(names: list[Any], truth: Truth, record_id: np.ndarray, problems: list[str]) -> np.ndarray:
-    """Return the positions of named classes; a state stands for its class, unless a class has that name."""
-    place = {name: truth.classes.index(own) for name, own in truth.told.class_of.items()}
-    place |= {name: number for number, name in enumerate(truth.classes)}
-    found = np.array([place.get(name, -1) for name in names], dtype=np.int64)
-    if (found < 0).any():
-        first = next(name for name, number in zip(names, found.tolist(), strict=True) if number < 0)
-        problems.append(_bad(CLASS, f"is {str(first)[:60]!r}", record_id[found < 0], "a class"))
-    return found
-
-
-def _check_probabilities(
-    columns: dict[str, np.ndarray], truth: Truth, record_id: np.ndarray, problems: list[str]
-) -> None:
-    """Note classes without a column where others have one, and sums that are not 1."""
-    missing = [PROBABILITY + name for name in truth.classes if PROBABILITY + name not in columns]
-    if 0 < len(missing) < len(truth.classes):
-        problems.append(f"no column {', '.join(missing)}; allowed: one for every class, or none")
-    found = probabilities(columns, truth)
-    if found is None or not np.isfinite(found).all():
-        return
-    total = found.sum(axis=1)
-    bad = np.abs(total - 1.0) > SUM_TOLERANCE
-    if bad.any():
-        problems.append(_bad("the sum of the probabilities", f"is {total[bad][0]:g}", record_id[bad], "1"))
-
-
-def _bad(name: str, value: str, records: np.ndarray, allowed: str) -> str:
-    where = f"{counted(records.size, 'record')} ({RECORD} {_shown(records)})"
-    return f"{name} {value} in {where}; allowed: {allowed}"
+def _bad(what: str, records: np.ndarray, allowed: str) -> str:
+    where = f" in {counted(records.size, 'record')} ({RECORD} {_shown(records)})" if records.size else ""
+    return f"{what}{where}; allowed: {allowed}"
 
 
 def _shown(records: np.ndarray) -> str:
@@ -161,22 +125,23 @@ def _shown(records: np.ndarray) -> str:
 
 @dataclass(frozen=True, slots=True)
 class PredictedRecords:
-    """What a classifier of a training says of the records of one split."""
+    """What a classifier of a training says of the records of one split; `area_mm2` (n,) is what it expects."""
 
     classifier: str
     split: str
     record_id: np.ndarray
     predictions: Predictions
+    area_mm2: np.ndarray
 
 
-def write_predictions(entries: Sequence[PredictedRecords], identity: str, folder: Path, kind: str = STATE) -> Path:
-    """Write the probabilities of all classifiers into the folder of their models; return the file's path.
+def write_predictions(parts: Sequence[pa.Table], identity: str, folder: Path, kind: str = STATE) -> Path:
+    """Write the predictions of all classifiers into the folder of their models; return the file's path.
 
     `identity` is that of the set, `kind` what the classes are.
     """
     from pyarrow import parquet
 
-    table = pa.concat_tables([_rows(entry) for entry in entries]).replace_schema_metadata(
+    table = pa.concat_tables(list(parts)).replace_schema_metadata(
         {IDENTITY_KEY: identity.encode(), KIND_KEY: kind.encode()}
     )
     path = folder / PREDICTIONS_FILE
@@ -184,11 +149,12 @@ def write_predictions(entries: Sequence[PredictedRecords], identity: str, folder
     return path
 
 
-def _rows(entry: PredictedRecords) -> pa.Table:
+def predicted_rows(entry: PredictedRecords) -> pa.Table:
+    """Return the rows of a classifier: probabilities of its classes and the damaged area that they expect."""
     found = entry.predictions
     columns = {f"{PROBABILITY}{name}": found.probability[:, k] for k, name in enumerate(found.classes)}
     names = {CLASSIFIER: [entry.classifier] * entry.record_id.size, SPLIT: [entry.split] * entry.record_id.size}
-    return pa.table({**names, RECORD: pa.array(entry.record_id, pa.int64()), **columns})
+    return pa.table({**names, RECORD: pa.array(entry.record_id, pa.int64()), **columns, AREA: entry.area_mm2})
 
 
 def prediction_table(predictions: Any) -> pa.Table:
@@ -241,6 +207,22 @@ def baselines_file(folder: Path) -> Path:
     )
 
 
+def baselines_beside(dataset: Dataset) -> Path | None:
+    """Return the predictions of what was trained on this very set and lies beside it; None where nothing does."""
+    for ending in BESIDE:
+        folder = beside(dataset.path, ending)
+        for file in (folder / MODELS_FOLDER / PREDICTIONS_FILE, folder / PREDICTIONS_FILE):
+            if file.is_file() and identity_of(_read(file)) == dataset.manifest["identity"]:
+                return file
+    return None
+
+
+def identity_of(table: pa.Table) -> str | None:
+    """Return the identity of the set that predictions name; None where they name none."""
+    named = (table.schema.metadata or {}).get(IDENTITY_KEY)
+    return None if named is None else str(named.decode())
+
+
 def check_identity(table: pa.Table, identity: str, where: Any) -> None:
     """Check that predictions which name their set are of this one.
 
@@ -249,7 +231,7 @@ def check_identity(table: pa.Table, identity: str, where: Any) -> None:
     UsageError
         If they are of another one.
     """
-    named = (table.schema.metadata or {}).get(IDENTITY_KEY, identity.encode()).decode()
+    named = identity_of(table) or identity
     if named != identity:
         raise UsageError(
             f"{where}: holds predictions of the set {named[:12]}; this one is {identity[:12]}. Train on this set: "

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -18,19 +19,26 @@ import pyarrow.compute as pc
 from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.prediction_file import (
     CLASSIFIER,
+    baselines_beside,
     baselines_file,
     check_classes,
     check_identity,
     matched_columns,
     prediction_table,
 )
-from diagnostics.scoring.tasks import TASKS, Measure, Task, Truth, truth_of
+from diagnostics.scoring.score_row import ScoreRow
+from diagnostics.scoring.task import Measure, Task
+from diagnostics.scoring.tasks import TASKS, truth_of
+from diagnostics.scoring.truth import Truth
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, bootstrap_weights, interval
 from diagnostics.statistics.judged_records import LARGEST_BLOCK
 from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.scores import area_interval
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FEWEST_GEARBOXES = 6
 """Test gearboxes from which on a difference whose limits exclude 0 is worth a word, as in the report."""
@@ -40,32 +48,7 @@ Answers = dict[str, np.ndarray]
 
 
 @dataclass(frozen=True, slots=True)
-class ScoreRow:
-    """One score.
-
-    Attributes
-    ----------
-    task, measure, records, name : str
-        What was asked, how it was measured, on which records, and whose predictions they are.
-    score : Interval
-        With 95 % limits over gearboxes.
-    chance : float
-        What an answer without knowledge reaches.
-    difference : Interval or None
-        The first predictions minus these, on the same resampled gearboxes; None for the first themselves.
-    """
-
-    task: str
-    measure: str
-    records: str
-    name: str
-    score: Interval
-    chance: float
-    difference: Interval | None
-
-
-@dataclass(frozen=True, slots=True)
-class Scored:
+class Scores:
     """Scores of predictions on one split of a set; `print` shows them as a table.
 
     Attributes
@@ -75,7 +58,7 @@ class Scored:
     records, gearboxes : int
     rows : tuple of ScoreRow
     classes : str
-        What a class is: `state` or `fault`.
+        What a class is: `state` or `fault`; empty in sets of lives, which have none.
     """
 
     set_name: str
@@ -89,6 +72,24 @@ class Scored:
     def to_table(self) -> pa.Table:
         """Return one row per score: task, measure, records, name, score, low, high, chance, difference with limits."""
         return pa.Table.from_pylist([self._entry(row) for row in self.rows])
+
+    def to_frame(self) -> Any:
+        """Return the same as a pandas data frame.
+
+        Raises
+        ------
+        UsageError
+            If pandas is missing, which nothing else here needs.
+        """
+        if find_spec("pandas") is None:
+            raise UsageError("to_frame needs pandas (pip install pandas); to_table has the same rows without it")
+        return self.to_table().to_pandas()
+
+    def plot(self) -> Figure:
+        """Return a figure with every score, its limits and chance; needs matplotlib."""
+        from diagnostics.scoring.score_figure import score_figure
+
+        return score_figure(self.rows)
 
     def _entry(self, row: ScoreRow) -> dict[str, object]:
         apart = row.difference or Interval(math.nan, math.nan, math.nan)
@@ -104,12 +105,13 @@ class Scored:
         head = (
             f"{self.set_name} ({self.identity[:12]}), {self.split}: {counted(self.records, 'record')} of "
             f"{counted(self.gearboxes, 'gearbox', 'gearboxes')}; "
-            f"classes are {self.classes}s; limits of 95 % over gearboxes"
+            f"{f'classes are {self.classes}s; ' if self.classes else ''}limits of 95 % over gearboxes"
         )
         lines, block, first = [head], "", self.rows[0].name
         width = max(len(TITLES.get(row.name, row.name)) for row in self.rows)
         for row in self.rows:
-            title = f"{row.task}: {row.measure}, {row.records} (chance {row.chance:.2f})"
+            better = ", less is better" if row.falls else ""
+            title = f"{row.task}: {row.measure}, {row.records} (chance {row.chance:.2f}{better})"
             if title != block:
                 lines += ["", title]
                 block = title
@@ -135,7 +137,7 @@ def score(
     split: str = TEST,
     seed: int = 0,
     classes: str = STATE,
-) -> Scored:
+) -> Scores:
     """Judge predictions for the records of a split by every task that their columns answer.
 
     Parameters
@@ -144,11 +146,13 @@ def score(
         What `siggen.open` returned.
     predictions : path, mapping of str to (n,), pyarrow table or data frame
         `record_id` and the columns of a task. `damage`: a number that rises with damage. `p_<class>` for every class:
-        probabilities; `class`: its name. A column `classifier` sets several apart. Records of other splits are left
-        out.
+        probabilities; `class`: its name. `gear` and `tooth`: where the damage is. `area_mm2`: how large it is.
+        `rul_h`, `rul_q10_h`, `rul_q90_h`: remaining life. `confidence`: which records are answered first.
+        A column `classifier` sets several apart. Records of other splits are left out.
     baselines : path, optional
         Folder that `siggen-diagnostics report` wrote for this set: its classifiers are judged on the same
-        records, and the differences of the first predictions from each of them.
+        records, and the differences of the first predictions from each of them. Default: SET_report or SET_models
+        beside the set, if there is one.
     split : str
         `test`, or `validation` to choose by.
     seed : int
@@ -158,7 +162,7 @@ def score(
 
     Returns
     -------
-    Scored
+    Scores
         Rows of value, 95 % limits over gearboxes, chance and paired difference; `print` shows them as a table.
 
     Raises
@@ -170,22 +174,24 @@ def score(
     where = predictions if isinstance(predictions, str | Path) else "predictions"
     columns = _by_classifier(prediction_table(predictions), truth, identity, where, YOURS)
     first = next(iter(columns))
-    if baselines is not None:
-        file = baselines_file(Path(baselines))
+    file = baselines_beside(dataset) if baselines is None else baselines_file(Path(baselines))
+    if file is not None:
         others = _by_classifier(prediction_table(file), truth, identity, file, file.parent.name)
         columns |= {name: found for name, found in others.items() if name not in columns}
     resamples = min(RESAMPLES, max(50, LARGEST_BLOCK // truth.record_id.size))
     weights = bootstrap_weights(truth.specimen, seed, resamples)
     rows = [row for task in TASKS for row in _task_rows(task, columns, first, truth, weights)]
     if not rows:
-        raise UsageError(f"{dataset.path}: the split {split} has a single class, so there is nothing to tell apart")
-    return Scored(dataset.path.name, identity, split, truth.record_id.size, truth.gearboxes, tuple(rows), classes)
+        raise UsageError(f"{dataset.path}: the split {split} has nothing that these columns tell apart")
+    kind = classes if truth.told else ""
+    return Scores(dataset.path.name, identity, split, truth.record_id.size, truth.gearboxes, tuple(rows), kind)
 
 
 def _by_classifier(table: pa.Table, truth: Truth, identity: str, where: Any, name: str) -> dict[str, Answers]:
     """Return the checked columns of every classifier of a table; of the only one under the given name."""
     check_identity(table, identity, where)
-    check_classes(table, truth.told.kind, where)
+    if truth.told:
+        check_classes(table, truth.told.kind, where)
     if CLASSIFIER not in table.column_names:
         return {name: matched_columns(table, truth, where)}
     names = [str(found) for found in pc.unique(table.column(CLASSIFIER)).to_pylist()]
@@ -206,6 +212,7 @@ def _task_rows(
                 for name, found in answers.items()
                 if found is not None and not (measure.ranks and _names_alone(found))
             }
+            samples = {name: found for name, found in samples.items() if np.isfinite(found[0])}
             for name, found in samples.items():
                 own = samples.get(first) if name != first else None
                 yield _row(task, measure, part, rows, name, found, own)
@@ -224,7 +231,8 @@ def _row(
         measure=measure.name,
         records=part,
         name=name,
-        score=area_interval(samples, measure.gearboxes(truth)),
+        score=(area_interval if measure.is_share else interval)(samples, measure.gearboxes(truth)),
         chance=measure.chance(truth),
         difference=None if own is None else interval(own - samples, truth.gearboxes),
+        falls=measure.falls,
     )

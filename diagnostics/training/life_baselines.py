@@ -29,7 +29,9 @@ class Inspections:
 
     Attributes
     ----------
-    specimen : (n,) int
+    record_id, specimen : (n,) int
+        `record_id` of an inspection's first record.
+    split : (n,) str
     age_h, rul_h, observed_h : (n,) float64
         Age, remaining life (NaN where a gearbox was taken out), age at which its gearbox was last known to run.
     indicators : dict of str to (n, columns) float64
@@ -40,7 +42,9 @@ class Inspections:
         Quantiles of the remaining life over continuations of the true state.
     """
 
+    record_id: np.ndarray
     specimen: np.ndarray
+    split: np.ndarray
     age_h: np.ndarray
     rul_h: np.ndarray
     observed_h: np.ndarray

@@ -85,6 +85,8 @@ class Training:
         Classifiers beside a healthy record of the same gearbox; None where the set has no second one.
     nested : Nested or None
         Logistic regression judged on every gearbox; None with too few.
+    class_areas : (classes,) float64
+        Mean damaged area of the training records of every class [mm^2].
     """
 
     judged: tuple[Judged, ...]
@@ -98,6 +100,7 @@ class Training:
     comparisons: tuple[Comparison, ...]
     rms_severe: Interval | None
     severity: tuple[AreaScores, ...]
+    class_areas: np.ndarray
     circular: TrainedCircularFile | None = None
     referenced: Referenced | None = None
     nested: Nested | None = None
@@ -165,6 +168,7 @@ def train_models(
         comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
         severity=_severity(results, matrix, split, seed),
+        class_areas=mean_areas(matrix, split),
         circular=circular,
         referenced=referenced_classifiers(matrix, split, results, averages, seed, options, stage),
         nested=_nested(matrix, split, seed, stage),

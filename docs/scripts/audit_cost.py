@@ -20,6 +20,7 @@ import pyarrow as pa
 import siggen
 from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
 from siggen.dataset.reading import Dataset
+from siggen.keys.column import Role
 
 NUMBERED = ("specimen_id", "record_id")
 
@@ -50,6 +51,14 @@ class Joined:
             yield dataset, dict(first)
             ids = dataset.labels(columns=list(NUMBERED))
             first = {name: first[name] + max(ids.column(name).to_pylist()) + 1 for name in NUMBERED}
+
+    def role(self, name: str) -> Role:
+        """Return a role as the first set has it."""
+        return self.datasets[0].role(name)
+
+    def section(self, name: str) -> str:
+        """Return a section as the first set has it."""
+        return self.datasets[0].section(name)
 
     def labels(self, _: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return the labels of all sets."""

@@ -70,10 +70,22 @@ NAMES = {
 HEAD = """# Columns of a set
 
 This page is printed by `make reference` from the columns that siggen writes; the files carry the same texts as metadata
-(`unit`, `meaning`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. In brackets stand unit, type (double
-where a unit stands alone) and the section of the YAML file that a column needs; without one every set has it. Sets with
-numbers from files have besides `path_number_CHANNEL` (which file of its path a gearbox drew, from 0),
+(`unit`, `meaning`, `role`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. In brackets stand unit, type
+(double where a unit stands alone), role and the section of the YAML file that a column needs; without one every set has
+it. Sets with numbers from files have besides `path_number_CHANNEL` (which file of its path a gearbox drew, from 0),
 `noise_spectrum_CHANNEL_m_s2` and `lines_CHANNEL_m_s2` (RMS).
+
+| role | what it is | may a classifier have it | may it tell the state |
+|---|---|---|---|
+| `key` | names a record, or what it belongs to | no | yes |
+| `signal` | what a sensor gave | yes | yes |
+| `condition` | known beside the signal, such as speed and load | yes | no |
+| `measured` | what anybody can compute from the signal | yes | yes |
+| `consequence` | follows from the damage; the simulation alone knows it | no | yes |
+| `target` | what the damage is: to be predicted | no | yes |
+| `provenance` | what was drawn for gearbox or record; the simulation alone knows it | no | no |
+
+The manifest lists the roles (`columns`). A column that it does not list is a condition.
 """
 
 
@@ -125,7 +137,7 @@ def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable
         meaning = general(facts.get("meaning", "signal of the channel" if "sensor" in facts else ""), named)
         kind = re.sub(r"<element: (\w+)[^>]*>(\[\d+\])?", r" of \1", str(field.type)).replace("fixed_size_list", "list")
         unit, needed = facts.get("unit", ""), brought.get(field.name, "")
-        known = (unit, "" if unit and kind == "double" else kind, f"needs {needed}" if needed else "")
+        known = (unit, "" if unit and kind == "double" else kind, facts["role"], f"needs {needed}" if needed else "")
         yield f"* `{name}`: {meaning} ({'; '.join(part for part in known if part)})"
 
 

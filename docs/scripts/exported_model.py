@@ -46,18 +46,13 @@ def integrate(model, times, rtol=1e-6):
 
 def meshes_of(model):
     """Return the meshes of a model in the order of power."""
-    found, speed = [], 2 * np.pi * model["speed_hz"]  # of the shaft of the mesh's first gear [rad/s]
-    for number in range(int(model["meshes"])):
-        mesh = Mesh(model, number, speed)
-        speed = mesh.next_speed
-        found.append(mesh)
-    return found
+    return [Mesh(model, number) for number in range(int(model["meshes"]))]
 
 
 class Mesh:
     """One mesh: what it sees of a state, and what it pushes."""
 
-    def __init__(self, model, number, speed):
+    def __init__(self, model, number):
         beginning = f"mesh.{number}."
         own = {name.removeprefix(beginning): value for name, value in model.items() if name.startswith(beginning)}
         self.own, self.law = own, LAWS[str(model["law"])](own)
@@ -66,12 +61,10 @@ class Mesh:
         turn, turn_x = own.get("tilt_vector", none), own.get("tilt_friction_vector", none)
         self.tilts, self.static_tilt = "tilt_vector" in own, own.get("static_tilt_rad", 0.0)
         self.rows = np.stack([p, *own["sliding_vectors"], turn, turn_x])
-        driving, driven = (names.index(name) for name in own["rotations"])
-        rolling = none.copy()
-        rolling[driving], rolling[driven] = speed, -speed * p[driving] / p[driven]
-        self.next_speed = rolling[driven]
         # Sliding speed by the rigid rotation: that of a pair at s is the first + s the second.
-        self.rolling = (own["sliding_vectors"] @ rolling).tolist()
+        turning = [name in own["rotations"] for name in names]
+        speed = 2 * np.pi * model["speed_hz"] * np.where(turning, model["rolling"], 0.0)
+        self.rolling = (own["sliding_vectors"] @ speed).tolist()
 
     @property
     def names(self):

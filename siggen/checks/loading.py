@@ -49,19 +49,18 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         If anything is wrong with the configuration; names every problem of form and physics at once, each with the line
         of the file or the override that its value comes from.
     """
-    # compile nothing, but load the physics
-    from siggen.checks.density_files import with_density_files
-    from siggen.checks.mode_files import mode_problems, with_mode_file
-    from siggen.checks.physical_problems import physical_problems
-    from siggen.checks.quantity_names import quantity_problems
-    from siggen.checks.state_problems import state_problems
-    from siggen.specimen.measured_path import response_problems, with_measured_responses
-
     if isinstance(source, Mapping):
         raw, folder, read_from, file = source, Path(), "configuration", None
     else:
         file = config_file(source)
         raw, folder, read_from = read_yaml(file), file.parent, str(source)
+    # They load the physics, which takes as long as all else: behind a file that is missing or no YAML.
+    from siggen.checks.density_files import with_density_files
+    from siggen.checks.mode_files import mode_problems, with_mode_file
+    from siggen.checks.physical_problems import physical_problems
+    from siggen.checks.state_problems import state_problems
+    from siggen.specimen.measured_path import response_problems, with_measured_responses
+
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)
     with_modes, unread_modes = with_mode_file(filled, folder)
@@ -76,6 +75,8 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     told = [*written, *parsed.problems, *unread, *unread_modes, *unusable]
     problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:
+        from siggen.checks.quantity_names import quantity_problems
+
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:
         files = () if file is None else extended_files(file)

@@ -4,7 +4,8 @@ Gears of one shaft stand at a third and two thirds between its bearings, so all 
 1.5 times both faces on. Shafts without a common mesh have no common plane of gears either, so one may end before the
 other begins. They stand beside each other, or in one line: coaxial (reverted) gearboxes, whose centre distances are
 equal and which fold by 180 degrees. Two axes a little apart are refused: neither do the shafts pass each other, nor
-does one bore of the wall between them hold the bearings of both. All of it is derived.
+does one bore of the wall between them hold the bearings of both. Gears round an idler lie in one plane, so the tips of
+those that do not mesh pass each other. All of it is derived.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def stage_layout_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def _span(stage: Stage, index: int, faces_mm: float) -> Iterator[Problem]:
-    if stage.span_mm is not None and bounds(stage.span_mm)[0] < LEAST_SPAN * faces_mm:
+    if not isinstance(stage.span_mm, str | None) and bounds(stage.span_mm)[0] < LEAST_SPAN * faces_mm:
         received = f"{bounds(stage.span_mm)[0]:g} mm for faces of {faces_mm:g} mm together"
         allowed = (
             f"allowed: at least {LEAST_SPAN * faces_mm:g} mm, {LEAST_SPAN:g} times both face_width_mm, since the gears "
@@ -65,22 +66,25 @@ class _Shaft(NamedTuple):
 
 def _axes(every: list[Pair], stages: tuple[Stage, ...], distances: list[FloatArray]) -> Iterator[Problem]:
     """Yield the first shaft that stands in one in front of it, by the stage whose direction sets it."""
-    shafts = _shafts(every, stages)
+    shafts, tips = _shafts(every, stages), _tips_mm(every)
     turned = [np.zeros(1), *(np.radians(_values(stage.direction_deg)) for stage in stages)]
     for first, last in combinations(range(len(shafts)), 2):
         if last < first + 2:
             continue
         apart = _apart_mm(distances[first:last], turned[first:last])
-        together_mm = shafts[first].radius_mm + shafts[last].radius_mm
-        if apart.max() <= ON_ONE_AXIS_MM or apart.min() >= together_mm:
+        in_plane = all(stage.idler for stage in stages[first : last - 1])
+        ends_mm = (tips[first][0], tips[last - 1][1]) if in_plane else (shafts[first][1], shafts[last][1])
+        together_mm = sum(ends_mm)
+        if (apart.max() <= ON_ONE_AXIS_MM and not in_plane) or apart.min() >= together_mm:
             continue
         received = (
             f"{stages[last - 2].direction_deg}, with which the axis of {shafts[last].name} stands {apart.min():.4g} mm "
             f"from that of {shafts[first].name}"
         )
-        allowed = (
-            f"allowed: a direction with at least {together_mm:.4g} mm, the radii of both shafts (bore_radius_mm), "
-            "or 0: 180 degrees and equal centre distances (coaxial)"
+        allowed = f"allowed: a direction with at least {together_mm:.4g} mm, " + (
+            "the tip radii of both gears, which lie in one plane with the idler"
+            if in_plane
+            else "the radii of both shafts (bore_radius_mm), or 0: 180 degrees and equal centre distances (coaxial)"
         )
         yield Problem(f"stages.{last - 2}.direction_deg", received, allowed)
         return
@@ -92,6 +96,16 @@ def _shafts(every: list[Pair], stages: tuple[Stage, ...]) -> list[_Shaft]:
     driving = [_bore_mm(pair, "pinion") for pair in every]
     common = [min(pair) for pair in zip(driven, driving[1:], strict=False)]
     return [_Shaft(*one) for one in zip(names, (driving[0], *common, driven[-1]), strict=True)]
+
+
+def _tips_mm(every: list[Pair]) -> list[tuple[float, float]]:
+    """Return the largest tip radii of the driving and the driven gear of every mesh [mm]."""
+    found = []
+    for pair in every:
+        built = [gear_pair(corner) for corner in corners(pair)]
+        driving, driven = ([one.member(which).tip_radius_m for one in built] for which in ("pinion", "gear"))
+        found.append((1e3 * max(driving), 1e3 * max(driven)))
+    return found
 
 
 def _apart_mm(distances: list[FloatArray], turned: list[FloatArray]) -> FloatArray:

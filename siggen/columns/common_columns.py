@@ -11,13 +11,14 @@ from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.columns.planetary_columns import of_planets
 from siggen.columns.stage_columns import stage_columns
 from siggen.columns.state_columns import state_columns
-from siggen.keys.column import HERTZ, MILLIMETRE, Column, list_of
+from siggen.keys.column import HERTZ, MILLIMETRE, Column, Role, in_role, list_of
 from siggen.sensors.quantity import STILL_M_S2
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
-LABEL_COLUMNS = (
+LABEL_COLUMNS = in_role(
+    Role.TARGET,
     Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
     Column("severity", pa.string(), "", "healthy, slight, moderate or severe"),
     Column("faulty_gear", pa.string(), "", "gear with damage: none, pinion, gear, both, STAGE.pinion, ... or several"),
@@ -28,7 +29,9 @@ LABEL_COLUMNS = (
     Column("damaged_area_share", pa.float64(), "", "damaged share of the most damaged flank"),
     Column("damage_face_length_mm", pa.float64(), MILLIMETRE, "longest single damage across the face"),
     Column("damage_profile_length_mm", pa.float64(), MILLIMETRE, "longest single damage along the profile (arc)"),
-    Column("contact_length_loss_mm", pa.float64(), MILLIMETRE, "largest length that a contact line loses"),
+    Column(
+        "contact_length_loss_mm", pa.float64(), MILLIMETRE, "largest length that a contact line loses", Role.CONSEQUENCE
+    ),
     Column(
         "mesh_stiffness_loss",
         pa.float64(),
@@ -36,30 +39,43 @@ LABEL_COLUMNS = (
         "largest relative loss of mesh stiffness against healthy by potential energy: a pair without contact length "
         "carries nothing; a measure of the damage alone, also where the simulation lets flanks sink instead; 0 for "
         "wear, which takes neither section nor contact length: see mesh_stiffness_loss_as_simulated",
+        Role.CONSEQUENCE,
     ),
-    Column("contact_loss_share", pa.float64(), "", "share of the time without tooth contact"),
-    Column("status", pa.string(), "", "ok; records that failed are in the manifest, not among the rows"),
+    Column("contact_loss_share", pa.float64(), "", "share of the time without tooth contact", Role.CONSEQUENCE),
+    Column(
+        "status", pa.string(), "", "ok; records that failed are in the manifest, not among the rows", Role.PROVENANCE
+    ),
     Column("through_face", pa.bool_(), "", "whether damage takes the whole contact length somewhere"),
-    Column("sink_depth_um", pa.float64(), "um", "how far the mating flank sinks at most; 0 where lands carry"),
+    Column(
+        "sink_depth_um",
+        pa.float64(),
+        "um",
+        "how far the mating flank sinks at most; 0 where lands carry",
+        Role.CONSEQUENCE,
+    ),
     Column(
         "mesh_stiffness_loss_as_simulated",
         pa.float64(),
         "",
         "largest relative loss of force over approach at rest and at the record's torque, by the simulated law; "
         "errors of single teeth are left out",
+        Role.CONSEQUENCE,
     ),
 )
-OPERATING_COLUMNS = (
-    Column("teeth_pinion", pa.int32(), "", "number of teeth of the pinion"),
-    Column("teeth_gear", pa.int32(), "", "number of teeth of the gear"),
+OPERATING_COLUMNS = in_role(
+    Role.CONDITION,
+    Column("teeth_pinion", pa.int32(), "", "number of teeth of the pinion", section="gears"),
+    Column("teeth_gear", pa.int32(), "", "number of teeth of the gear", section="gears"),
     Column("speed_hz", pa.float64(), HERTZ, "nominal speed of the input (pinion) shaft"),
     Column("torque_nm", pa.float64(), "N m", "torque at the input shaft"),
     Column("pinion_shaft_hz", pa.float64(), HERTZ, "rotation frequency of the pinion's shaft"),
     Column("gear_shaft_hz", pa.float64(), HERTZ, "rotation frequency of the gear's shaft"),
     Column("mesh_hz", pa.float64(), HERTZ, "tooth mesh frequency"),
-    Column("start_angle_rad", pa.float64(), "rad", "pinion angle at the first sample"),
+    Column("start_angle_rad", pa.float64(), "rad", "pinion angle at the first sample", Role.PROVENANCE),
+    section="operating_points",
 )
-INTEGRATION_COLUMNS = (
+INTEGRATION_COLUMNS = in_role(
+    Role.CONSEQUENCE,
     Column(
         "integration_error",
         pa.float64(),
@@ -70,10 +86,12 @@ INTEGRATION_COLUMNS = (
     ),
 )
 """Columns of sets of the law pairs."""
-VARIATION_COLUMNS = (
+VARIATION_COLUMNS = in_role(
+    Role.CONDITION,
     Column("speed_std_hz", pa.float64(), HERTZ, "standard deviation of the pinion's speed about pinion_shaft_hz"),
     Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque, what speeds the train up included"),
     Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
+    section="variation",
 )
 """Columns of sets in which speed or torque varies within a record."""
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import MILLIMETRE, Column, list_of
+from siggen.keys.column import MILLIMETRE, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 DAMAGE_COLUMNS = (
-    Column("record_id", pa.int64(), "", "record that shows the damage"),
+    Column("record_id", pa.int64(), "", "record that shows the damage", Role.KEY),
     Column("gear", pa.string(), "", "pinion or gear; none for damage that is on no gear"),
     Column("tooth", pa.int32(), "", "index of the tooth; -1 for all teeth of the gear, or none"),
     Column("kind", pa.string(), "", "what the damage is"),
@@ -57,7 +57,8 @@ EDGE_COLUMNS = (
 
 def damage_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns of `damage/*.parquet` of a set."""
-    return (*DAMAGE_COLUMNS, *(EDGE_COLUMNS if has_drawn_edges(config) else ()), *kind_columns(config))
+    edges = EDGE_COLUMNS if has_drawn_edges(config) else ()
+    return in_role(Role.TARGET, *DAMAGE_COLUMNS, *edges, *kind_columns(config))
 
 
 def kind_columns(config: Config) -> tuple[Column, ...]:

@@ -7,21 +7,24 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import Column
+from siggen.keys.column import Column, Role, in_role
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 MILLIMETRE = "mm"
-PAIR_COLUMNS = (
+PAIR_COLUMNS = in_role(
+    Role.CONDITION,
     Column("pair", pa.int32(), "", "index of the gear pair in `gears.pairs` of config.yaml"),
     Column("module_mm", pa.float64(), MILLIMETRE, "normal module"),
     Column("face_width_mm", pa.float64(), MILLIMETRE, "width of the teeth in contact"),
     Column("centre_distance_mm", pa.float64(), MILLIMETRE, "working centre distance"),
     Column("contact_ratio", pa.float64(), "", "transverse contact ratio of the unloaded pair"),
+    section="gears",
 )
 """Columns of sets with several gear pairs."""
-HOUSING_COLUMNS = (
+HOUSING_COLUMNS = in_role(
+    Role.PROVENANCE,
     Column("housing_mass_kg", pa.float64(), "kg", "mass of the housing, without gears and shafts"),
     Column(
         "housing_first_mode_hz",
@@ -29,9 +32,10 @@ HOUSING_COLUMNS = (
         "Hz",
         "lowest mode of the housing above the six on its bolts",
     ),
+    section="housing",
 )
 """Columns of sets whose housings are drawn from their geometry."""
-OIL_COLUMN = Column("oil", pa.string(), "", "oil of the gearbox")
+OIL_COLUMN = Column("oil", pa.string(), "", "oil of the gearbox", Role.CONDITION, "dynamics")
 
 
 def gearbox_columns(config: Config) -> tuple[Column, ...]:
@@ -41,7 +45,7 @@ def gearbox_columns(config: Config) -> tuple[Column, ...]:
         *((OIL_COLUMN,) if draws_oil(config) else ()),
         *(HOUSING_COLUMNS if config.has_plates else ()),
         *(
-            Column(name, pa.float64(), MILLIMETRE, _place_text(config, i, axis))
+            Column(name, pa.float64(), MILLIMETRE, _place_text(config, i, axis), Role.CONDITION, "sensors")
             for i, axis, name in drawn_places(config)
         ),
     )

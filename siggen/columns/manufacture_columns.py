@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import MICROMETRE, Column
+from siggen.keys.column import MICROMETRE, Column, Role, in_role
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -50,11 +50,13 @@ def manufacture_columns(config: Config) -> tuple[Column, ...]:
     )
     waves = _wave_columns() if config.manufacture.flank_waves == "on" else ()
     lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"
-    return (
+    return in_role(
+        Role.PROVENANCE,
         Column("manufacture_draw", pa.string(), "", "whether states share the specimen's gears: specimen or state"),
         *of_gears,
         Column("lead_misalignment_um", pa.float64(), MICROMETRE, lead),
         *waves,
+        section="manufacture",
     )
 
 

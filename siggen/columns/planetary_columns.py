@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import HERTZ, Column, list_of
+from siggen.columns.manufacture_columns import manufacture_columns
+from siggen.config.planetary import RING
+from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -28,12 +30,17 @@ RENAMED = {
     ),
 }
 """Column of a pair -> its name and its meaning in a planetary set."""
-ADDED = (
-    Column("faulty_teeth_ring", list_of(pa.int32()), "", "indices of the ring's damaged teeth"),
+EACH = "_each_planet"
+ADDED = in_role(
+    Role.CONDITION,
+    Column("faulty_teeth_ring", list_of(pa.int32()), "", "indices of the ring's damaged teeth", Role.TARGET),
     Column("teeth_ring", pa.int32(), "", "number of teeth of the ring"),
     Column("planet_positions_deg", list_of(pa.float64()), "deg", "where the planets stand on the carrier"),
     Column("carrier_hz", pa.float64(), HERTZ, "rotation frequency of the carrier"),
-    Column("pin_errors_um", list_of(pa.float64()), "um", "how far each planet's pin is ahead of its place"),
+    Column(
+        "pin_errors_um", list_of(pa.float64()), "um", "how far each planet's pin is ahead of its place", Role.PROVENANCE
+    ),
+    section="planetary",
 )
 
 
@@ -41,7 +48,23 @@ def of_planets(config: Config, columns: Iterable[Column]) -> tuple[Column, ...]:
     """Return the columns of a set; of gearboxes that are pairs as they are."""
     if config.planetary is None:
         return tuple(columns)
-    return (*(_renamed(column) for column in columns), *ADDED)
+    errors = manufacture_of_others(config)
+    return (*(_renamed(column) for column in columns), *ADDED, *(column for column, _ in errors))
+
+
+def manufacture_of_others(config: Config) -> Iterator[tuple[Column, str]]:
+    """Yield the columns of errors of the ring and of all planets, each with the column of a pair's gear for it.
+
+    Those of planets are lists, of the flanks towards the sun.
+    """
+    for column in manufacture_columns(config):
+        if "_gear" in column.name:
+            meaning = column.meaning.replace("gear", "ring")
+            yield replace(column, name=column.name.replace("_gear", f"_{RING}"), meaning=meaning), column.name
+    for column in manufacture_columns(config):
+        if "_gear" in column.name and not pa.types.is_list(column.type):
+            name, meaning = column.name.replace("_gear", EACH), column.meaning.replace("the gear", "each planet")
+            yield replace(column, name=name, meaning=meaning, type=list_of(column.type)), column.name
 
 
 def renamed(name: str) -> str:

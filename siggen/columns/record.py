@@ -17,7 +17,7 @@ from siggen.columns.own_columns import own_columns
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
-from siggen.keys.column import DECIBEL, Column, list_of
+from siggen.keys.column import DECIBEL, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -80,16 +80,21 @@ class RecordFailure:
     reason: str
 
 
-ID_COLUMNS = (
+ID_COLUMNS = in_role(
+    Role.KEY,
     Column("record_id", pa.int64(), "", "index of the record in the plan; a pure function of the configuration"),
     Column("specimen_id", pa.int64(), "", "gearbox the record belongs to; splits never share one"),
     Column("state_id", pa.int32(), "", "position of the damage state in the configuration"),
-    Column("state", pa.string(), "", "name of the damage state"),
-    Column("operating_point_id", pa.int32(), "", "position of the operating point in the configuration"),
+    Column("state", pa.string(), "", "name of the damage state", Role.TARGET),
+    Column(
+        "operating_point_id", pa.int32(), "", "position of the operating point in the configuration", Role.CONDITION
+    ),
     Column("repeat", pa.int32(), "", "repeat of the same specimen, state and operating point"),
     Column("split", pa.string(), "", "train, validation or test"),
 )
-TACHO_COLUMN = Column("tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample")
+TACHO_COLUMN = Column(
+    "tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample", Role.SIGNAL
+)
 
 
 def channels(config: Config) -> tuple[Channel, ...]:
@@ -112,10 +117,13 @@ def channels(config: Config) -> tuple[Channel, ...]:
 def channel_label_columns(channel: str, quantity: Quantity) -> tuple[Column, ...]:
     """Return the columns that describe one channel of one record."""
     floor = f"noise_floor_{channel}_{quantity.suffix}"
-    return (
+    level = f"power of the signal over the white noise in {channel}"
+    return in_role(
+        Role.PROVENANCE,
         Column(floor, pa.float64(), quantity.unit, f"RMS of the white noise in {channel}"),
-        Column(f"snr_{channel}_db", pa.float64(), DECIBEL, f"power of the signal over the white noise in {channel}"),
-        Column(f"clipped_share_{channel}", pa.float64(), "", f"share of clipped samples in {channel}"),
+        Column(f"snr_{channel}_db", pa.float64(), DECIBEL, level, Role.CONSEQUENCE),
+        Column(f"clipped_share_{channel}", pa.float64(), "", f"share of clipped samples in {channel}", Role.MEASURED),
+        section="sensors",
     )
 
 
@@ -177,9 +185,19 @@ def channel_metadata(channel: Channel, fs_hz: float) -> dict[str, str]:
 
 
 def _signal_field(config: Config, channel: Channel) -> pa.Field:
-    metadata = channel_metadata(channel, config.fs_hz)
+    metadata = {**channel_metadata(channel, config.fs_hz), "role": Role.SIGNAL}
     signal = list_of(pa.float32(), config.samples)
     return pa.field(channel.column, signal, nullable=False, metadata=metadata)
+
+
+def listed_columns(schema: pa.Schema) -> list[dict[str, str]]:
+    """Return name, role and section of every column of `data/*.parquet` that has a role, as the manifest lists them."""
+    facts = {field.name: field.metadata or {} for field in schema}
+    return [
+        {"name": name, "role": own[b"role"].decode(), "section": own.get(b"section", b"").decode()}
+        for name, own in facts.items()
+        if b"role" in own
+    ]
 
 
 def signal_channels(schema: pa.Schema) -> tuple[Channel, ...]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import HERTZ, Column, list_of
+from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -15,13 +15,18 @@ if TYPE_CHECKING:
 
 def stage_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns of the further meshes; none for gearboxes with one."""
-    return tuple(column for stage in config.stages for column in _columns(stage.name))
+    every = (column for stage in config.stages for column in _columns(stage.name))
+    return in_role(Role.CONDITION, *every, section="stages")
 
 
 def _columns(name: str) -> Iterator[Column]:
     for gear in ("pinion", "gear"):
         yield Column(
-            f"faulty_teeth_{name}_{gear}", list_of(pa.int32()), "", f"indices of the damaged teeth of {name}.{gear}"
+            f"faulty_teeth_{name}_{gear}",
+            list_of(pa.int32()),
+            "",
+            f"indices of the damaged teeth of {name}.{gear}",
+            Role.TARGET,
         )
     for gear in ("pinion", "gear"):
         yield Column(f"teeth_{name}_{gear}", pa.int32(), "", f"number of teeth of {name}.{gear}")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import Column, list_of
+from siggen.keys.column import Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -28,7 +28,8 @@ def state_columns(config: Config) -> tuple[Column, ...]:
     words = combined_words(config)
     kinds = (Column(f"has_{word}", pa.bool_(), "", f"whether it shows {word}") for word in words)
     primary = (PRIMARY_COLUMN,) if words else ()
-    return (*sham, *((CHANGED_COLUMN,) if has_changes(config) else ()), *primary, *kinds)
+    changed = (CHANGED_COLUMN,) if has_changes(config) else ()
+    return in_role(Role.TARGET, *sham, *changed, *primary, *kinds)
 
 
 def combined_words(config: Config) -> tuple[str, ...]:

@@ -5,10 +5,13 @@ A configuration's identity has a version of its own (`siggen.config.config`), wh
 
 from __future__ import annotations
 
-SCHEMA_VERSION = "3"
+SCHEMA_VERSION = "4"
 """Version of the columns and of the files around them that is written."""
 
-READ_VERSIONS = (SCHEMA_VERSION,)
+WITHOUT_ROLES = "3"
+"""Version whose manifests list no columns; the configuration says their roles."""
+
+READ_VERSIONS = (WITHOUT_ROLES, SCHEMA_VERSION)
 """Versions that are read; nothing older was ever released."""
 
 SIMULATION_VERSION = 8

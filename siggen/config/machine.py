@@ -8,7 +8,7 @@ from pydantic import Field
 
 from siggen.config.dynamics import Rotor
 from siggen.config.gears import ToothForm, Wheel
-from siggen.config.stages import DIRECTION, SPAN
+from siggen.config.stages import DIRECTION, SPAN, Span
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -24,10 +24,7 @@ class MachineShaft(Rotor):
     """A shaft on two bearings; masses are those of the gear that the shaft in front drives, of the first its own."""
 
     name: Name = NAMED
-    span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
-        default=None,
-        description=SPAN,
-    )
+    span_mm: Span = Field(default=None, description=SPAN)
 
 
 class MachineGear(Wheel):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from siggen.config.machine import Machine, MachineMesh
+from siggen.config.stages import IDLER
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 
@@ -45,6 +46,11 @@ def train(machine: Machine) -> Train:
     return Train(tuple(meshes), tuple(shafts))
 
 
+def idlers(machine: Machine) -> frozenset[str]:
+    """Return the names of the gears that one gear drives and that drive another one."""
+    return frozenset({mesh.driver for mesh in machine.meshes} & {mesh.driven for mesh in machine.meshes})
+
+
 def _names(machine: Machine) -> Iterator[Problem]:
     for key in Machine.model_fields:
         names = [one.name for one in getattr(machine, key)]
@@ -58,6 +64,11 @@ def _names(machine: Machine) -> Iterator[Problem]:
     for index, gear in enumerate(machine.gears):
         if gear.name in meshes:
             yield Problem(f"machine.gears.{index}.name", f"'{gear.name}', as a mesh is called", "allowed: another name")
+    flanks = {f"{mesh.name}_{name}" for mesh in machine.meshes for name in idlers(machine)}
+    for index, gear in enumerate(machine.gears):
+        if gear.name in flanks:
+            received = f"'{gear.name}', as columns name a flank of an idler by its mesh"
+            yield Problem(f"machine.gears.{index}.name", received, "allowed: a name whose columns are its own")
     columns = {f"mesh_{one.name}_hz" for one in machine.meshes}
     for index, shaft in enumerate(machine.shafts):
         if f"{shaft.name}_shaft_hz" in columns:
@@ -89,7 +100,7 @@ def _pairs(machine: Machine) -> Iterator[Problem]:
 
 
 def _gears(machine: Machine) -> Iterator[Problem]:
-    """Yield gears that mesh with none or with too many."""
+    """Yield gears that mesh with none or with too many; two that a gear drives, or is driven in, are a branch."""
     meshes: dict[str, list[str]] = {}
     for mesh in machine.meshes:
         for name in (mesh.driver, mesh.driven):
@@ -97,9 +108,9 @@ def _gears(machine: Machine) -> Iterator[Problem]:
     for index, gear in enumerate(machine.gears):
         own = meshes.get(gear.name, [])
         received = f"'{gear.name}', in {len(own)} meshes{': ' if own else ''}{', '.join(own)}"
-        if len(own) != 1:
+        if len(own) not in {1, 2}:
             more = "give each mesh a gear of its own on the shaft" if own else "leave the gear out, or let it mesh"
-            allowed = f"allowed: one mesh; {more}"
+            allowed = f"allowed: one mesh, or two of an idler, which is driven in one and drives in the other; {more}"
             yield Problem(f"machine.gears.{index}.name", received, allowed)
 
 
@@ -143,12 +154,15 @@ def _branches(machine: Machine) -> Iterator[Problem]:
 
 
 def _spans(machine: Machine) -> Iterator[Problem]:
-    inner = train(machine).shafts[1:-1]
+    inner, of_idlers = train(machine).shafts[1:-1], {_shaft_of(machine)[name] for name in idlers(machine)}
     for index, shaft in enumerate(machine.shafts):
-        if shaft.span_mm is not None and index not in inner:
-            yield Problem(
-                f"machine.shafts.{index}.span_mm", str(shaft.span_mm), "allowed: null of a shaft with one gear"
-            )
+        path, received = f"machine.shafts.{index}.span_mm", str(shaft.span_mm)
+        if index in of_idlers and shaft.span_mm not in (None, IDLER):
+            yield Problem(path, received, "allowed: idler or null of a shaft with one gear in two meshes")
+        elif index not in inner and shaft.span_mm is not None:
+            yield Problem(path, received, "allowed: null of a shaft with one gear")
+        elif index not in of_idlers and shaft.span_mm == IDLER:
+            yield Problem(path, received, "allowed: a number, null, or one gear in two meshes on the shaft")
 
 
 def _shaft_of(machine: Machine) -> dict[str, int]:

@@ -39,7 +39,7 @@ class Names:
 
     Attributes
     ----------
-    gears : pinion, gear, SLOW.pinion, ... and the user's names
+    gears : pinion, gear, SLOW.pinion, ... and the user's names; an idler has two, MESH.NAME by the mesh of each flank
     shafts : pinion, gear, SLOW (the shaft of SLOW.gear) and the user's names
     meshes : the empty name of the first mesh, SLOW, ... and the user's names
     paths : keys of the short form, such as stages.0.gears.pinion, and where the user wrote them
@@ -158,7 +158,7 @@ def _words(names: Names) -> dict[str, str]:
 def _column_words(names: Names) -> dict[str, str]:
     """Return parts of the names of columns."""
     of_shafts = {f"{short}_shaft": f"{own}_shaft" for short, own in names.shafts}
-    gears = {short.replace(".", "_"): own for short, own in names.gears}
+    gears = {short.replace(".", "_"): own.replace(".", "_") for short, own in names.gears}
     return {**of_shafts, **names.places, **gears}
 
 

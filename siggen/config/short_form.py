@@ -14,8 +14,9 @@ from siggen.config.dynamics import Rotor
 from siggen.config.gears import ToothForm, Wheel
 from siggen.config.inheritance import REPLACED
 from siggen.config.machine import Machine
-from siggen.config.machine_problems import train
+from siggen.config.machine_problems import idlers, train
 from siggen.config.names import DRIVEN, DRIVER, KEYS, Names, renamed_keys
+from siggen.config.stages import IDLER
 from siggen.errors import Problem
 from siggen.keys.problems import nearest, received_text
 from siggen.keys.section import Section
@@ -28,7 +29,7 @@ WITH_KEYS = ("dynamics", "manufacture", "sensors", "background")
 def names_of(machine: Machine) -> Names:
     """Return the words of a machine without problems."""
     found = train(machine)
-    gears = {gear.name: index for index, gear in enumerate(machine.gears)}
+    gears, shared = {gear.name: index for index, gear in enumerate(machine.gears)}, idlers(machine)
     named, shafts, meshes, paths = [], [(DRIVER, found.shafts[0])], [], []
     for number, place in enumerate(found.meshes):
         mesh, path = machine.meshes[place], f"stages.{number - 1}." if number else ""
@@ -36,7 +37,8 @@ def names_of(machine: Machine) -> Names:
         meshes.append((short, mesh.name))
         shafts.append((short or DRIVEN, found.shafts[number + 1]))
         for role, gear in ((DRIVER, mesh.driver), (DRIVEN, mesh.driven)):
-            named.append((f"{short}.{role}" if short else role, gear))
+            own = f"{mesh.name}.{gear}" if gear in shared else gear  # a flank of each mesh
+            named.append((f"{short}.{role}" if short else role, own))
             paths.append((f"{path}gears.{role}", f"machine.gears.{gears[gear]}"))
         paths += [(f"{path}gears", f"machine.meshes.{place}")]
         if number:
@@ -125,7 +127,8 @@ def _drivetrain(machine: Machine) -> dict[str, Any]:
         mesh, front, own = machine.meshes[found.meshes[number]], *found.shafts[number : number + 2]
         stages.append({
             "name": mesh.name, "gears": pair, "gear": _given(machine.shafts[own], Rotor),
-            "span_mm": machine.shafts[front].span_mm, "direction_deg": mesh.direction_deg,
+            "span_mm": IDLER if mesh.driver in idlers(machine) else machine.shafts[front].span_mm,
+            "direction_deg": mesh.direction_deg,
         })  # fmt: skip
     return {"gears": pairs[0], "stages": stages}
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from siggen.config.dynamics import Dynamics
-from siggen.config.gears import Gears, Pair
+from siggen.config.gears import Gears, Pair, Wheel
 from siggen.config.housing import RigidHousing
-from siggen.config.stages import Stage, turned_teeth
+from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
 
@@ -18,6 +18,7 @@ def stage_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     """Yield what is wrong about further meshes between the valid sections of a configuration."""
     yield from _names(sections)
     yield from _beside(sections)
+    yield from _idlers(sections)
     yield from _named(sections)
 
 
@@ -116,6 +117,39 @@ def _of_gears(gears: Gears, stages: tuple[Stage, ...]) -> Iterator[Problem]:
     for where, pair in every.items():
         if bounds(pair.helix_deg) != (0.0, 0.0):
             yield Problem(f"{where}.helix_deg", str(pair.helix_deg), f"allowed: 0 {BESIDE}")
+
+
+def _idlers(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield numbers of an idler that it cannot have in both of its meshes, and damage that takes both of its flanks."""
+    stages: tuple[Stage, ...] = sections.get("stages", ())
+    if "gears" not in sections:
+        return
+    front: Pair = sections["gears"]
+    for index, stage in enumerate(stages):
+        if stage.idler:
+            shared = {f"gears.{key}": (getattr(stage.gears, key), getattr(front, key)) for key in OF_BOTH_MESHES}
+            pinions = ((f"gears.pinion.{key}", key) for key in Wheel.model_fields)
+            shared |= {path: (getattr(stage.gears.pinion, key), getattr(front.gear, key)) for path, key in pinions}
+            for key, (own, there) in shared.items():
+                if own != there:
+                    allowed = f"allowed: {there}, as in the mesh in front: an idler is one gear"
+                    yield Problem(f"stages.{index}.{key}", str(own), allowed)
+            yield from _whole_teeth(sections, {_gear_in_front(stages, index), f"{stage.name}.pinion"})
+        front = stage.gears
+
+
+def _gear_in_front(stages: tuple[Stage, ...], index: int) -> str:
+    return f"{stages[index - 1].name}.gear" if index else "gear"
+
+
+def _whole_teeth(sections: Mapping[str, Any], flanks: Collection[str]) -> Iterator[Problem]:
+    """Yield damage on the teeth of an idler that is not on one flank alone."""
+    drawn = {f"{flank.removesuffix(flank.rpartition('.')[2])}either" for flank in flanks}
+    for index, state in sections.get("states", {}).items():
+        for where, one in state.placed(f"states.{index}"):
+            if one.needs_pairs and str(getattr(one, "gear", "")) in {*flanks, *drawn}:
+                allowed = "allowed: pits, spalls and cracks of an idler, whose other flank meshes elsewhere"
+                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
 
 
 def _named(sections: Mapping[str, Any]) -> Iterator[Problem]:

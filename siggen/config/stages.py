@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from math import lcm
-from typing import Annotated
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
@@ -18,9 +18,11 @@ from siggen.keys.wording import AllowedText
 STAGE_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
 
 
+IDLER = "idler"
+Span: TypeAlias = Annotated[Number | Literal["idler"] | None, Within(above=0, most=2000, words=(IDLER, None))]
 SPAN = (
-    "distance of the bearings of the shaft with two gears, which is as thick as the thinner bore of both; null: twice "
-    "both face widths (assumed)"
+    "distance of the bearings of the shaft with two gears, which is as thick as the thinner bore of both; idler: one "
+    "gear in two meshes, with the same numbers in both; null: twice both face widths (assumed)"
 )
 DIRECTION = (
     "of the line from the driving to the driven gear against that of the first mesh, in the sense in which the first "
@@ -29,7 +31,7 @@ DIRECTION = (
 
 
 class Stage(Section):
-    """One further mesh: its pinion stands on the shaft of the gear in front, its gear on a shaft of its own.
+    """One further mesh: its pinion stands on the shaft of the gear in front or is that, its gear on a shaft of its own.
 
     Both gears on one shaft stand at a third and at two thirds between its bearings, which are those of the gear in
     front. The last gear drives the load.
@@ -44,14 +46,35 @@ class Stage(Section):
         description="its gear and that gear's shaft, without `eccentricity_um` and `bearing`; its pinion is a "
         "solid steel disc",
     )
-    span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
-        default=None,
-        description=SPAN,
-    )
+    span_mm: Span = Field(default=None, description=SPAN)
     direction_deg: Annotated[Number, Within(least=-180, most=180)] = Field(
         default=0.0,
         description=DIRECTION,
     )
+
+    @property
+    def idler(self) -> bool:
+        """Whether its pinion is the gear in front itself."""
+        return self.span_mm == IDLER
+
+
+OF_BOTH_MESHES = (
+    "module_mm", "pressure_angle_deg", "youngs_modulus_gpa", "poisson_ratio", "addendum_coefficient",
+    "clearance_coefficient",
+)  # fmt: skip
+"""Numbers of a gear that the section of its mesh holds; both meshes of an idler have them alike."""
+
+
+def with_idlers(gears: Pair, stages: Iterable[Stage]) -> Iterator[Stage]:
+    """Yield drawn stages; one whose pinion is the gear in front has the numbers that were drawn for that."""
+    front = gears
+    for stage in stages:
+        pair = stage.gears
+        if stage.idler:
+            alike = {key: getattr(front, key) for key in OF_BOTH_MESHES}
+            pair = pair.model_copy(update={**alike, "pinion": front.gear})
+        front = pair
+        yield stage.model_copy(update={"gears": pair}) if stage.idler else stage
 
 
 def hunting_turns(gears: Pair, stages: tuple[Stage, ...]) -> int:

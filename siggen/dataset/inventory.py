@@ -11,6 +11,7 @@ from pydantic import AfterValidator, Field, SkipValidation
 from siggen.columns.record import Channel, RecordFailure
 from siggen.dataset.id_ranges import Range
 from siggen.dataset.object_name import object_name
+from siggen.keys.column import Role
 
 LARGEST = 2**53
 
@@ -88,6 +89,15 @@ class ListedQuantity:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ListedColumn:
+    """Role of a column of records, and the section of the configuration that says how it is drawn."""
+
+    name: ColumnName
+    role: Role
+    section: Text = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SidecarTable:
     """A file that a sidecar commits."""
 
@@ -142,4 +152,5 @@ class Inventory(HashedFiles):
     channels: tuple[Channel, ...]
     environments: tuple[Environment, ...]
     failures: tuple[RecordFailure, ...]
+    columns: tuple[ListedColumn, ...] = ()
     internals: tuple[ListedQuantity, ...] = ()

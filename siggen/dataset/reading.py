@@ -15,7 +15,8 @@ import yaml
 
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
 from siggen.dataset.checked_file import CheckedTable
-from siggen.dataset.inventory import Inventory, ListedShard, PromisedFile
+from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
+from siggen.dataset.listed_columns import listed_columns
 from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
 from siggen.dataset.object_name import CHECKSUMS
 from siggen.dataset.promises import Promises
@@ -23,7 +24,7 @@ from siggen.dataset.shard_index import ShardIndex, promised_files
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
-from siggen.keys.column import Column
+from siggen.keys.column import Column, Role
 
 if TYPE_CHECKING:
     from siggen.config.names import Names
@@ -96,6 +97,18 @@ class Dataset:
         from siggen.dataset.set_names import set_names
 
         return set_names(self.config)
+
+    def role(self, name: str) -> Role:
+        """Return the role of a column of records; one that the set does not list is a condition."""
+        return self._listed[name].role if name in self._listed else Role.CONDITION
+
+    def section(self, name: str) -> str:
+        """Return the section of the configuration that says how a column is drawn; empty where none does."""
+        return self._listed[name].section if name in self._listed else ""
+
+    @cached_property
+    def _listed(self) -> dict[str, ListedColumn]:
+        return listed_columns(self.inventory, self.config)
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.

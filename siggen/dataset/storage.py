@@ -8,7 +8,7 @@ import os
 import secrets
 import stat
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path, PurePath
 from typing import BinaryIO, Protocol
 
@@ -19,6 +19,7 @@ LEFTOVER_SUFFIX = ".siggen-part"
 """Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
 
 READ_BYTES = 1 << 20
+MAKE_ATTEMPTS = 5
 HOW_TO_GO_ON = (
     "`siggen verify` finds all damaged files of a set; delete them, and `siggen generate` with the set's config.yaml "
     "makes them again"
@@ -68,11 +69,20 @@ class Storage(Protocol):
     def delete(self, name: str) -> None:
         """Delete an object, if it is there."""
 
+    def delete_below(self, folder: str) -> None:
+        """Delete all objects below a folder."""
+
     def delete_leftovers(self) -> list[str]:
         """Delete files that a killed process left half written, and return their names."""
 
     def writing(self) -> AbstractContextManager[None]:
-        """Return a guard that keeps a second writer out."""
+        """Return a guard that keeps a second writer out.
+
+        Of the set, not of its files: workers of whoever holds it write them, each with a copy of the storage.
+        """
+
+    def check_writing(self) -> None:
+        """Raise DatasetError if another writer took the set over inside `writing()`."""
 
 
 def sha256(storage: Storage, name: str) -> str:
@@ -121,6 +131,9 @@ class LocalFolder:
         """The folder as the user wrote it."""
         return str(self.path)
 
+    def __reduce__(self) -> tuple[type[LocalFolder], tuple[Path]]:
+        return LocalFolder, (self.path.absolute(),)  # whoever reads it may work in another folder
+
     def put(self, name: str, content: bytes) -> None:
         """Write the content to a hidden file, then rename it: a reader never sees half of it."""
         with self.draft(name) as path:
@@ -132,7 +145,7 @@ class LocalFolder:
         target = self._file(name)
         self._check_links(target.parent)
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            _make(target.parent)
             is_taken = target.is_dir() and not target.is_symlink()
         except (FileExistsError, NotADirectoryError):
             is_taken = True
@@ -201,9 +214,17 @@ class LocalFolder:
         self._check_links(file.parent)
         file.unlink(missing_ok=True)
         for folder in file.parents:
-            if folder == self.path or not folder.is_dir() or any(folder.iterdir()):
+            if folder == self.path:
                 return
-            folder.rmdir()
+            try:
+                folder.rmdir()
+            except OSError:  # another process put something there
+                return
+
+    def delete_below(self, folder: str) -> None:
+        """Delete all files below a folder, and the folders that are empty then."""
+        for name in self.names(folder):
+            self.delete(name)
 
     def delete_leftovers(self) -> list[str]:
         """Delete half-written files; call it only while holding `writing()`."""
@@ -245,6 +266,9 @@ class LocalFolder:
             if lock is not None:
                 os.close(lock)
 
+    def check_writing(self) -> None:
+        """Do nothing: the lock of a folder ends with its process alone."""
+
     def _file(self, name: str) -> Path:
         check_below(name, self.location)
         return self.path / name
@@ -258,6 +282,15 @@ class LocalFolder:
                 f"{path} leads out of {self.path} by a link; a set has all its files in its own folder: "
                 "copy the set with what its links lead to (cp -rL), and read the copy"
             )
+
+
+def _make(folder: Path) -> None:
+    """Make a folder and those above it, which another process may delete, empty as they are, at the same moment."""
+    for _ in range(MAKE_ATTEMPTS - 1):
+        with suppress(FileNotFoundError):
+            folder.mkdir(parents=True, exist_ok=True)
+            return
+    folder.mkdir(parents=True, exist_ok=True)
 
 
 def _real(path: Path) -> Path:

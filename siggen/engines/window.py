@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import islice
+from collections.abc import Callable, Iterable, Sequence
+from itertools import islice, takewhile
 from typing import Any
 
 from siggen.engines.protocol import Result, Results, Task, Unfinished
@@ -37,15 +37,15 @@ def windowed(
     drained : callable
         Whether nothing more shall be begun; see `DrainingEngine`.
     """
-    source: Iterator[tuple[int, Task]] = enumerate(tasks)
+    source = iter(tasks)
     opened: dict[Any, tuple[int, Task]] = {}
     taken = 0
     while True:
         oldest = min((index for index, _ in opened.values()), default=taken)
         room = 0 if drained() else max(0, oldest + WINDOW_PER_WORKER * workers - taken)
-        for index, task in islice(source, room):
-            opened[submit(task)] = (index, task)
-            taken = index + 1
+        for task in takewhile(_is_task, islice(source, room)):
+            opened[submit(task)] = (taken, task)
+            taken += 1
         if not opened:
             return
         for one in finished(list(opened)):
@@ -54,3 +54,7 @@ def windowed(
             if isinstance(result, Unfinished) and not drained():
                 opened[submit(result.rest)] = (index, result.rest)
             yield index, result
+
+
+def _is_task(task: object) -> bool:
+    return task is not None

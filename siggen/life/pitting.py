@@ -151,13 +151,14 @@ class PittingCourse:
             lived.wander(time, law.wander_sd)[own],
             lived.seeds.owner[own],
             np.array([self._through(self.pits[i]) for i in own]),
-            sum(sizes),
             np.repeat(hazards, sizes),
             np.repeat([one.turns for one in flanks], sizes),
+            np.repeat([self._first_share(one.gear) for one in flanks], sizes),
+            np.repeat(self._through_any, sizes, axis=0),
         )
         chances = Chances(
-            law.slope, law.first_share, FIRST_SHARE_SD, law.rate_per_rev, law.rate_sd, law.wander_sd,
-            self.functional_share, self._through_any,
+            law.slope, FIRST_SHARE_SD, law.rate_per_rev, law.rate_sd, law.wander_sd,
+            self.functional_share,
         )  # fmt: skip
         return failing_times(now, chances, runs, self.wearing.named(f"outlook/{time!r}"))
 
@@ -166,18 +167,21 @@ class PittingCourse:
 
     @cached_property
     def _through_any(self) -> FloatArray:
-        """Shares at which pits leave no land, of any pits of either gear."""
-        found = [
-            through_share(
-                drawn_shape(
-                    flank, self.law.torque_exponent, partial(_numbered, self.wearing.named, f"{flank.gear}/{number}")
-                ),
-                flank.area_m2,
-            )
+        """Shares at which pits leave no land, of any pits of either gear (2, `ANY_PITS`)."""
+
+        def shape(flank: Flank, number: int) -> PitShape:
+            named = partial(_numbered, self.wearing.named, f"{flank.gear}/{number}")
+            return drawn_shape(flank, self.law.torque_exponent, named)
+
+        return np.array([
+            [through_share(shape(flank, number), flank.area_m2) for number in range(ANY_PITS)]
             for flank in self.wearing.flanks
-            for number in range(ANY_PITS)
-        ]
-        return np.array(found)
+        ])  # fmt: skip
+
+    def _first_share(self, gear: str) -> float:
+        """Return the median share of a young pit: its area is that on the nominal flank."""
+        nominal = self.wearing.nominal[("pinion", "gear").index(gear)]
+        return self.law.first_share * (nominal.area_m2 / self._flank(gear).area_m2)
 
     def _flank(self, gear: str) -> Flank:
         return self.wearing.flanks[("pinion", "gear").index(gear)]
@@ -233,8 +237,7 @@ class PittingCourse:
         named = self._named(one)
         own, flank = ("pinion", "gear").index(one.gear), self._flank(one.gear)
         size, rate = named("growth").standard_normal(2).tolist()
-        nominal = self.wearing.nominal[own].area_m2 / flank.area_m2
-        share = self.law.first_share * nominal * np.exp(FIRST_SHARE_SD * size)
+        share = self._first_share(one.gear) * np.exp(FIRST_SHARE_SD * size)
         owner = one.tooth + own * self.wearing.flanks[0].teeth
         shape = drawn_shape(flank, self.law.torque_exponent, named)
         return Pit(one, owner, float(share), float(self.law.rate_per_rev * np.exp(self.law.rate_sd * rate)), shape)

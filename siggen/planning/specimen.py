@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from siggen.config import Config, Dynamics, Gears, ModalHousing, Planetary, RigidHousing, Stage, Stiffness
+from siggen.config.stages import with_idlers
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.planning.gearbox import gearbox_config
@@ -55,15 +56,16 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     gears = named_uniforms(config.seed, Consumer.GEARS, specimen_id)
     supports = named_uniforms(config.seed, Consumer.SUPPORTS, specimen_id)
     sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
+    first = draw(own.gears, gears, "gears")
     return Specimen(
         specimen_id,
-        gears=draw(own.gears, gears, "gears"),
+        gears=first,
         stiffness=draw(own.stiffness, gears, "stiffness"),
         dynamics=draw(own.dynamics, supports, "dynamics"),
         housing=drawn_housing(own.housing, supports),
         sensors=tuple(one.drawn(sensor) for one in own.sensors),
         bearing_point=draw_operating_point(own, specimen_id, 0) if follows_load(own.dynamics) else None,
-        stages=tuple(draw(one, supports, f"stages.{one.name}") for one in own.stages),
+        stages=tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages))),
         planetary=None if own.planetary is None else draw(own.planetary, supports, "planetary"),
     )
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from siggen.columns.planetary_columns import renamed
+from siggen.columns.planetary_columns import EACH, manufacture_of_others, renamed
 from siggen.config import Config
 from siggen.config.planetary import NAMES, RING
 from siggen.planning.specimen import Specimen
@@ -14,11 +14,12 @@ from siggen.specimen.planetary_numbers import pin_errors_m, planetary_teeth
 from siggen.specimen.static_mesh import StaticMesh
 
 
-def with_ring_labels(first: Mapping[str, Any], ring: Mapping[str, Any]) -> dict[str, object]:
-    """Return the labels of a state by those of its sun and first planet, and those of that planet in the ring.
+def with_ring_labels(config: Config, suns: Sequence[Mapping[str, Any]], ring: Mapping[str, Any]) -> dict[str, object]:
+    """Return the labels of a state by those of its sun with each planet, and those of the first planet in the ring.
 
     Counts and areas add up; of shares, lengths and losses the largest counts.
     """
+    first = suns[0]
     gears = [str(one) for one in (NAMES.get(first["faulty_gear"], first["faulty_gear"]),) if one != "none"]
     gears += [RING] * (ring["faulty_gear"] != "none")
     return {
@@ -27,6 +28,10 @@ def with_ring_labels(first: Mapping[str, Any], ring: Mapping[str, Any]) -> dict[
         **{key: max(first[key], ring[key]) for key in LARGEST},
         "faulty_gear": "several" if len(gears) > 1 else next(iter(gears), "none"),
         "faulty_teeth_ring": ring["faulty_teeth_gear"],
+        **{
+            column.name: [one[name] for one in suns] if EACH in column.name else ring[name]
+            for column, name in manufacture_of_others(config)
+        },
     }
 
 

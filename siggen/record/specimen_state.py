@@ -22,6 +22,7 @@ from siggen.record.stage_labels import stage_labels
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_uniforms
 from siggen.specimen.back_flanks import with_back_flanks, with_static_back
+from siggen.specimen.clocking import clocked_pitches
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
@@ -125,9 +126,10 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
 def _planetary_state(config: Config, made: MadeGears, state_id: int, assembled: Structure) -> SpecimenState:
     """Return the state of a planetary set: that of the sun with its first planet, with all meshes behind it."""
     states = [_mesh_state(one, state_id, assembled) for one in made_meshes(made, config)]
-    first, ring = states[0], states[len(states) // 2]
+    suns, ring = states[: len(states) // 2], states[len(states) // 2]
     mesh = with_planets(config, made.specimen, [one.mesh for one in states])
-    return replace(first, mesh=mesh, labels=with_ring_labels(first.labels, ring.labels), ring=ring)
+    labels = with_ring_labels(config, [one.labels for one in suns], ring.labels)
+    return replace(suns[0], mesh=mesh, labels=labels, ring=ring)
 
 
 def _with_stages(
@@ -136,9 +138,10 @@ def _with_stages(
     """Return the state of the first mesh with those behind it; how their teeth stand is drawn for the gearbox."""
     uniform = named_uniforms(config.seed, Consumer.GEARS, specimen.specimen_id)
     names = [stage.name for stage in specimen.stages]
+    clockings = clocked_pitches([first.pair, *(one.pair for one in behind)], specimen, uniform)
     meshes = tuple(
-        MeshBehind(one.mesh, turning, uniform(f"stages.{name}.clocking") * one.pair.pinion.teeth * one.pair.gear.teeth)
-        for one, turning, name in zip(behind, turns(specimen), names, strict=True)
+        MeshBehind(one.mesh, turning, turned)
+        for one, turning, turned in zip(behind, turns(specimen), clockings, strict=True)
     )
     labels = stage_labels(first.labels, dict(zip(names, (one.labels for one in behind), strict=True)))
     return replace(first, mesh=replace(first.mesh, behind=meshes, back=None), labels=labels, behind=behind)

@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from siggen.dataset.environment import fingerprint, version_text
+from siggen.dataset.excerpt import excerpt_name
 from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.manifest import CONFIG
-from siggen.dataset.sidecar import Sidecar
+from siggen.dataset.sidecar import Sidecar, ranges
 from siggen.dataset.storage import Storage, copy_object
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
@@ -27,7 +28,6 @@ from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
-from siggen.sets.shard_making import ranges
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -185,6 +185,7 @@ def _copy_missing(run: SetRun, sources: Sequence[Storage], target: Storage) -> N
             run.interruption.check()
             sidecar = _promised(run, source, shard)
             if sidecar is not None and _is_copied(source, sidecar, target):
+                _copy_excerpt(source, shard.key, target)
                 run.accept(sidecar.without_bulk(*ranges(shard)))
                 break
 
@@ -204,6 +205,13 @@ def _is_copied(source: Storage, sidecar: Sidecar, target: Storage) -> bool:
         return False
     target.put(sidecar.name, content)
     return True
+
+
+def _copy_excerpt(source: Storage, shard: str, target: Storage) -> None:
+    """Copy what the tables take from a shard, if the part has it; whoever reads it checks whether it is of use."""
+    name = excerpt_name(shard)
+    if source.exists(name):
+        target.put(name, source.get(name))
 
 
 def _check_complete(run: SetRun) -> None:

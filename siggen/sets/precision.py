@@ -131,7 +131,7 @@ def measure_precision(
     dataset, config = Dataset(storage), stored_config(storage, manifest)
     chosen = chosen_records(dataset, [state.name for state in config.states], count)
     ids = sorted(chosen)
-    own = engine_of(engine, 1 if engine is None and workers is None else workers)
+    own = engine_of(engine, 0 if engine is None and workers is None else workers)
     delivered = dict(_again(own, unrounded(config), ids))
     compared = []
     for done, fine in enumerate(_references(own, unrounded(config), ids), start=1):

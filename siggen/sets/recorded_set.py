@@ -15,7 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.record import TACHO_COLUMN, channels, damage_schema, record_schema, schema_metadata
+from siggen.columns.record import (
+    TACHO_COLUMN,
+    channels,
+    damage_schema,
+    listed_columns,
+    record_schema,
+    schema_metadata,
+)
 from siggen.dataset.environment import environment
 from siggen.dataset.folder import config_bytes
 from siggen.dataset.id_ranges import id_ranges
@@ -65,7 +72,7 @@ def write_recorded_set(
         By ascending `record_id`, those of a split together: IDS, LABELS, the columns of `origin`, `signals` with one
         (n,) [m/s²] per channel, and `tacho_s`. Signals are cut to the shortest.
     origin : pyarrow.Schema
-        Further columns, which say where a row comes from.
+        Further columns, which say where a row comes from, with `role` in the metadata of each.
     facts : mapping
         What `injected.json` says.
     card : str
@@ -97,6 +104,7 @@ def write_recorded_set(
         "duration_s": samples / float(config.fs_hz),
         "rows_per_group": GROUP_ROWS,
         "channels": [asdict(channel) for channel in channels(config)],
+        "columns": listed_columns(schema),
     }
     storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, INJECTED])))
     return folder

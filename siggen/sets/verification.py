@@ -102,7 +102,7 @@ def verify(
     sample : int
         Number of records; which ones follows from the manifest, so a verification can be repeated.
     workers : int, optional
-        Worker processes, by default 1; 0 simulates in this process.
+        Worker processes; by default none, since a few records cost less than the start of one.
     engine : Engine or str, optional
         As for `generate`.
 
@@ -245,7 +245,7 @@ def _simulate_again(
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
     function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
-    chosen = engine_of(engine, 1 if engine is None and workers is None else workers)
+    chosen = engine_of(engine, 0 if engine is None and workers is None else workers)
     with running(chosen, function, tasks) as results:
         for index, result in results:
             record_id = ids[index]

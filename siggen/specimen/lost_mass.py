@@ -12,7 +12,13 @@ from cmath import exp, phase
 from math import pi
 from typing import NamedTuple
 
-from siggen.dynamics.drive.external_forces import Unbalance, bearing_places, gear_directions, turning_sense
+from siggen.dynamics.drive.external_forces import (
+    Unbalance,
+    bearing_places,
+    gear_directions,
+    gear_number,
+    turning_sense,
+)
 from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.lost_mass import LostMetals, lost_moment_kg_m, without_metal
 from siggen.gears.damage.part import Parts
@@ -54,8 +60,8 @@ def tooth_angle_rad(pair: GearPair, which: str, tooth: int) -> float:
 
 def _unbalance(pair: GearPair, structure: Structure, which: str, lost: LostMetals, at: MeshPlace) -> Unbalance:
     gear, driven = pair.member(which), int(which == "gear")
-    place = bearing_places(structure)[at.number + driven]
-    sense, directions = turning_sense(structure, place), gear_directions(structure, place, 2 * at.number + 1 + driven)
+    place, number = bearing_places(structure)[at.number + driven], structure.meshes[at.number].turning[driven]
+    sense, directions = turning_sense(structure, place), gear_directions(structure, place, gear_number(number))
     begins_rad = 2.0 * pi * at.turned_pitches / gear.teeth
     moment = -sum(
         lost_moment_kg_m(gear, one, pair.face_width_m)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, cached_property
 from typing import NamedTuple, TypeVar
@@ -13,6 +13,7 @@ from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, w
 from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.idler import idler_later_rad
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
 from siggen.planning.stages import first_mesh, stage_config, stage_specimen
@@ -72,10 +73,7 @@ class MadeGears:
         self.pair: GearPair = gear_pair(specimen.gears) if pair is None else pair
         self._whole, self._config, self._specimen = config, first_mesh(config), specimen
         self._shared, self._body = shared, body
-        self.stages = tuple(
-            MadeGears(stage_config(config, specimen, i), stage_specimen(specimen, i))
-            for i in range(len(specimen.stages))
-        )
+        self.stages = tuple(_stages(self, config, specimen))
         # not over instances: what belongs to a gearbox ends with it
         self._errors = cache(self._computed_errors)
         self._waves = cache(self._computed_waves)
@@ -172,3 +170,13 @@ class MadeGears:
     def _computed_shares(self, drawn_for: int) -> FaceShares | None:
         own = self._specimen
         return slice_shares(own.dynamics, self.pair, stiffness_options(own.stiffness), lead_of(self._errors(drawn_for)))
+
+
+def _stages(first: MadeGears, config: Config, specimen: Specimen) -> Iterator[MadeGears]:
+    """Yield what makes the teeth of each further mesh; an idler has the axis that it has in the mesh in front."""
+    front = first
+    for index, stage in enumerate(specimen.stages):
+        own = stage_specimen(specimen, index)
+        body = SameBody(front, idler_later_rad(front.pair, gear_pair(own.gears))) if stage.idler else None
+        front = MadeGears(stage_config(config, specimen, index), own, body=body)
+        yield front

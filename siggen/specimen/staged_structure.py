@@ -9,7 +9,8 @@ from siggen.config import PlainRotor, RigidHousing, Stage
 from siggen.dynamics.structure.body import Body, Point, rigid_body
 from siggen.dynamics.structure.casing_structure import refuse_single_bolt
 from siggen.dynamics.structure.drivetrain import PLACES, CommonShaft, NextStage, drivetrain
-from siggen.dynamics.structure.structure import SpurStage, Structure
+from siggen.dynamics.structure.gear_stage import GearStage
+from siggen.dynamics.structure.structure import Structure
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
@@ -21,7 +22,7 @@ LEAST_SPAN = 0.5 / min(PLACES[0], PLACES[1] - PLACES[0])
 """Distance of the bearings of a common shaft over both faces, from which on neither gears nor bearings overlap."""
 
 
-def staged_structure(first: SpurStage, specimen: Specimen) -> Structure:
+def staged_structure(first: GearStage, specimen: Specimen) -> Structure:
     """Return the structure of a gearbox with further meshes behind the first one.
 
     Raises
@@ -75,19 +76,27 @@ def _next_stages(specimen: Specimen) -> list[NextStage]:
         NextStage(
             name=stage.name,
             working_pressure_angle_rad=pair.working_pressure_angle_rad,
-            pinion=rotor_numbers(PlainRotor(), pair.pinion, pair.face_width_m),
+            pinion=rotor_numbers(seat, pair.pinion, before.face_width_m if stage.idler else pair.face_width_m),
             gear=rotor_numbers(stage.gear, pair.gear, pair.face_width_m),
-            shaft=_common_shaft(stage, before, pair),
+            shaft=None if stage.idler else _common_shaft(stage, before, pair),
             direction_rad=direction,
         )
-        for stage, direction, (before, pair) in zip(specimen.stages, _directions(specimen), pairs, strict=True)
+        for stage, seat, direction, (before, pair) in zip(
+            specimen.stages, _pinion_seats(specimen), _directions(specimen), pairs, strict=True
+        )
     ]
+
+
+def _pinion_seats(specimen: Specimen) -> list[PlainRotor]:
+    """Return what says how heavy the pinion of each further mesh is: a disc, or the gear in front where it is that."""
+    front = [specimen.dynamics.gear, *(stage.gear for stage in specimen.stages)]
+    return [seat if stage.idler else PlainRotor() for stage, seat in zip(specimen.stages, front, strict=False)]
 
 
 def _common_shaft(stage: Stage, before: GearPair, pair: GearPair) -> CommonShaft:
     span_m = 2.0 * (before.face_width_m + pair.face_width_m)
     return CommonShaft(
-        span_m=span_m if stage.span_mm is None else 1e-3 * constant(stage.span_mm),
+        span_m=span_m if isinstance(stage.span_mm, str | None) else 1e-3 * constant(stage.span_mm),
         diameter_m=2.0 * min(before.gear.bore_radius_m, pair.pinion.bore_radius_m),
         youngs_modulus_pa=pair.youngs_modulus_pa,
         poisson_ratio=pair.poisson_ratio,

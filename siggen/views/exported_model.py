@@ -21,6 +21,7 @@ from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
+from siggen.dynamics.structure.shaft_lines import frame_turns, rolling
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations
@@ -35,7 +36,6 @@ from siggen.record.specimen_state import refused_as, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
 from siggen.specimen.step_choice import stepped_motion
-from siggen.views.pairs_alone import refuse_planetary
 
 FORMAT_VERSION = 5
 """Raised when a key changes its meaning or goes away; new keys leave it."""
@@ -58,10 +58,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     ------
     SolverFailure
         If what was drawn cannot be built; says why.
-    UsageError
-        For a planetary set.
     """
-    refuse_planetary(whole, "an exported model")
     record = planned_record(whole, record_id)
     config = state_config(whole, record.specimen_id, record.state_id)
     specimen = draw_specimen(config, record.specimen_id)
@@ -134,6 +131,8 @@ def _structure(structure: Structure, names: Names) -> dict[str, Any]:
     forces = list(structure.bearing_forces.values())
     return {
         "coordinates": np.array(structure.coordinates),
+        "rolling": rolling(structure) * (1.0 - frame_turns(structure)),
+        "frame_turns": frame_turns(structure),
         "mass": structure.mass,
         "damping": structure.damping,
         "stiffness": structure.stiffness,
@@ -149,7 +148,7 @@ def _structure(structure: Structure, names: Names) -> dict[str, Any]:
 def _meshes(motion: Motion, names: Names) -> dict[str, Any]:
     """Return how many meshes there are, and what belongs to each."""
     found: dict[str, Any] = {"meshes": len(motion.structure.meshes)}
-    per_radian = motion.teeth / (2.0 * np.pi)
+    per_radian = _pitches_per_rad(motion)
     for number, (mesh, law) in enumerate(zip(motion.structure.meshes, motion.laws, strict=True)):
         rate, begins = motion.places[number]
         own = {
@@ -187,9 +186,14 @@ def _static_part(equations: Equations, mesh: int) -> dict[str, Any]:
     }
 
 
+def _pitches_per_rad(motion: Motion) -> float:
+    """Return the base pitches that the first mesh turns per angle of the first shaft, less what its frame turns."""
+    return motion.teeth * (1.0 - frame_turns(motion.structure)) / (2.0 * np.pi)
+
+
 def _first_pitches(motion: Motion, rotation: Rotation, time_s: float) -> float:
     """Return the base pitches that the first mesh has turned at a time."""
-    turned = float(rotation.angle_rad(np.array([time_s]))[0]) * (motion.teeth / (2.0 * np.pi))
+    turned = float(rotation.angle_rad(np.array([time_s]))[0]) * _pitches_per_rad(motion)
     return turned + motion.structure.mesh.flanks.ahead_pitches
 
 

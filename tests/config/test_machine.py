@@ -9,10 +9,13 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
+from siggen.columns.record import label_names
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.stages import first_mesh, stage_config
+from tests.config.idler import MACHINE as MACHINE_OF_IDLER
+from tests.config.idler import idler, with_idler
 from tests.config.mill import MACHINE, mill, with_machine
 from tests.config.staged import SLOW, SPALL, staged
 
@@ -82,7 +85,7 @@ MISTAKES: dict[str, tuple[dict[str, Any], str, str]] = {
         beside(
             ELSE, {**ELSE, "name": "more", "shaft": "input"},
             meshes=tuple({**MESH, "name": f"m_{one}", "driver": "otto", "driven": one} for one in ("else", "more")),
-        ), "machine.gears.2.name", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh; give each mesh",
+        ), "machine.gears.2.name", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh, or two of an idler",
     ),
     "a shaft apart": (beside(name="far"), "machine.shafts.3.name", "'far', which no mesh joins with the shaft output"),
     "a loop that cannot turn": (
@@ -119,6 +122,62 @@ def test_a_machine_that_cannot_be_is_refused_at_the_users_line(mistake: str, tmp
     assert path in found, str(refused.value)
     assert words in str(found[path])
     assert found[path].where.startswith("line "), found[path]
+    assert "pinion" not in str(refused.value)
+
+
+def test_an_idler_is_named_by_the_mesh_of_each_flank() -> None:
+    config = load_config(idler(sensors=[{"kind": "encoder", "name": "out", "place": "second.b"}]))
+    assert [state.damages[0].gear for state in config.states[1:]] == ["gear", "second.pinion"]
+    assert parse(config.canonical()).config == config
+    assert {"faulty_teeth_first_b", "faulty_teeth_second_b"} <= set(label_names(config))
+    drawn = draw_specimen(config, 0)
+    assert drawn.stages[0].gears.pinion == drawn.gears.gear
+
+
+def test_an_idler_whose_bore_is_drawn_has_one() -> None:
+    bore = {"kind": "uniform", "low": 10.0, "high": 14.0}
+    drawn = draw_specimen(load_config(idler(machine=with_idler("gears", 1, bore_radius_mm=bore))), 3)
+    assert drawn.stages[0].gears.pinion.bore_radius_mm == drawn.gears.gear.bore_radius_mm
+
+
+OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {
+    "teeth of two sizes": (
+        {"machine": with_idler("meshes", 1, module_mm=2.5)}, "machine.meshes.1.module_mm", "an idler is one gear",
+    ),
+    "a span": ({"machine": with_idler("shafts", 1, span_mm=90.0)}, "machine.shafts.1.span_mm", "one gear"),
+    "tips in one another": (
+        {"machine": with_idler("meshes", 1, direction_deg=150.0)}, "machine.meshes.1.direction_deg", "tip radii",
+    ),
+    "two gears that drive it": (
+        {"machine": with_idler("meshes", 1, driver="c", driven="b")}, "machine.shafts.1.name", "is driven in 2 meshes",
+    ),
+    "damage of no flank": (
+        {"states": [{"name": "bad", "severity": "slight", "damage": {**SPALL, "gear": "b"}}]},
+        "states.0.damage.gear", "first.b, second.b, c",
+    ),
+    "a tooth that is gone": (
+        {"states": [{"name": "bad", "severity": "slight", "damage": {
+            "kind": "chip", "gear": "second.b", "height_mm": "whole",
+        }}]}, "states.0.damage.kind", "pits, spalls and cracks of an idler",
+    ),
+    "a name of a flank": (
+        {"machine": with_idler("gears", 2, name="second_b") | {"meshes": [
+            MACHINE_OF_IDLER["meshes"][0], {**MACHINE_OF_IDLER["meshes"][1], "driven": "second_b"},
+        ]}}, "machine.gears.2.name", "whose columns are its own",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", OF_IDLERS)
+def test_an_idler_that_cannot_be_is_refused_with_the_users_names(mistake: str) -> None:
+    changes, path, words = OF_IDLERS[mistake]
+    begun = time.process_time()
+    with pytest.raises(ConfigError) as refused:
+        load_config(idler(**changes))
+    assert time.process_time() - begun < 2.0
+    found = {one.path: str(one) for one in refused.value.problems}
+    assert path in found, str(refused.value)
+    assert words in found[path]
     assert "pinion" not in str(refused.value)
 
 

@@ -15,6 +15,7 @@ import pytest
 
 from siggen.config.names import NO_NAMES, Names
 from siggen.dataset.reading import RowGroup
+from tests.diagnostics.column_roles import ListedRoles
 
 if TYPE_CHECKING:
     from diagnostics.indicators.table import RecordTable
@@ -44,7 +45,7 @@ def shaft_record(
 
 
 @dataclass
-class MemoryDataset:
+class MemoryDataset(ListedRoles):
     """Rows in memory behind the interface of a set on disk."""
 
     table: pa.Table
@@ -80,6 +81,13 @@ class MemoryDataset:
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         table = self._split(split)
         return table if columns is None else table.select(list(columns))
+
+    def damage(self, split: str | None = None) -> pa.Table:
+        rows = self.labels(split, ["record_id", "specimen_id", "fault"]).to_pylist()
+        damaged = [row for row in rows if row["fault"] != "healthy"]
+        gears = ["gear" if row["specimen_id"] % 2 else "pinion" for row in damaged]
+        teeth = [row["specimen_id"] % TEETH[0] for row in damaged]
+        return pa.table({"record_id": [row["record_id"] for row in damaged], "gear": gears, "tooth": teeth})
 
     def records(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None

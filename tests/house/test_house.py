@@ -7,14 +7,13 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from tests.house.source_tree import ROOT
+from tests.house.source_tree import ROOT, tree
 
 CODE = sorted([*(ROOT / "siggen").rglob("*.py"), *(ROOT / "diagnostics").rglob("*.py")])
 ALL = sorted([*CODE, *(ROOT / "tests").rglob("*.py"), *(ROOT / "benchmarks").rglob("*.py")])
 FORBIDDEN_NAMES = {"utils", "util", "helpers", "common", "misc"}
 GENERATORS = ("default_rng(", "RandomState(", "SeedSequence(", "np.random.seed", "np.random.normal", "Philox(")
 MOST_PARAMETERS = 8
-TREES = {path: ast.parse(path.read_text()) for path in CODE}
 
 
 def offenders(paths: list[Path], of_file: Callable[[Path], Iterator[str]]) -> str:
@@ -43,7 +42,7 @@ def test_a_file_holds_one_concept_of_at_most_350_lines() -> None:
 
 def test_functions_are_short() -> None:
     def found(path: Path) -> Iterator[str]:
-        for node in ast.walk(TREES[path]):
+        for node in ast.walk(tree(path)):
             if isinstance(node, ast.FunctionDef) and body_lines(node) > (150 if is_kernel(node) else 50):
                 yield f"{node.name} has {body_lines(node)} lines"
 
@@ -52,7 +51,7 @@ def test_functions_are_short() -> None:
 
 def test_functions_have_few_parameters() -> None:
     def found(path: Path) -> Iterator[str]:
-        for node in ast.walk(TREES[path]):
+        for node in ast.walk(tree(path)):
             if isinstance(node, ast.FunctionDef):
                 named = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
                 if (count := sum(one.arg != "self" for one in named)) > MOST_PARAMETERS:
@@ -63,9 +62,9 @@ def test_functions_have_few_parameters() -> None:
 
 def test_modules_and_public_names_are_documented() -> None:
     def found(path: Path) -> Iterator[str]:
-        if not ast.get_docstring(TREES[path]):
+        if not ast.get_docstring(tree(path)):
             yield "no module docstring"
-        for node in TREES[path].body:
+        for node in tree(path).body:
             public = isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")
             if public and not ast.get_docstring(node):
                 yield f"{node.name} has no docstring"

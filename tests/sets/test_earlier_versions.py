@@ -70,7 +70,7 @@ def test_a_set_of_another_simulation_is_neither_resumed_nor_extended(tmp_path: P
 def test_a_newer_unknown_schema_is_refused_in_words_and_verified_by_its_hashes(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     say(tmp_path, schema_version="99")
-    with pytest.raises(DatasetError, match="received schema version 99; allowed is 3"):
+    with pytest.raises(DatasetError, match="received schema version 99; allowed is 3 and 4"):
         siggen.open(tmp_path)
     found = verify_fake_set(tmp_path, 3)
     assert found.mismatches == ()

@@ -7,10 +7,13 @@ import pytest
 
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
+from siggen.columns.planetary_columns import manufacture_of_others
+from siggen.columns.record import label_names
 from siggen.dynamics.structure.planetary import planetary_structure
 from siggen.gears.errors.gear_errors import eccentric_m
 from siggen.gears.geometry.internal_pair import ring_begins_pitches
 from siggen.planning.specimen import draw_specimen
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.planetary_meshes import made_meshes
 from siggen.specimen.planetary_numbers import planetary_numbers, planetary_teeth, planets_in_ring
@@ -41,6 +44,19 @@ def test_sun_and_ring_are_the_same_in_all_of_their_meshes_and_every_flank_of_pla
     waves = [one.waves(0) for one in meshes]
     assert len({one.pinion.common_m.tobytes() for one in waves[:COUNT] if one is not None}) == 1
     assert len({one.gear.common_m.tobytes() for one in waves[COUNT:] if one is not None}) == 1
+
+
+def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_made(meshes: list[MadeGears]) -> None:
+    config = load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"}))
+    labels = specimen_state(config, meshes[0].specimen, 0, meshes[0]).labels
+    errors = [one.errors(0) for one in meshes]
+    runouts = [1e6 * one.gear.found.largest["runout_m"] for one in errors if one is not None]
+    assert labels["runout_ring_um"] == runouts[COUNT]
+    assert labels["runout_each_planet_um"] == runouts[:COUNT]
+    assert labels["runout_each_planet_um"][0] == labels["runout_gear_um"]
+    assert len(set(runouts[:COUNT])) == COUNT
+    assert len(labels["ghost_orders_ring"]) == len(labels["ghost_amplitudes_ring_um"]) > 0
+    assert {column.name for column, _ in manufacture_of_others(config)} <= set(label_names(config)) & set(labels)
 
 
 def missing_m(made: MadeGears, which: str, pitches: FloatArray) -> FloatArray:

@@ -25,6 +25,8 @@ from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import FORMAT_VERSION, exported_model
+from tests.config.planets import SPALL as PLANET_SPALL
+from tests.config.planets import planets
 from tests.specimen.test_two_stages import two_stages
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -95,18 +97,25 @@ def last_bits(seed: int) -> Change:
 
 
 def beginning(
-    config: str | dict, record: int, samples: int, steps: int, *overrides: str, change: Change = np.array
+    config: str | dict,
+    record: int,
+    samples: int,
+    steps: int,
+    *overrides: str,
+    change: Change = np.array,
+    runge_kutta: bool = True,
 ) -> tuple[dict, list]:
     """Return the model as a file gives it; approach, mesh force and tilt of all meshes of the loop from its start on.
 
     The beginning, not the record behind it: before that the housing settles for 0.6 s, which scipy needs minutes for.
-    Both have the matrices as `change` leaves them.
+    Both have the matrices as `change` leaves them. Steps are those of Runge-Kutta, or as shipped.
     """
     loaded = load_config(
         ROOT / config if isinstance(config, str) else config,
         ["duration_s=0.01", f"dynamics.steps_per_sample={steps}", *overrides],
     )
-    loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
+    if runge_kutta:
+        loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
     planned = planned_record(loaded, record)
     specimen = draw_specimen(loaded, planned.specimen_id)
     state = specimen_state(loaded, specimen, planned.state_id)
@@ -187,6 +196,26 @@ def test_scipy_gives_the_motion_of_two_stages_from_their_file_alone() -> None:
     assert largest(own[2:], by_scipy(sound, own, 1e-4)[2:]) > 0.05
 
 
+def planetary(**changes: object) -> dict:
+    """Return a set with friction, errors and pins out of place; of one state every tooth of the sun is spalled."""
+    damage = {**PLANET_SPALL, "gear": "sun", "teeth": 25, "centre_height_mm": "pitch"}
+    states = [{"name": "healthy"}, {"name": "severe", "grows_from": "none", "damage": damage}]
+    friction = {**planets()["dynamics"], "friction": {"model": "mixed_ehl"}}
+    section = {"ring_teeth": 77, "pin_error_um": 10}
+    made = {"manufacture": {"accuracy_class": 6}, "states": states, "dynamics": friction, "planetary": section}
+    return planets(**{**made, **changes})
+
+
+def test_scipy_gives_the_motion_of_a_planetary_set_from_its_file_alone() -> None:
+    """Six meshes in a frame that turns, by the steps that records take."""
+    model, own = beginning(planetary(), 1, 80, 16, runge_kutta=False)
+    assert model["meshes"] == 6
+    assert len(own) == 12
+    assert largest(own, by_scipy(model, own, FINE)) < 1e-3
+    sound = model | {f"mesh.{m}.law.table_of_pair": 0 * model[f"mesh.{m}.law.table_of_pair"] for m in range(3)}
+    assert largest(own, by_scipy(sound, own, 1e-4)) > 0.05
+
+
 def begun_with_film(coupling: str, samples: int = 300, change: Change = np.array) -> tuple[dict, list]:
     overrides = (f"stiffness.coupling={coupling}", "dynamics.mesh.squeeze_film=on")
     return beginning("tests/configs/casing.yaml", 12, samples, 32, *overrides, change=change)
@@ -228,6 +257,10 @@ def test_every_key_is_described(file: str, record: int, overrides: list[str]) ->
 
 def test_every_key_of_two_stages_is_described() -> None:
     described(exported_model(load_config(two_stages(), ["duration_s=0.01"]), 0), 2)
+
+
+def test_every_key_of_a_planetary_set_is_described() -> None:
+    described(exported_model(load_config(planetary(), ["duration_s=0.01"]), 0), 6)
 
 
 def described(model: Mapping, meshes: int) -> None:

@@ -77,7 +77,7 @@ def bearing_places(structure: Structure) -> tuple[str, ...]:
 def gear_directions(structure: Structure, place: str, gear: int) -> FloatArray:
     """Return the generalised forces (2, n) of 1 N on one gear of the shaft at a bearing, horizontal and vertical.
 
-    Gears are counted from the first pinion, 1, in the order of power.
+    Gears are counted from the first pinion, 1, in the order of power; an idler is one gear.
     """
     along = shaft_directions(structure, place)
     if len(_gears(structure, place)) == 1:
@@ -104,12 +104,12 @@ def turning_sense(structure: Structure, place: str) -> float:
     sense of the driving gear. The driven gear turns the other way.
     """
     gear = _gears(structure, place)[0]
-    mesh = structure.meshes[(gear - 1) // 2]
+    mesh = next(one for one in structure.meshes if f"theta_{gear}" in one.turning)
     rows = [structure.coordinates.index(f"{axis}_{gear}") for axis in "xy"]
     along, across = mesh.vector[rows], mesh.sliding[0][rows]
     horizontal, vertical = shaft_directions(structure, place)[:, rows]
     driving = np.sign(_cross(along, across)) * np.sign(_cross(horizontal, vertical))
-    return float(driving if gear % 2 == 1 else -driving)
+    return float(driving if f"theta_{gear}" == mesh.turning[0] else -driving)
 
 
 def _cross(first: FloatArray, second: FloatArray) -> float:
@@ -118,12 +118,18 @@ def _cross(first: FloatArray, second: FloatArray) -> float:
 
 def _gears(structure: Structure, place: str) -> tuple[int, ...]:
     """Return the numbers of the gears on the shaft at a bearing: between two meshes a driven and a driving one."""
-    shaft = bearing_places(structure).index(place)
-    found = (2 * shaft, 2 * shaft + 1)
-    return tuple(gear for gear in found if 1 <= gear <= 2 * len(structure.meshes))
+    shaft, meshes = bearing_places(structure).index(place), structure.meshes
+    driven = meshes[shaft - 1].turning[1:] if shaft > 0 else ()
+    driving = meshes[shaft].turning[:1] if shaft < len(meshes) else ()
+    return tuple(dict.fromkeys(gear_number(name) for name in (*driven, *driving)))
+
+
+def gear_number(rotation: str) -> int:
+    """Return the number of a gear by the coordinate in which it turns."""
+    return int(rotation.removeprefix("theta_"))
 
 
 def _on_shaft(structure: Structure, place: str, values: FloatArray) -> FloatArray:
     """Return a vector (n,) with its entries at the gears of a shaft alone."""
-    own = {f"{axis}_{gear}" for gear in _gears(structure, place) for axis in "xy"}
+    own = {f"{axis}_{gear}" for gear in _gears(structure, place) for axis in "xyz"}
     return np.where([name in own for name in structure.coordinates], values, 0.0)

@@ -4,13 +4,14 @@ Equations: standard literature (a round beam on two supports; gears as rigid dis
 derived. With x along the first centre line from pinion to gear and y along the pitch-line velocity of the first pinion,
 which turns from x to y, a driven gear in the direction χ is pushed along (-sin(χ - α), cos(χ - α)) by a gear that turns
 that way and along (sin(χ + α), -cos(χ + α)) by one that turns back. Rotations count in the running sense of their
-shaft.
+shaft. An idler is one body in two meshes, driven in one and driver in the next.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import cos, pi, prod, sin, sqrt, tan
 from typing import NamedTuple
 
@@ -19,8 +20,9 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.body import Body
 from siggen.dynamics.structure.casing_structure import seated_springs
+from siggen.dynamics.structure.gear_stage import Bearing, GearStage, Rotor
 from siggen.dynamics.structure.mesh_vectors import MeshVectors
-from siggen.dynamics.structure.structure import Bearing, Element, Rotor, SpurStage, Structure, assemble, shafts, vector
+from siggen.dynamics.structure.structure import Element, Structure, assemble, shafts, vector
 
 PLACES = (1.0 / 3.0, 2.0 / 3.0)
 """Of both gears between the bearings of their shaft (assumed)."""
@@ -59,24 +61,27 @@ class CommonShaft:
 
 @dataclass(frozen=True, slots=True)
 class NextStage:
-    """A mesh behind another one: its gears, the shaft that its pinion shares, the direction to its gear [rad]."""
+    """A mesh behind another one: its gears, the shaft that its pinion shares, the direction to its gear [rad].
+
+    Without a shaft its pinion is the gear in front itself, an idler.
+    """
 
     name: str
     working_pressure_angle_rad: float
     pinion: Rotor
     gear: Rotor
-    shaft: CommonShaft
+    shaft: CommonShaft | None
     direction_rad: float
 
 
-def drivetrain(first: SpurStage, behind: Sequence[NextStage], body: Body | None = None) -> Structure:
+def drivetrain(first: GearStage, behind: Sequence[NextStage], body: Body | None = None) -> Structure:
     """Return motor, shafts with their gears, load, and what carries the bearings: the ground, or a body.
 
-    q = [θ_m, x_1, y_1, θ_1, ..., x_2m, y_2m, θ_2m, θ_L, coordinates of the body]. Gears 2k - 1 and 2k are those of mesh
-    k; the bearings of the shaft of gear 2k are called by mesh k, of the first mesh `pinion_bearing` and `gear_bearing`.
+    q = [θ_m, x_1, y_1, θ_1, x_2, ..., θ_L, coordinates of the body], gears numbered in the order of power. The bearings
+    of the shaft that mesh k drives are called by it, of the first mesh `pinion_bearing` and `gear_bearing`.
     On the ground horizontal runs from the first pinion to its gear, in a body from gear to pinion, as in single stages.
     """
-    rotors = [first.pinion, first.gear, *(rotor for stage in behind for rotor in (stage.pinion, stage.gear))]
+    rotors = [first.pinion, first.gear, *(rotor for stage in behind for rotor in _new_rotors(stage))]
     inertias = {**_inertias(first, rotors), **({} if body is None else body.inertias)}
     coordinates, carried = tuple(inertias), _carried(first, behind)
     held = {f"{one.place}/{name}": (one.held(name, body),) for one in carried for name in AXES}
@@ -97,7 +102,7 @@ def drivetrain(first: SpurStage, behind: Sequence[NextStage], body: Body | None 
         damping=damping,
         stiffness=stiffness,
         meshes=_meshes(coordinates, first, behind, 1.0 if body is None else -1.0),
-        shaft_lines=_lines(len(behind) + 1),
+        shaft_lines=_lines(behind),
         torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -ratio}),
         motions=motions,
         bearing_forces=springs.forces,
@@ -153,52 +158,72 @@ def _in_series(direction: dict[str, float], stiffness: float, damping: float, be
     return Element(direction, stiffness * share, damping * share**2)
 
 
-def _carried(first: SpurStage, behind: Sequence[NextStage]) -> list[_Carried]:
+def _carried(first: GearStage, behind: Sequence[NextStage]) -> list[_Carried]:
     """Return the shafts in the order of power."""
     names, seats = ["gear", *(stage.name for stage in behind)], [first.gear, *(stage.gear for stage in behind)]
     found = [_Carried("pinion_bearing", (1,), first.pinion.bearing, None)]
-    for number, (name, rotor) in enumerate(zip(names, seats, strict=True)):
-        last = number == len(behind)
-        gears = (2 * number + 2,) if last else (2 * number + 2, 2 * number + 3)
-        found.append(_Carried(f"{name}_bearing", gears, rotor.bearing, None if last else behind[number].shaft))
+    shafts_behind = [*(stage.shaft for stage in behind), None]
+    for name, rotor, gears, shaft in zip(names, seats, _gears_of_shafts(behind)[1:], shafts_behind, strict=True):
+        found.append(_Carried(f"{name}_bearing", gears, rotor.bearing, shaft))
     return found
 
 
-def _inertias(first: SpurStage, rotors: Sequence[Rotor]) -> dict[str, float]:
+def _new_rotors(stage: NextStage) -> tuple[Rotor, ...]:
+    return (stage.gear,) if stage.shaft is None else (stage.pinion, stage.gear)
+
+
+def _ends(behind: Sequence[NextStage]) -> list[tuple[int, int]]:
+    """Return the numbers of the driving and the driven gear of every mesh."""
+    found = [(1, 2)]
+    for stage in behind:
+        driving = found[-1][1] + (stage.shaft is not None)
+        found.append((driving, driving + 1))
+    return found
+
+
+def _gears_of_shafts(behind: Sequence[NextStage]) -> list[tuple[int, ...]]:
+    """Return the numbers of the gears of every shaft: an idler stands alone."""
+    ends = _ends(behind)
+    between = [tuple(dict.fromkeys((driven, driving))) for (_, driven), (driving, _) in pairwise(ends)]
+    return [(1,), *between, (ends[-1][1],)]
+
+
+def _inertias(first: GearStage, rotors: Sequence[Rotor]) -> dict[str, float]:
     found = {"theta_m": first.motor_inertia_kg_m2}
     for number, rotor in enumerate(rotors, start=1):
         found |= {f"x_{number}": rotor.mass_kg, f"y_{number}": rotor.mass_kg, f"theta_{number}": rotor.inertia_kg_m2}
     return found | {"theta_l": first.load_inertia_kg_m2}
 
 
-def _torsion(first: SpurStage, behind: Sequence[NextStage]) -> list[Element]:
+def _torsion(first: GearStage, behind: Sequence[NextStage]) -> list[Element]:
     """Return the couplings at both ends, and the shafts between two gears."""
     driving, driven = shafts(first)
-    last = 2 * len(behind) + 2
-    found = [driving, replace(driven, direction={f"theta_{last}": 1.0, "theta_l": -1.0})]
+    lines = _gears_of_shafts(behind)
+    found = [driving, replace(driven, direction={f"theta_{lines[-1][0]}": 1.0, "theta_l": -1.0})]
     inertia = first.gear.inertia_kg_m2
-    for number, stage in enumerate(behind, start=1):
-        stiffness, other = stage.shaft.torsional_stiffness_nm_per_rad, stage.pinion.inertia_kg_m2
-        damping = 2.0 * TORSIONAL_DAMPING * sqrt(stiffness * inertia * other / (inertia + other))
-        found.append(Element({f"theta_{2 * number}": 1.0, f"theta_{2 * number + 1}": -1.0}, stiffness, damping))
+    for line, stage in zip(lines[1:-1], behind, strict=True):
+        if stage.shaft is not None:
+            stiffness, other = stage.shaft.torsional_stiffness_nm_per_rad, stage.pinion.inertia_kg_m2
+            damping = 2.0 * TORSIONAL_DAMPING * sqrt(stiffness * inertia * other / (inertia + other))
+            found.append(Element({f"theta_{line[0]}": 1.0, f"theta_{line[1]}": -1.0}, stiffness, damping))
         inertia = stage.gear.inertia_kg_m2
     return found
 
 
-def _lines(meshes: int) -> tuple[tuple[str, ...], ...]:
-    between = [(f"theta_{2 * number}", f"theta_{2 * number + 1}") for number in range(1, meshes)]
-    return (("theta_m", "theta_1"), *between, (f"theta_{2 * meshes}", "theta_l"))
+def _lines(behind: Sequence[NextStage]) -> tuple[tuple[str, ...], ...]:
+    first, *found = [tuple(f"theta_{gear}" for gear in gears) for gears in _gears_of_shafts(behind)]
+    return (("theta_m", *first), *found[:-1], (*found[-1], "theta_l"))
 
 
 def _meshes(
-    coordinates: Sequence[str], first: SpurStage, behind: Sequence[NextStage], to_gear: float
+    coordinates: Sequence[str], first: GearStage, behind: Sequence[NextStage], to_gear: float
 ) -> tuple[MeshVectors, ...]:
     gears = _Gears("", first.working_pressure_angle_rad, first.pinion, first.gear, 0.0)
     found, sense = [_mesh(coordinates, gears, 1, (1.0, to_gear))], 1.0
-    for number, stage in enumerate(behind, start=1):
+    for stage, (driving, _) in zip(behind, _ends(behind)[1:], strict=True):
         sense = -sense
         gears = _Gears(stage.name, stage.working_pressure_angle_rad, stage.pinion, stage.gear, stage.direction_rad)
-        found.append(_mesh(coordinates, gears, 2 * number + 1, (sense, to_gear)))
+        found.append(_mesh(coordinates, gears, driving, (sense, to_gear)))
     return tuple(found)
 
 

@@ -13,6 +13,7 @@ import pyarrow as pa
 
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from siggen.config.names import NO_NAMES, Names
+from tests.diagnostics.column_roles import ListedRoles
 
 STATES = ("healthy", "slight", "severe")
 TEETH = (18, 47)
@@ -22,7 +23,7 @@ CHANNELS = ("lid_x", "lid_y", "bearing_x")
 
 
 @dataclass
-class PlantedSet:
+class PlantedSet(ListedRoles):
     """Rows in memory behind the interface of `siggen.open`."""
 
     table: pa.Table

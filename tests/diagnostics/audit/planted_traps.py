@@ -92,10 +92,10 @@ TRAPS: dict[str, Callable[[MeasuredSet], MeasuredSet]] = {
 }
 FOUND_AS = {
     "noise": "state_told_by_noise",
-    "angle": "state_tied_to_start",
+    "angle": "state_tied_to_operating_points",
     "byte": "state_told_by_bytes",
     "path": "state_told_by_noise",
-    "length": "state_tied_to_length",
+    "length": "state_tied_to_duration_s",
     "level": "slight_separable_by_rms",
     "speed": "state_told_by_metadata",
     "order": "state_told_by_order",

@@ -10,10 +10,11 @@ import pytest
 from diagnostics.audit.attack_tables import verdict_words
 from diagnostics.audit.audit_report import Audit
 from diagnostics.audit.audit_sentences import audit_summary
-from diagnostics.audit.bank_detections import ChanceLimit, gearboxes_needed
+from diagnostics.audit.bank_detections import ChanceLimit, StateChance, gearboxes_needed
 from diagnostics.audit.best_indicator import BestIndicator
 from diagnostics.audit.detectability import Detection
 from diagnostics.audit.separability_findings import verdict
+from diagnostics.audit.sham import ShamFound
 from diagnostics.statistics.evaluation import Interval
 
 
@@ -44,6 +45,24 @@ def test_the_strongest_attacker_is_named_with_interval_and_number_and_lost_means
     assert found[4] == "No attacker found mild. These failed: the best single indicator and indicators."
     # of the attackers alone: linear between the states, 0.5 + 0.5 (0.75 - 0.5) / 0.47
     assert "0.75 is reached from 0.77\xa0mm of spalling by strongest attacker alone" in found[5]
+
+
+def test_what_an_attacker_reaches_on_a_sham_is_no_damage() -> None:
+    def sham(auc: float, **reached: float) -> ShamFound:
+        chance = StateChance(0.66, 0.3, "block")
+        return ShamFound("sham", "alone", "best band", Interval(auc, auc - 0.1, auc + 0.1), chance, reached)
+
+    bank = {"indicators": [detection("severe", 1.0, 0.9)]}
+    audit = replace(AUDIT, detections=bank, best={}, shams=(sham(0.55, indicators=0.55),))
+    assert verdict_words(audit, "severe") == "can be found, best by indicators (0.90)"
+    assert audit_summary(audit)[0].startswith("sham is a sham")
+    leaking = replace(audit, shams=(sham(0.95, indicators=0.93),))
+    assert verdict_words(leaking, "severe") == ("not shown to be damage: indicators reaches 0.90, and 0.93 on a sham")
+    # an attacker that was not asked about the sham is held against the strongest, if that tells more than chance does
+    unasked = replace(audit, shams=(sham(0.95, other=0.95),))
+    assert verdict_words(unasked, "severe").startswith("can be found")
+    told = replace(unasked.shams[0], chance=StateChance(0.66, 0.002, "block"))
+    assert verdict_words(replace(audit, shams=(told,)), "severe").startswith("not shown to be damage")
 
 
 def test_one_gearbox_is_said_to_be_too_few() -> None:

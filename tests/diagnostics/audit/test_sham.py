@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnostics.audit.column_attackers import best_column
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.sham import sham_sentences, shams_found
+from diagnostics.audit.sham import sham_sentences, sham_traps, shams_found
 from diagnostics.statistics.detector import judged_detector
 
 GEARBOXES = 24
@@ -34,31 +34,36 @@ def noise(seed: int) -> np.ndarray:
 
 
 def test_noise_tells_a_sham_as_often_as_chance_does() -> None:
-    found = [shams_found(measured(), [best_column("x", noise(seed), ("a", "b", "c"))], seed)[0] for seed in range(20)]
+    found = [
+        shams_found(measured(), {"alone": [best_column("x", noise(seed), ("a", "b", "c"))]}, seed)[0]
+        for seed in range(20)
+    ]
     # more than 4 of 20 at 5 % each come in 0.3 % of the cases; the seeds are fixed
     assert sum(one.told for one in found) <= 4
+    assert sham_traps(found) == []
     passed = next(one for one in found if not one.told)
-    assert "leaks" not in sham_sentences([passed])[0]
+    assert "More than chance" not in sham_sentences([passed])[0]
 
 
 def test_a_leak_tells_a_sham() -> None:
     leaking = best_column("columns", noise(0) + 3.0 * (STATES == "sham")[:, None], ("a", "b", "c"))
-    (found,) = shams_found(measured(), [leaking], 0)
+    (found,) = shams_found(measured(), {"alone": [leaking]}, 0)
     assert found.told
     assert found.auc.value == 1.0
-    assert "leaks" in sham_sentences([found])[0]
+    assert [trap.trap for trap in sham_traps([found])] == ["sham_told_from_healthy"]
+    assert "More than chance" in sham_sentences([found])[0]
 
 
 def test_damage_beside_it_does_not_count() -> None:
     # a column that tells damage and nothing else: a sham that stood among damaged records would be told by it
     damage = best_column("columns", noise(1) + 9.0 * (STATES == "severe")[:, None], ("a", "b", "c"))
-    assert not shams_found(measured(), [damage], 0)[0].told
+    assert not shams_found(measured(), {"alone": [damage]}, 0)[0].told
 
 
 def test_sets_without_one_are_asked_nothing() -> None:
     without = measured()
     del without.labels["sham"]
-    assert shams_found(without, [best_column("columns", noise(0), ("a", "b", "c"))], 0) == ()
+    assert shams_found(without, {"alone": [best_column("columns", noise(0), ("a", "b", "c"))]}, 0) == ()
 
 
 def test_a_detector_has_the_area_of_shams_against_other_healthy_records() -> None:

@@ -14,6 +14,7 @@ from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from diagnostics.audit.simple_thresholds import simple_thresholds
 from diagnostics.audit.state_ties import chance_bound, likeness, permuted_states, told_share
+from tests.diagnostics.column_roles import ListedRoles
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,10 @@ def traps(found: MeasuredSet) -> list[str]:
 
 
 def relabelled(found: MeasuredSet, **columns: object) -> MeasuredSet:
-    return replace(found, labels={**found.labels, **{name: np.asarray(column) for name, column in columns.items()}})
+    """Return the set with other columns, in the roles that siggen gives those of its own."""
+    own = {name: ListedRoles().role(name) for name in columns}
+    labels = {**found.labels, **{name: np.asarray(column) for name, column in columns.items()}}
+    return replace(found, labels=labels, roles={**found.roles, **own})
 
 
 def test_a_set_without_traps_gives_no_finding(clean: MeasuredSet) -> None:
@@ -55,7 +59,7 @@ def test_labels_of_the_damage_itself_are_no_tie(clean: MeasuredSet) -> None:
         (Plant(points=1, one_error_draw=True, shared_noise=True), ["one_error_draw", "noise_shared_by_records"]),
         (
             Plant(points=1, padded_state="severe", copied_channel_noise=True, one_start=True),
-            ["state_tied_to_length", "noise_shared_by_channels", "constant_damage_phase_start"],
+            ["state_tied_to_duration_s", "noise_shared_by_channels", "constant_damage_phase_start"],
         ),
     ],
     ids=["sidebands_tooth", "errors_noise", "length_channels_start"],
@@ -85,14 +89,13 @@ def test_of_200_clean_sets_with_permuted_states_at_most_one_in_twenty_is_accused
 @pytest.mark.parametrize(
     ("column", "group"),
     [
-        ("torque_nm", "operation"),
-        ("speed_hz", "operation"),
-        ("noise_floor_lid_x_m_s2", "noise"),
-        ("path_gain_lid_x", "path"),
-        ("start_angle_rad", "start"),
-        ("steps_per_sample", "solver"),
+        ("torque_nm", "operating_points"),
+        ("speed_hz", "operating_points"),
+        ("noise_floor_lid_x_m_s2", "sensors"),
+        ("start_angle_rad", "operating_points"),
         ("pitch_error_um", "manufacture"),
-        ("something_new", "other"),
+        ("path_gain_lid_x", "condition"),
+        ("damage_film_temperature", "condition"),
     ],
 )
 def test_a_small_shift_of_one_label_with_the_state_is_found_though_specimens_scatter_more(
@@ -107,7 +110,7 @@ def test_a_small_shift_of_one_label_with_the_state_is_found_though_specimens_sca
 
 def test_status_by_state_is_found(clean: MeasuredSet) -> None:
     status = np.where(clean.labels["state"] == "severe", "ended_early", "ok")
-    assert traps(relabelled(clean, status=status)) == ["state_tied_to_status"]
+    assert traps(relabelled(clean, status=status)) == ["state_tied_to_provenance"]
 
 
 def test_failures_that_gather_in_one_state_are_found_and_evenly_spread_ones_are_not(clean: MeasuredSet) -> None:

@@ -14,7 +14,9 @@ import yaml
 from typer.testing import CliRunner
 
 from diagnostics.cli.app import app
+from diagnostics.recordings.configured_train import configured_train
 from siggen.errors import SiggenError
+from tests.config.mill import mill
 from tests.config.planets import planets
 from tests.config.staged import staged
 
@@ -79,6 +81,18 @@ def test_a_knock_is_named_by_the_shaft_that_has_it(
     healthy, damaged = json.loads(said[said.index("{") : said.rindex("}") + 1])["checks"]
     assert damaged["score"]["score"] > 2.0 * healthy["score"]["score"]
     assert [bool(re.search(named, one["indicator"])) for one in damaged["moved"]] == [True] * 8, damaged["moved"]
+
+
+def test_a_machine_in_own_names_has_the_meshes_of_its_short_form_and_is_no_pair_to_calibrate(tmp_path: Path) -> None:
+    own, short, file = tmp_path / "mill.yaml", tmp_path / "staged.yaml", tmp_path / "one.npz"
+    own.write_text(yaml.safe_dump(mill()), encoding="utf-8")
+    short.write_text(yaml.safe_dump(staged()), encoding="utf-8")
+    assert configured_train(own) == configured_train(short)
+    recording(file, of_stages, seed=1)
+    for rig, words in ((own, "machine: received the meshes slow, fast;"), (short, "stages: received slow;")):
+        with pytest.raises(SiggenError, match=words) as refused:
+            run("calibrate", rig, file, "--fs", FS_HZ, "--tacho", "tacho_s", "--out", tmp_path / "out")
+        assert "baseline --config" in str(refused.value)
 
 
 def test_gears_are_told_once_and_planets_need_a_tacho(tmp_path: Path) -> None:

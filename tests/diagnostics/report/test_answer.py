@@ -48,6 +48,18 @@ def test_a_size_that_is_reached_has_limits_and_one_that_is_not_gives_the_share_o
     )
 
 
+def test_a_sham_opens_the_answer_and_what_is_found_no_better_counts_as_not_found() -> None:
+    honest = replace(detector(0.8, 4.0), sham=Interval(0.52, 0.4, 0.64))
+    (first, *_) = said(**{CLASSIFIER: honest}).items()
+    assert first == (
+        "On a sham",
+        "Damage without any effect is told from healthy records with an AUC of 0.52 (0.40 to 0.64) alone; 0.5 is "
+        "chance.",
+    )
+    leaking = said(**{CLASSIFIER: replace(honest, sham=Interval(0.7, 0.6, 0.8))})["On a sham"]
+    assert leaking.endswith("What is found of slight alone is no more than that, so it counts as not found.")
+
+
 def test_a_large_area_is_written_in_full_with_two_digits() -> None:
     spalled = replace(detector(0.8, 164.0), sizes={"pitting": FoundSize(Interval(164.0, 96.0, 1240.0), 1.0, 2000.0)})
     found = said(**{CLASSIFIER: spalled})["From which size"]

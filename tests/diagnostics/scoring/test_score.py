@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +16,16 @@ import pytest
 
 import diagnostics
 from diagnostics.indicators.classifier_table import feature_matrix
-from diagnostics.indicators.matrix import LABEL_ROLES
 from diagnostics.records.recording import LABEL_NAMES
-from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
-from diagnostics.scoring.score import Scored, ScoreRow
+from diagnostics.scoring.abstain import risks
+from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
+from diagnostics.scoring.score import ScoreRow, Scores
 from diagnostics.scoring.tasks import truth_of
 from diagnostics.statistics.evaluation import Predictions
 from siggen.errors import UsageError
+from tests.diagnostics.conftest import TEETH, MemoryDataset
 
+AREA = "mean absolute error [mm²]"
 CLASSES = ("healthy", "slight", "severe")
 SEVERITY = {"healthy": 0.0, "slight": 1.0, "severe": 2.0}
 
@@ -41,7 +44,7 @@ def damage(dataset: Any) -> dict[str, np.ndarray]:
     return {"record_id": found.column("record_id").to_numpy(), "damage": severity + noise}
 
 
-def row(found: Scored, measure: str, records: str, name: str = "yours") -> ScoreRow:
+def row(found: Scores, measure: str, records: str, name: str = "yours") -> ScoreRow:
     (one,) = [row for row in found.rows if (row.measure, row.records, row.name) == (measure, records, name)]
     return one
 
@@ -120,7 +123,7 @@ def test_every_problem_comes_in_one_list(dataset: Any, damage: dict[str, np.ndar
         ({"record_id": [1.5]}, "record_id holds double"),
         ({"record_id": [1]}, "no columns of a task"),
         ({"record_id": [1], "p_slight": [1.0]}, "no column p_healthy, p_severe"),
-        ({"record_id": [1], "damage": ["high"]}, "damage holds string; allowed: numbers"),
+        ({"record_id": [1], "damage": ["high"]}, "damage holds string in 24 records .*; allowed: finite"),
         ({"record_id": [1, 2], "damage": [0.0]}, "no readable table"),
     ],
 )
@@ -132,6 +135,111 @@ def test_columns_that_cannot_be_used_are_named(dataset: Any, columns: dict[str, 
         diagnostics.score(dataset, columns)
 
 
+def test_a_tooth_is_right_on_its_gear_alone(dataset: Any) -> None:
+    labels = labels_of(dataset, "test")
+    specimen, odd = labels["specimen_id"], labels["specimen_id"] % 2 == 1
+    mine = {"record_id": labels["record_id"], "gear": np.where(odd, "gear", "pinion"), "tooth": specimen % TEETH[0]}
+    part = "damage on teeth"
+    found = diagnostics.score(dataset, mine)
+    assert [row(found, f"share of right {what}", part).score.value for what in ("gears", "teeth")] == [1.0, 1.0]
+    # a gear by lot is right in one of two cases, a tooth of it in one of 18 or 47: half of the gearboxes each
+    assert row(found, "share of right teeth", part).chance == pytest.approx((1 / TEETH[0] + 1 / TEETH[1]) / 4)
+    found = diagnostics.score(dataset, {**mine, "gear": np.full(specimen.size, "pinion")})
+    assert row(found, "share of right gears", part).score.value == pytest.approx(np.mean(~odd))
+    wrong = {**mine, "gear": np.where(odd, "wheel", "pinion"), "tooth": np.where(odd, -1, 99)}
+    with pytest.raises(UsageError) as caught:
+        diagnostics.score(dataset, wrong)
+    for text in ("gear is 'wheel' in 12 records", "tooth is -1 in 12 records", "tooth is 99 in 12 records"):
+        assert text in str(caught.value)
+
+
+def test_an_error_in_area_is_that_of_its_mean(dataset: Any) -> None:
+    labels, test = dataset.labels("test", ["record_id", "damaged_area_mm2"]), labels_of(dataset, "test")
+    truth = labels.column("damaged_area_mm2").to_numpy()
+    said = truth + np.where(test["specimen_id"] % 2, 1.0, 3.0)
+    found = row(diagnostics.score(dataset, {"record_id": test["record_id"], "area_mm2": said}), AREA, "all")
+    assert found.score.value == pytest.approx(2.0)
+    assert 1.0 <= found.score.low < 2.0 < found.score.high <= 3.0
+    assert found.chance == pytest.approx(np.abs(truth - np.median(truth)).mean())
+    assert found.falls
+    with pytest.raises(UsageError, match=r"area_mm2 is -1 in 24 records"):
+        diagnostics.score(dataset, {"record_id": test["record_id"], "area_mm2": -np.ones(24)})
+
+
+def test_risk_is_counted_over_all_that_are_as_sure(dataset: Any) -> None:
+    rng = np.random.default_rng(4)
+    answers = np.stack([rng.integers(0, 6, 40), rng.integers(0, 2, 40)], axis=1).astype(np.float64)
+    weights = rng.integers(0, 3, (5, 40)).astype(np.float64)
+    covered, risk, drawn = risks(answers, weights)
+    order = np.argsort(-answers[:, 0], kind="stable")
+    assert np.array_equal(drawn, weights[:, order])
+    for b in range(5):
+        for k, record in enumerate(order):
+            answered = answers[:, 0] >= answers[record, 0]
+            share = weights[b, answered].sum()
+            assert covered[b, k] == pytest.approx(share / weights[b].sum())
+            if share:
+                assert risk[b, k] == pytest.approx((weights[b] * answers[:, 1])[answered].sum() / share)
+    labels = labels_of(dataset, "test")
+    wrong = labels["specimen_id"] % 4 == 0
+    named = np.where(wrong, np.where(labels["state"] == "severe", "healthy", "severe"), labels["state"])
+    mine = {"record_id": labels["record_id"], "class": named}
+    sure, unsure = (
+        row(diagnostics.score(dataset, {**mine, "confidence": sign * wrong}), "risk at 80% coverage", "all")
+        for sign in (-1.0, 1.0)
+    )
+    assert sure.score.value == pytest.approx(0.25)  # the wrong quarter is as unsure: answered together
+    assert unsure.score.value == pytest.approx(0.25)
+    mean = [
+        row(diagnostics.score(dataset, {**mine, "confidence": c * wrong}), "mean risk over all coverages", "all")
+        for c in (-1.0, 1.0)
+    ]
+    assert mean[0].score.value == pytest.approx(0.25 * 0.25)
+    assert mean[1].score.value == pytest.approx(0.25 + 0.75 * 0.25)
+
+
+class Lives(MemoryDataset):
+    """Every state is an inspection; gearboxes whose number is a multiple of five were taken out."""
+
+    def life(self, table: str, split: str | None = None) -> pa.Table:
+        assert table == "inspections"
+        rows = self.labels(split, ["record_id", "specimen_id", "state_id"]).to_pylist()
+        lives = [None if row["specimen_id"] % 5 == 0 else 30.0 - 10.0 * row["state_id"] for row in rows]
+        return pa.table({"record_id": [row["record_id"] for row in rows], "rul_h": lives})
+
+
+def test_remaining_lives_are_judged_where_they_are_known(dataset: Any) -> None:
+    lives = Lives(dataset.table, config={"life": {}})
+    table = lives.life("inspections", "test")
+    known = np.array([one is not None for one in table.column("rul_h").to_pylist()])
+    record_id = table.column("record_id").to_numpy()[known]
+    truth = np.array(table.column("rul_h").to_pylist(), dtype=np.float64)[known]
+    mine = {"record_id": record_id, "rul_h": truth + 2.0}
+    found = diagnostics.score(lives, mine)
+    assert [(one.measure, one.records, one.score.value) for one in found.rows] == [
+        ("mean absolute error [h]", "all", 2.0)
+    ]
+    assert found.records == known.sum() == 21
+    assert found.rows[0].chance == pytest.approx(np.abs(truth - 20.0).mean())
+    inside = diagnostics.score(lives, {**mine, "rul_q10_h": np.zeros(21), "rul_q90_h": np.full(21, 25.0)})
+    share = row(inside, "share between the limits (0.8 is right)", "all")
+    assert share.score.value == pytest.approx(np.mean(truth <= 25.0))
+    with pytest.raises(UsageError, match="rul_q10_h is above rul_q90_h in 7 records"):
+        diagnostics.score(lives, {**mine, "rul_q10_h": truth, "rul_q90_h": np.full(21, 25.0)})
+    with pytest.raises(UsageError, match="remaining life takes rul_h"):
+        diagnostics.score(lives, {"record_id": record_id})
+
+
+def test_scores_come_as_a_frame_and_as_a_figure(dataset: Any, damage: dict[str, np.ndarray]) -> None:
+    found = diagnostics.score(dataset, damage)
+    assert len(found.plot().axes) == 3
+    if find_spec("pandas") is None:
+        with pytest.raises(UsageError, match="to_table has the same rows"):
+            found.to_frame()
+    else:
+        assert list(found.to_frame()["score"]) == [one.score.value for one in found.rows]
+
+
 def written(dataset: Any, folder: Path, identity: str = "0" * 64) -> np.ndarray:
     """Write a training's predictions of two classifiers; return the probabilities of the first."""
     truth = truth_of(dataset, "test")
@@ -139,7 +247,15 @@ def written(dataset: Any, folder: Path, identity: str = "0" * 64) -> np.ndarray:
     own /= own.sum(axis=1, keepdims=True)
     guess = np.full_like(own, 1.0 / 3.0)
     entries = [
-        PredictedRecords(name, "test", truth.record_id, Predictions(CLASSES, truth.label, found, truth.specimen))
+        predicted_rows(
+            PredictedRecords(
+                name,
+                "test",
+                truth.record_id,
+                Predictions(CLASSES, truth.label, found, truth.specimen),
+                np.zeros(truth.label.size),
+            )
+        )
         for name, found in (("boosting", own), ("rms", guess))
     ]
     write_predictions(entries, identity, folder)
@@ -178,7 +294,7 @@ def test_predictions_of_another_set_are_refused(dataset: Any, damage: dict[str, 
 
 def test_a_table_has_a_role_for_every_column(features: pa.Table) -> None:
     table = feature_matrix(features)
-    assert set(LABEL_NAMES) <= set(LABEL_ROLES)
+    assert set(LABEL_NAMES) <= set(table.labels)
     assert set(table.roles) == {*table.names, *table.labels}
     assert table.roles["rms__bearing_vertical"] == "measured"
     assert table.classes == CLASSES

@@ -1,0 +1,28 @@
+"""Roles of the columns of sets that tests make in memory: those of siggen's own columns, others are conditions."""
+
+from __future__ import annotations
+
+import pyarrow as pa
+
+from siggen.columns.common_columns import INTEGRATION_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, VARIATION_COLUMNS
+from siggen.columns.record import ID_COLUMNS
+from siggen.columns.state_columns import SHAM_COLUMN
+from siggen.keys.column import Column, Role, in_role
+
+OF_CHANNELS = (
+    Column("snr_lid_x_db", pa.float64(), "dB", "", Role.CONSEQUENCE, "sensors"),
+    Column("noise_floor_lid_x_m_s2", pa.float64(), "", "", Role.PROVENANCE, "sensors"),
+    Column("pitch_error_um", pa.float64(), "um", "", Role.PROVENANCE, "manufacture"),
+)
+COLUMNS = (*ID_COLUMNS, *LABEL_COLUMNS, *OPERATING_COLUMNS, *VARIATION_COLUMNS, *INTEGRATION_COLUMNS, *OF_CHANNELS)
+LISTED = {column.name: column for column in (*COLUMNS, *in_role(Role.TARGET, SHAM_COLUMN))}
+
+
+class ListedRoles:
+    """What `siggen.open` says of the columns of a set."""
+
+    def role(self, name: str) -> Role:
+        return LISTED[name].role or Role.CONDITION if name in LISTED else Role.CONDITION
+
+    def section(self, name: str) -> str:
+        return LISTED[name].section if name in LISTED else ""
