@@ -89,8 +89,7 @@ def test_killing_again_and_again_at_random_moments_changes_nothing(
     assert_complete(tmp_path, reference)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("workers", [0, 2])
+@pytest.mark.parametrize(("workers", "number"), [(0, signal.SIGINT), (2, signal.SIGTERM)])
 def test_a_signal_ends_with_130_committed_shards_and_a_hint(
     tmp_path: Path, reference: dict[str, bytes], number: signal.Signals, workers: int
 ) -> None:
