@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -31,6 +33,9 @@ from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
 
 if TYPE_CHECKING:
     from siggen.config import Config
+
+COPIES = 8
+"""Shards that `merge` copies at once: hashing lets other threads work, and disks and stores take their time."""
 
 
 class Part(NamedTuple):
@@ -179,15 +184,27 @@ def _common_config(sources: Sequence[Storage]) -> Config:
 
 
 def _copy_missing(run: SetRun, sources: Sequence[Storage], target: Storage) -> None:
-    """Copy the shards that the target has not, hashed on the way, the sidecar last; from the first whole copy."""
-    for shard in (shard for shard in run.planned if shard.key not in run.sidecars):
-        for source in sources:
-            run.interruption.check()
-            sidecar = _promised(run, source, shard)
-            if sidecar is not None and _is_copied(source, sidecar, target):
-                _copy_excerpt(source, shard.key, target)
-                run.accept(sidecar.without_bulk(*ranges(shard)))
-                break
+    """Copy the shards that the target has not, some at a time."""
+    missing = [shard for shard in run.planned if shard.key not in run.sidecars]
+    with ThreadPoolExecutor(COPIES) as copies:
+        try:
+            for sidecar in copies.map(partial(_copied, run, sources, target), missing):
+                run.interruption.check()
+                if sidecar is not None:
+                    run.accept(sidecar)
+        except BaseException:
+            copies.shutdown(cancel_futures=True)
+            raise
+
+
+def _copied(run: SetRun, sources: Sequence[Storage], target: Storage, shard: ShardPlan) -> Sidecar | None:
+    """Copy a shard, hashed on the way, the sidecar last; from the first part where it is whole, or from none."""
+    for source in sources:
+        sidecar = _promised(run, source, shard)
+        if sidecar is not None and _is_copied(source, sidecar, target):
+            _copy_excerpt(source, shard.key, target)
+            return sidecar.without_bulk(*ranges(shard))
+    return None
 
 
 def _promised(run: SetRun, storage: Storage, shard: ShardPlan) -> Sidecar | None:
