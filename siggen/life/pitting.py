@@ -21,9 +21,10 @@ from siggen.keys.section import Real
 from siggen.life.flank import Flank
 from siggen.life.growth import STEP, Grown, Seeds, grown
 from siggen.life.initiation import Begun, begun, tooth_scale
-from siggen.life.law import Ends, Law, Named, PartTruth, ToothTruth, Wearing
+from siggen.life.law import Ends, Law, Named, PartTruth, Picture, ToothTruth, Wearing
 from siggen.life.outline import Edges, PitShape, drawn_shape, sizes_m, through, union_m2
 from siggen.life.outlook import Chances, Now, failing_times, through_share
+from siggen.life.picture import flank_png
 
 FIRST_SHARE_SD = 0.5
 """Of the logarithm of the first share; published as 0.45 % with 0.2 to 0.3 %."""
@@ -132,6 +133,32 @@ class PittingCourse:
             for pit, edges, size in zip(pits, outlines, sizes, strict=True)
         )
         return ListedPits(height_reading="arc", outlines=listed) if listed else None
+
+    def removed_m3(self, time: float) -> float:
+        """Return the volume of all pits at a damage time [m³]: what each adds to the area of its tooth, times depth."""
+        shares = {pit.begun: share for pit, share in zip(self.pits, self.shares(time).tolist(), strict=True)}
+        volumes = [
+            shares[pit.begun] * self._flank(pit.begun.gear).area_m2 * pit.shape.depth_m(size)
+            for pits, _, sizes in self._sized(time)
+            for pit, size in zip(pits, sizes, strict=True)
+        ]
+        return float(sum(volumes))
+
+    def pictures(self, time: float) -> tuple[Picture, ...]:
+        """Return pictures of the pitted flanks at a damage time, or of the first one of each gear before any pit."""
+        pitted = tuple(
+            Picture(
+                pits[0].begun.gear,
+                pits[0].begun.tooth,
+                flank_png(
+                    self._flank(pits[0].begun.gear),
+                    outlines,
+                    [pit.shape.depth_m(size) for pit, size in zip(pits, sizes, strict=True)],
+                ),
+            )
+            for pits, outlines, sizes in self._sized(time)
+        )
+        return pitted or tuple(Picture(one.gear, 0, flank_png(one, (), ())) for one in self.wearing.flanks)
 
     def outlook(self, time: float, runs: int) -> FloatArray:
         """Return when the gearbox would fail in so many continuations from its true state (runs,) [turns]."""

@@ -90,7 +90,7 @@ def test_more_gearboxes_leave_those_that_exist_as_they_are(fleet: Path, tmp_path
     extend(tmp_path / "grown", "+1", 0)
     siggen.generate(load_config({**lives(), "specimens": 3}), tmp_path / "once", workers=0)
     assert rows(tmp_path / "grown") == rows(tmp_path / "once")
-    for table in ("units", "inspections", "teeth", "pits"):
+    for table in ("units", "inspections", "teeth", "pits", "outlook", "debris", "pictures"):
         first, second = (siggen.open(tmp_path / name).life(table).to_pylist() for name in ("grown", "once"))
         assert sorted(map(str, first)) == sorted(map(str, second))
     assert "as its manifest promises" in run("verify", str(tmp_path / "grown"), "--sample", "1")
