@@ -202,7 +202,7 @@ def _by_classifier(table: pa.Table, truth: Truth, identity: str, where: Any, nam
 def _task_rows(
     task: Task, columns: dict[str, Answers], first: str, truth: Truth, weights: np.ndarray
 ) -> Iterator[ScoreRow]:
-    """Yield the rows of a task that the first predictions answer: by measure and part, with differences to the others."""
+    """Yield the rows of a task that the first predictions answer, by measure and part, with differences to others."""
     answers = {name: task.answers(found, truth) for name, found in columns.items()}
     for part, chosen in task.parts(truth).items():
         rows, drawn = truth.rows(chosen), weights[:, chosen]
