@@ -156,7 +156,7 @@ def write_report(
     }
     metrics["studies"] = studies_metrics(studies) if studies else None
     yours = _scored(dataset, beside, folder if training else None, network)
-    metrics["yours"] = yours.to_table().to_pylist() if yours else None
+    metrics["yours"] = yours.numbers() if yours else None
     (folder / "metrics.json").write_text(words(json.dumps(metrics, indent=1, allow_nan=False)) + "\n", encoding="utf-8")
     reported = Reported(
         dataset, seed, matrix, training, studies, found, detectors, audit, drawing, beside.explorer, yours

@@ -73,6 +73,11 @@ class Scores:
         """Return one row per score: task, measure, records, name, score, low, high, chance, difference with limits."""
         return pa.Table.from_pylist([self._entry(row) for row in self.rows])
 
+    def numbers(self) -> list[dict[str, object]]:
+        """Return the same for JSON, undefined as None."""
+        rows = (self._entry(row).items() for row in self.rows)
+        return [{name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row} for row in rows]
+
     def to_frame(self) -> Any:
         """Return the same as a pandas data frame.
 

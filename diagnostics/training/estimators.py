@@ -14,6 +14,7 @@ import numpy as np
 from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.utils.validation import check_is_fitted
 
+from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.training.baselines import STRENGTHS, FeatureClassifier, train_classifier
 from diagnostics.training.boosting import fitted_boosting, train_boosting
@@ -30,6 +31,7 @@ class _Baseline(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # the ty
     classes_: np.ndarray
     model_: FeatureClassifier
 
+    @single_thread
     def fit(self, X: Any, y: Any, groups: Any) -> Any:
         """Fit on records.
 

@@ -19,7 +19,8 @@ from siggen.errors import UsageError
 
 @pytest.fixture(scope="module")
 def table(features: Any) -> FeatureMatrix:
-    return feature_matrix(features)
+    matrix = feature_matrix(features)
+    return matrix.columns(matrix.names[::12])  # as good for this, and quicker
 
 
 def test_the_logistic_baseline_is_the_classifier_of_a_training(table: FeatureMatrix) -> None:
@@ -39,7 +40,7 @@ def test_a_baseline_goes_through_cross_validation_over_gearboxes(table: FeatureM
     model = clone(getattr(diagnostics, name)())
     fitted = model.fit(table.values, table.labels["class"], table.groups)
     assert fitted.score(table.values, table.labels["class"]) > 0.9
-    for train, test in GroupKFold(3).split(table.values, groups=table.groups):
+    for train, test in GroupKFold(2).split(table.values, groups=table.groups):
         own = clone(model).fit(table.values[train], table.labels["class"][train], table.groups[train])
         # the modulation is plain to see: three classes, of which chance names a third
         assert own.score(table.values[test], table.labels["class"][test]) > 0.6
