@@ -23,7 +23,10 @@ import numba
 from siggen.sources import sources_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-WITH_COMPILED_CODE = ("*.py", "lanes/*.py", "dynamics/**/*.py", "gears/**/*.py", "record/**/*.py", "sensing/**/*.py")
+WITH_COMPILED_CODE = (
+    "*.py", "lanes/*.py", "dynamics/**/*.py", "gears/**/*.py", "life/continuation.py", "record/**/*.py",
+    "sensing/**/*.py",
+)  # fmt: skip
 """Files that compiled code may come from, constants included."""
 
 

@@ -26,7 +26,8 @@ def life(
         typer.Option(
             "--as-states",
             metavar="FILE",
-            help="Write the same configuration with this gearbox's inspections as listed states in place of life.",
+            help="Write the same configuration with this gearbox's inspections as listed states in place of life; "
+            "never a file that exists.",
         ),
     ] = None,
     as_json: AsJson = False,
@@ -44,6 +45,7 @@ def life(
         found = _content(loaded, specimen)
     if as_states is not None:
         _write(as_states, loaded, specimen)
+        typer.echo(f"wrote {as_states}: inspections of gearbox {specimen} as states", err=True)
     if as_json:
         echo_json(found)
         return
@@ -78,6 +80,8 @@ def _write(file: Path, config: Config, specimen: int) -> None:
     from siggen.errors import UsageError
     from siggen.planning.gearbox import gearbox_config
 
+    if file.exists():
+        raise UsageError(f"--as-states {file}: is there already; give a new file")
     states = gearbox_config(config, specimen).states
     listed = config.model_copy(update={"life": None, "states": states})
     try:

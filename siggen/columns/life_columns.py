@@ -79,12 +79,30 @@ OUTLOOK_COLUMNS = (
     Column("rul_q50_h", F64, HOURS, "its median"),
     Column("rul_q90_h", F64, HOURS, "its 90 % quantile"),
 )
+DEBRIS_COLUMNS = (
+    Column("record_id", pa.int64(), "", "first record of the inspection"),
+    SPECIMEN,
+    SPLIT,
+    Column("inspection", I32, "", "number of the inspection"),
+    Column("debris_mg", F64, "mg", "metal that a counter in the oil has counted since age 0, with its errors"),
+)
+PICTURE_COLUMNS = (
+    Column("record_id", pa.int64(), "", "first record of the inspection"),
+    SPECIMEN,
+    SPLIT,
+    Column("inspection", I32, "", "number of the inspection"),
+    GEAR,
+    TOOTH,
+    Column("png", pa.binary(), "", "grey picture, 0.05 mm per pixel: face across, tip above"),
+)
 LIFE_TABLES: dict[str, tuple[Column, ...]] = {
     "units": UNIT_COLUMNS,
     "inspections": INSPECTION_COLUMNS,
     "teeth": TEETH_COLUMNS,
     "pits": PIT_COLUMNS,
     "outlook": OUTLOOK_COLUMNS,
+    "debris": DEBRIS_COLUMNS,
+    "pictures": PICTURE_COLUMNS,
 }
 """Tables of `life/<table>/<split>.parquet`."""
 NULLABLE = {"rul_rated_h", "rul_h"}

@@ -17,7 +17,8 @@ from siggen.config.machine_problems import machine_problems
 from siggen.config.names import NO_NAMES, Names
 from siggen.config.short_form import names_of, short_form
 from siggen.errors import Problem
-from siggen.keys.problems import MOST_PROBLEMS, missing_key, section_problems, unknown_keys
+from siggen.keys.problems import MISSING, MOST_PROBLEMS, missing_key, received_text, section_problems, unknown_keys
+from siggen.keys.wording import allowed_text
 
 LISTS = ("states", "sensors")
 """Sections whose entries are checked one by one, so that one bad entry does not hide what is wrong with the others."""
@@ -96,8 +97,12 @@ def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     field = Config.model_fields[name]
     if isinstance(value := raw.get(name), (list, tuple)) and len(value) > MOST_ENTRIES:
         return None, [Problem(name, f"a list of {len(value)}", f"allowed: at most {MOST_ENTRIES} entries")]
+    if name == "states" and not raw.get(name) and not raw.get("life"):
+        received = received_text(raw[name]) if name in raw else MISSING
+        allowed = f"this key is needed, or a section life in its place; allowed: {allowed_text(field)}"
+        return None, [Problem(name, received, allowed)]
     if name not in raw:
-        if field.is_required() or (name == "states" and not raw.get("life")):
+        if field.is_required():
             return None, [missing_key(name, field)]
         return field.get_default(call_default_factory=True), []
     return _validated(_adapter(name), raw[name], (name,))

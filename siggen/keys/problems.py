@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping, Sequence
-from typing import get_args
+from typing import get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -156,7 +156,9 @@ def _field_at(model: type[BaseModel], location: Location) -> FieldInfo:
     below = location[depth + 1 :]
     for part in () if SEVERAL in below else below:  # what may be a section or a list says so itself
         if isinstance(part, int):
-            field = FieldInfo.from_annotation(get_args(field.annotation)[0])
+            entries = get_args(field.annotation)
+            each = get_origin(field.annotation) is tuple and Ellipsis not in entries  # each entry has its own type
+            field = FieldInfo.from_annotation(entries[part if each else 0])
     return field
 
 

@@ -31,8 +31,8 @@ class Flank:
         Width of the face [m].
     area_m2 : float
         Face times the arc of the involute from its rack-cut start to the tip, as labels measure shares [m²].
-    active_arc_m, pitch_arc_m : float
-        Where contact begins and where the pitch line lies [m].
+    active_arc_m, pitch_arc_m, tip_arc_m : float
+        Where contact begins, where the pitch line lies and where the flank ends [m].
     sliding_m, curvature_per_m : (PLACES,)
         Arcs of single contact below the pitch line [m], and the relative curvature of both flanks there [1/m].
     """
@@ -44,6 +44,7 @@ class Flank:
     area_m2: float
     active_arc_m: float
     pitch_arc_m: float
+    tip_arc_m: float
     sliding_m: FloatArray
     curvature_per_m: FloatArray
 
@@ -81,6 +82,7 @@ def _flank(pair: GearPair, which: GearName) -> Flank:
         pair.face_width_m * flank_arc_m(gear),
         to_arc * first**2,
         to_arc * pitch**2,
+        0.5 * gear.base_radius_m * gear.flank_rolls_rad[1] ** 2,
         to_arc * travel**2,
         line / (travel * (line - travel)),
     )

@@ -20,6 +20,8 @@ WANDER = 5e5
 """Turns within which the wander forgets, at scale 1; assumed."""
 STEP = WANDER / 10.0
 """Turns between nodes of the grid, at scale 1."""
+KEEPS = float(np.exp(-STEP / WANDER))
+"""Share of the wander that a step leaves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,9 +96,8 @@ def _wandering(seeds: Seeds, wander_sd: float, first: int, steps: int) -> FloatA
     """Return exp(X - s²/2) of every pit over the steps (n, steps); X is stationary from the start."""
     from scipy.signal import lfilter
 
-    keeps = float(np.exp(-STEP / WANDER))
-    own = np.concatenate([seeds.wander[:, :1], np.sqrt(1.0 - keeps**2) * seeds.wander[:, 1:]], axis=1)
-    walks = wander_sd * lfilter([1.0], [1.0, -keeps], own, axis=1)
+    own = np.concatenate([seeds.wander[:, :1], np.sqrt(1.0 - KEEPS**2) * seeds.wander[:, 1:]], axis=1)
+    walks = wander_sd * lfilter([1.0], [1.0, -KEEPS], own, axis=1)
     factors = np.exp(walks - 0.5 * wander_sd**2)
     begins = np.maximum((seeds.time // STEP).astype(int) - first, 0)
     number = np.clip(np.arange(steps)[np.newaxis, :] - begins[:, np.newaxis], 0, factors.shape[1] - 1)

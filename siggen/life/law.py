@@ -60,6 +60,15 @@ class PartTruth:
 
 
 @dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture of one flank, as PNG."""
+
+    gear: str
+    tooth: int
+    png: bytes
+
+
+@dataclass(frozen=True, slots=True)
 class Ends:
     """Damage times of the three ends [turns], and the tooth that fails."""
 
@@ -84,6 +93,12 @@ class Course(Protocol):
 
     def outlook(self, time: float, runs: int) -> FloatArray:
         """Return when it would fail if chance went on from its true state so many times (runs,) [turns]."""
+
+    def removed_m3(self, time: float) -> float:
+        """Return the metal that has left all flanks at a damage time [m³]."""
+
+    def pictures(self, time: float) -> Sequence[Picture]:
+        """Return pictures of the damaged flanks at a damage time, or of one whole flank of each gear without any."""
 
     def damage(self, time: float) -> Fault | None:
         """Return the section of damage of a state at a damage time [turns]; None before the first."""

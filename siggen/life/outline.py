@@ -100,7 +100,9 @@ class PitShape:
         share = along / (self.below_m + self.above_m) * np.sqrt(1.0 - ((face - self.middle_m) / half) ** 2)
         low = self.arc_m - self.below_m * np.minimum(share * self.low[inside], 1.0)
         high = self.arc_m + self.above_m * np.minimum(share * self.high[inside], 1.0)
-        first, last = ([left] if left > 0.0 else []), ([right] if right < width else [])
+        # an end that lies on that of the face within NEAR takes its place
+        first = [max(left, 0.0)] if left >= -NEAR * width else []
+        last = [min(right, width)] if right <= width + NEAR * width else []
         ends = [self.arc_m] * len(first), [self.arc_m] * len(last)
         return Edges(
             np.concatenate([first, face, last]),

@@ -21,9 +21,10 @@ from siggen.keys.section import Real
 from siggen.life.flank import Flank
 from siggen.life.growth import STEP, Grown, Seeds, grown
 from siggen.life.initiation import Begun, begun, tooth_scale
-from siggen.life.law import Ends, Law, Named, PartTruth, ToothTruth, Wearing
+from siggen.life.law import Ends, Law, Named, PartTruth, Picture, ToothTruth, Wearing
 from siggen.life.outline import Edges, PitShape, drawn_shape, sizes_m, through, union_m2
 from siggen.life.outlook import Chances, Now, failing_times, through_share
+from siggen.life.picture import flank_png
 
 FIRST_SHARE_SD = 0.5
 """Of the logarithm of the first share; published as 0.45 % with 0.2 to 0.3 %."""
@@ -133,6 +134,32 @@ class PittingCourse:
         )
         return ListedPits(height_reading="arc", outlines=listed) if listed else None
 
+    def removed_m3(self, time: float) -> float:
+        """Return the volume of all pits at a damage time [m³]: what each adds to the area of its tooth, times depth."""
+        shares = {pit.begun: share for pit, share in zip(self.pits, self.shares(time).tolist(), strict=True)}
+        volumes = [
+            shares[pit.begun] * self._flank(pit.begun.gear).area_m2 * pit.shape.depth_m(size)
+            for pits, _, sizes in self._sized(time)
+            for pit, size in zip(pits, sizes, strict=True)
+        ]
+        return float(sum(volumes))
+
+    def pictures(self, time: float) -> tuple[Picture, ...]:
+        """Return pictures of the pitted flanks at a damage time, or of the first one of each gear before any pit."""
+        pitted = tuple(
+            Picture(
+                pits[0].begun.gear,
+                pits[0].begun.tooth,
+                flank_png(
+                    self._flank(pits[0].begun.gear),
+                    outlines,
+                    [pit.shape.depth_m(size) for pit, size in zip(pits, sizes, strict=True)],
+                ),
+            )
+            for pits, outlines, sizes in self._sized(time)
+        )
+        return pitted or tuple(Picture(one.gear, 0, flank_png(one, (), ())) for one in self.wearing.flanks)
+
     def outlook(self, time: float, runs: int) -> FloatArray:
         """Return when the gearbox would fail in so many continuations from its true state (runs,) [turns]."""
         lived, flanks, law = self._lived[0], self.wearing.flanks, self.law
@@ -151,13 +178,14 @@ class PittingCourse:
             lived.wander(time, law.wander_sd)[own],
             lived.seeds.owner[own],
             np.array([self._through(self.pits[i]) for i in own]),
-            sum(sizes),
             np.repeat(hazards, sizes),
             np.repeat([one.turns for one in flanks], sizes),
+            np.repeat([self._first_share(one.gear) for one in flanks], sizes),
+            np.repeat(self._through_any, sizes, axis=0),
         )
         chances = Chances(
-            law.slope, law.first_share, FIRST_SHARE_SD, law.rate_per_rev, law.rate_sd, law.wander_sd,
-            self.functional_share, self._through_any,
+            law.slope, FIRST_SHARE_SD, law.rate_per_rev, law.rate_sd, law.wander_sd,
+            self.functional_share,
         )  # fmt: skip
         return failing_times(now, chances, runs, self.wearing.named(f"outlook/{time!r}"))
 
@@ -166,18 +194,21 @@ class PittingCourse:
 
     @cached_property
     def _through_any(self) -> FloatArray:
-        """Shares at which pits leave no land, of any pits of either gear."""
-        found = [
-            through_share(
-                drawn_shape(
-                    flank, self.law.torque_exponent, partial(_numbered, self.wearing.named, f"{flank.gear}/{number}")
-                ),
-                flank.area_m2,
-            )
+        """Shares at which pits leave no land, of any pits of either gear (2, `ANY_PITS`)."""
+
+        def shape(flank: Flank, number: int) -> PitShape:
+            named = partial(_numbered, self.wearing.named, f"{flank.gear}/{number}")
+            return drawn_shape(flank, self.law.torque_exponent, named)
+
+        return np.array([
+            [through_share(shape(flank, number), flank.area_m2) for number in range(ANY_PITS)]
             for flank in self.wearing.flanks
-            for number in range(ANY_PITS)
-        ]
-        return np.array(found)
+        ])  # fmt: skip
+
+    def _first_share(self, gear: str) -> float:
+        """Return the median share of a young pit: its area is that on the nominal flank."""
+        nominal = self.wearing.nominal[("pinion", "gear").index(gear)]
+        return self.law.first_share * (nominal.area_m2 / self._flank(gear).area_m2)
 
     def _flank(self, gear: str) -> Flank:
         return self.wearing.flanks[("pinion", "gear").index(gear)]
@@ -233,8 +264,7 @@ class PittingCourse:
         named = self._named(one)
         own, flank = ("pinion", "gear").index(one.gear), self._flank(one.gear)
         size, rate = named("growth").standard_normal(2).tolist()
-        nominal = self.wearing.nominal[own].area_m2 / flank.area_m2
-        share = self.law.first_share * nominal * np.exp(FIRST_SHARE_SD * size)
+        share = self._first_share(one.gear) * np.exp(FIRST_SHARE_SD * size)
         owner = one.tooth + own * self.wearing.flanks[0].teeth
         shape = drawn_shape(flank, self.law.torque_exponent, named)
         return Pit(one, owner, float(share), float(self.law.rate_per_rev * np.exp(self.law.rate_sd * rate)), shape)

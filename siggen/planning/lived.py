@@ -15,8 +15,9 @@ from siggen.faults.registry import HEALTHY
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.life.clock import Clock
+from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
-from siggen.life.law import Course, Wearing
+from siggen.life.law import Course, Named, Wearing
 from siggen.planning.gear_pair import gear_pair
 from siggen.seeding import Stage, named_generator, named_uniforms
 
@@ -34,6 +35,8 @@ class Lived:
     ----------
     course : Course
         Its damage over damage time.
+    named : callable
+        Its generators by what they draw.
     clock : Clock
         Ages and damage times.
     functional_share : float
@@ -47,6 +50,7 @@ class Lived:
     """
 
     course: Course
+    named: Named
     clock: Clock
     functional_share: float
     ages_h: tuple[float, ...]
@@ -57,6 +61,10 @@ class Lived:
         """Return the phase of its life at a damage time."""
         ends = self.course.ends
         return PHASES[(time >= ends.first_pit) + (time >= ends.rated)]
+
+    def debris_mg(self, age_h: float) -> float:
+        """Return what a counter in the oil has counted by an age [mg]."""
+        return counted_mg(self.course.removed_m3(self.clock.time(age_h)), age_h, self.named)
 
 
 def lived_states(life: Life, found: Lived) -> tuple[State, ...]:
@@ -102,7 +110,7 @@ def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:
     share = at(life.functional_share, uniform("functional_share"))
     course = life.damage.course(wearing, share)
     ages_h, observed_h, event = _observed(life, uniform, clock.age_h(course.ends.functional))
-    return Lived(course, clock, share, ages_h, observed_h, event)
+    return Lived(course, wearing.named, clock, share, ages_h, observed_h, event)
 
 
 def _observed(life: Life, uniform: Callable[[str], float], failure_h: float) -> tuple[tuple[float, ...], float, Event]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 
 import numpy as np
 
@@ -24,15 +25,15 @@ def life_rows(config: Config, specimen_id: int) -> dict[str, list[Row]]:
         {"record_id": first + number * stride, "specimen_id": specimen_id, "inspection": number}
         for number in range(len(found.ages_h))
     ]
-    inspections = zip(heads, found.ages_h, strict=True)
+    seen = list(zip(heads, found.ages_h, strict=True))
     return {
         "units": [{"specimen_id": specimen_id, **_unit(found)}],
-        "inspections": [{**head, **_inspection(found, age_h)} for head, age_h in inspections],
-        "teeth": [
-            {**head, **row} for head, age_h in zip(heads, found.ages_h, strict=True) for row in _teeth(found, age_h)
-        ],
+        "inspections": [{**head, **_inspection(found, age_h)} for head, age_h in seen],
+        "teeth": [{**head, **row} for head, age_h in seen for row in _teeth(found, age_h)],
         "pits": [{"specimen_id": specimen_id, **row} for row in _pits(found)],
-        "outlook": [{**head, **_outlook(found, age_h)} for head, age_h in zip(heads, found.ages_h, strict=True)],
+        "outlook": [{**head, **_outlook(found, age_h)} for head, age_h in seen],
+        "debris": [{**head, "debris_mg": found.debris_mg(age_h)} for head, age_h in seen],
+        "pictures": [{**head, **row} for head, age_h in seen for row in _pictures(found, age_h)],
     }
 
 
@@ -89,6 +90,13 @@ def _outlook(found: Lived, age_h: float) -> Row:
     ends = found.course.outlook(found.clock.time(age_h), RUNS)
     left_h = [found.clock.age_h(time) - age_h for time in np.quantile(ends, (0.1, 0.5, 0.9)).tolist()]
     return dict(zip(("rul_q10_h", "rul_q50_h", "rul_q90_h"), left_h, strict=True))
+
+
+def _pictures(found: Lived, age_h: float) -> Iterator[Row]:
+    """Yield pictures of pitted flanks; of whole ones, which all look alike, at age 0 alone."""
+    time = found.clock.time(age_h)
+    if age_h == 0.0 or time >= found.course.ends.first_pit:
+        yield from (asdict(picture) for picture in found.course.pictures(time))
 
 
 def _pits(found: Lived) -> Iterator[Row]:

@@ -90,7 +90,7 @@ def test_more_gearboxes_leave_those_that_exist_as_they_are(fleet: Path, tmp_path
     extend(tmp_path / "grown", "+1", 0)
     siggen.generate(load_config({**lives(), "specimens": 3}), tmp_path / "once", workers=0)
     assert rows(tmp_path / "grown") == rows(tmp_path / "once")
-    for table in ("units", "inspections", "teeth", "pits"):
+    for table in ("units", "inspections", "teeth", "pits", "outlook", "debris", "pictures"):
         first, second = (siggen.open(tmp_path / name).life(table).to_pylist() for name in ("grown", "once"))
         assert sorted(map(str, first)) == sorted(map(str, second))
     assert "as its manifest promises" in run("verify", str(tmp_path / "grown"), "--sample", "1")
@@ -143,7 +143,7 @@ def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: P
     [
         ({"states": [{"name": "healthy"}]}, "states", "states beside a section life"),
         ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -60.0}]}, "operating_points.0.torque_nm", "-60"),
-        ({"life": {**LIFE, "history": [[5.0, -1.0]]}}, "life.history.0.1", "-1"),
+        ({"life": {**LIFE, "history": [[5.0, -1.0]]}}, "life.history.0.1", "allowed: a number from 0 to 100"),
         ({"life": {**LIFE, "history": [[5.0, 0.0]]}}, "life.history", "no block with a torque above 0"),
         ({"life": None}, "states", "a list of 0"),
     ],
@@ -153,6 +153,19 @@ def test_lives_that_cannot_be_are_refused(changes: dict[str, Any], path: str, sa
         load_config({**lives(), **changes})
     assert [problem.path for problem in error.value.problems] == [path]
     assert said in str(error.value)
+
+
+def test_neither_states_nor_a_life_is_refused_with_both_ways_on() -> None:
+    with pytest.raises(ConfigError, match=r"states: received a list of 0; .* or a section life in its place"):
+        load_config({**lives(), "life": None})
+
+
+def test_a_file_of_states_is_never_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives()))
+    command = ["inspect", "life", str(tmp_path / "lives.yaml"), "--as-states", str(tmp_path / "states.yaml")]
+    assert "wrote" in run(*command)
+    with pytest.raises(UsageError, match="is there already"):
+        CliRunner().invoke(app, command, catch_exceptions=False)
 
 
 @pytest.mark.parametrize(
