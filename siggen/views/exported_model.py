@@ -26,7 +26,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.transient import settling_steps
+from siggen.dynamics.time.transient import both_settled_s, settling_steps
 from siggen.errors import UsageError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
@@ -34,7 +34,7 @@ from siggen.planning.state_config import state_config
 from siggen.record.simulation import at_point, start_angle_rad
 from siggen.record.specimen_state import refused_as, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
-from siggen.specimen.instrument import settle_s
+from siggen.specimen.instrument import history_s
 from siggen.specimen.step_choice import stepped_motion
 
 FORMAT_VERSION = 5
@@ -198,15 +198,18 @@ def _first_pitches(motion: Motion, rotation: Rotation, time_s: float) -> float:
 
 
 def _time_grid(config: Config, specimen: Specimen, motion: Motion, steps: int) -> dict[str, Any]:
-    """Return rate and steps; the transient lies before time 0."""
+    """Return rate and steps; the transient lies before time 0, as long as that of the record (`response_stream`)."""
     step_s = 1.0 / (config.fs_hz * steps)
-    settling = settling_steps(motion.transient_s, settle_s(config, specimen), config.fs_hz * steps)
+    settle_s = both_settled_s(motion.transient_s, history_s(config, specimen))
+    settling = half_length(steps) + settling_steps(motion.transient_s, settle_s, config.fs_hz * steps)
+    if motion.starts_settled:
+        settling = steps * (half_length(1) + settling_steps(motion.transient_s, settle_s, config.fs_hz))
     return {
         "fs_hz": config.fs_hz,
         "samples": config.samples,
         "steps_per_sample": steps,
         "step_s": step_s,
-        "start_s": -(half_length(steps) + settling) * step_s,
+        "start_s": -settling * step_s,
     }
 
 

@@ -21,6 +21,8 @@ from siggen.dynamics.time.equations import no_inputs
 from siggen.errors import UsageError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.state_config import state_config
+from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import specimen_motion
@@ -214,6 +216,30 @@ def test_scipy_gives_the_motion_of_a_planetary_set_from_its_file_alone() -> None
     assert largest(own, by_scipy(model, own, FINE)) < 1e-3
     sound = model | {f"mesh.{m}.law.table_of_pair": 0 * model[f"mesh.{m}.law.table_of_pair"] for m in range(3)}
     assert largest(own, by_scipy(sound, own, 1e-4)) > 0.05
+
+
+def test_the_model_starts_where_its_record_does() -> None:
+    """From its start on, by its own steps, a motion comes to the record's values; one that starts later does not."""
+    whole = load_config(planetary(), ["duration_s=0.005"])
+    model, loaded = exported_model(whole, 0), state_config(whole, 0, 0)
+    specimen, steps = draw_specimen(loaded, 0), int(model["steps_per_sample"])
+    point = draw_operating_point(loaded, 0, 0)
+    motion = specimen_motion(
+        specimen.dynamics, specimen_state(loaded, specimen, 0).mesh, point, float(model["step_s"])
+    )  # fmt: skip
+    first = round(-model["start_s"] / model["step_s"])
+    assert first % steps == 0
+    times = np.arange(-first, steps * int(model["samples"])) * model["step_s"]
+    turned = model["start_angle_rad"] + 2.0 * np.pi * model["speed_hz"] * times
+    pitches = turned * model["mesh.0.pitches_per_rad"]
+    states = np.empty((times.size, model["start_state"].size))
+    states[0] = model["start_state"]
+    motion.advance(pitches, no_inputs(pitches), states)
+    inner, record = motion.internals(states[first::steps], pitches[first::steps]), internals_table(whole, 0)
+    for number, name in enumerate(motion.internal_names):
+        if name.endswith("_mesh_force_n"):
+            own, found = record[name].to_numpy(), inner[:, number]
+            assert np.abs(own - found).max() < 1e-6 * np.ptp(own)
 
 
 def begun_with_film(coupling: str, samples: int = 300, change: Change = np.array) -> tuple[dict, list]:
