@@ -26,7 +26,18 @@ from siggen.engines.worker import ONE_THREAD
 DEFAULT = (
     *("presets", "record", "sensing", "background", "filtering"),
     *("stiffness", "integration", "stages", "precision", "lanes"),
-    *("instructions", "loader", "cold", "memory", "startup", "storage", "many_shards", "workers", "quickstart"),
+    *(
+        "instructions",
+        "loader",
+        "cold",
+        "memory",
+        "startup",
+        "storage",
+        "many_shards",
+        "many_workers",
+        "workers",
+        "quickstart",
+    ),
     *("indicators", "pages", "house", "engines", "audit"),
 )
 """CPU time and memory first, then wall time, then what takes long."""

@@ -46,7 +46,7 @@ def peak_bytes(records: int) -> dict[str, int]:
     from siggen.sets.interruption import Interruption
 
     config = siggen.load_config("quickstart", [f"specimens={records // PER_GEARBOX}"])
-    with tempfile.TemporaryDirectory() as name, Interruption() as interruption, _made_up(config):
+    with tempfile.TemporaryDirectory() as name, Interruption() as interruption, made_up(config):
         run = set_run.set_run(config, LocalFolder(Path(name)), SerialEngine(), None, interruption)
         taken_over = run.make(run.planned)
         assert run.made == records
@@ -56,7 +56,7 @@ def peak_bytes(records: int) -> dict[str, int]:
 
 
 @contextmanager
-def _made_up(config: Config) -> Iterator[None]:
+def made_up(config: Config) -> Iterator[None]:
     """Put shards in place that nobody makes, each with as many blocks of a file as it would have."""
     from siggen.sets import physics
 
@@ -71,10 +71,17 @@ def _made_up(config: Config) -> Iterator[None]:
 
 def _committed(work: ShardWork, shard: ShardPlan, blocks: int) -> Answer:
     """Commit a shard whose file is not there."""
+    sidecar = made_up_sidecar(work, shard, blocks)
+    put_sidecar(work.pieces.storage, sidecar)
+    return Answer(shard.key, shard.record_count, sidecar=sidecar.without_bulk((), ()))
+
+
+def made_up_sidecar(work: ShardWork, shard: ShardPlan, blocks: int) -> Sidecar:
+    """Return the sidecar of a shard with so many blocks of a file for each record."""
     count = shard.record_count
     specimens, records = ranges(shard)
     checksums = "0" * (DIGITS * blocks * count)
-    sidecar = Sidecar(
+    return Sidecar(
         shard=shard.key,
         split=shard.split,
         identity=work.pieces.maker.identity,
@@ -85,8 +92,6 @@ def _committed(work: ShardWork, shard: ShardPlan, blocks: int) -> Answer:
         failures=(),
         environment=work.pieces.maker.environment,
     )
-    put_sidecar(work.pieces.storage, sidecar)
-    return Answer(shard.key, count, sidecar=sidecar.without_bulk((), ()))
 
 
 def _excerpt(excerpts: Excerpts, shard: str, damage: Sequence[Mapping[str, object]]) -> Excerpt:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
 
 from siggen.columns.record import RecordFailure
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
@@ -17,7 +18,9 @@ from siggen.dataset.seal import sealed
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
-from siggen.planning.plan import ShardPlan
+
+if TYPE_CHECKING:
+    from siggen.planning.plan import ShardPlan
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,8 +65,8 @@ class DaskEngine:
         with self._client() as client:
             done = as_completed(loop=client.loop)
 
-            def submit(task: Task) -> Any:
-                future = client.submit(call, function, task, pure=False)
+            def submit(task: Task, position: int) -> Any:
+                future = client.submit(call, function, task, pure=False, priority=-position)
                 done.add(future)
                 return future
 

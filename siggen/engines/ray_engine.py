@@ -86,7 +86,7 @@ class RayEngine:
             yield from windowed(
                 tasks,
                 self.workers,
-                submit=lambda task: run.remote(everywhere, task),
+                submit=lambda task, _: run.remote(everywhere, task),
                 finished=lambda opened: _finished(ray, list(opened)),
                 value=partial(_value, ray),
                 drained=lambda: self._draining,

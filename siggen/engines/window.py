@@ -15,7 +15,7 @@ WINDOW_PER_WORKER = 4
 def windowed(
     tasks: Iterable[Task],
     workers: int,
-    submit: Callable[[Task], Any],
+    submit: Callable[[Task, int], Any],
     finished: Callable[[Collection[Any]], Iterable[Any]],
     value: Callable[[Any, Task], Result],
     drained: Callable[[], bool] = lambda: False,
@@ -29,7 +29,8 @@ def windowed(
     workers : int
         The window is `WINDOW_PER_WORKER` times as wide.
     submit : callable
-        Task -> what the cluster calls it, which can be a key of a mapping.
+        (task, position) -> what the cluster calls it, which can be a key of a mapping. The rest of a task has its
+        position: where a cluster has priorities, lower ones go first.
     finished : callable
         Open ones -> those of them that are finished, at least one; waits for it.
     value : callable
@@ -45,7 +46,7 @@ def windowed(
         oldest = next(iter(unfinished), taken)
         room = 0 if drained() else max(0, oldest + WINDOW_PER_WORKER * workers - taken)
         for task in takewhile(_is_task, islice(source, room)):
-            opened[submit(task)] = (taken, task)
+            opened[submit(task, taken)] = (taken, task)
             unfinished[taken] = None
             taken += 1
         if not opened:
@@ -55,7 +56,7 @@ def windowed(
             result = value(one, task)
             if isinstance(result, Unfinished):
                 if not drained():
-                    opened[submit(result.rest)] = (index, result.rest)
+                    opened[submit(result.rest, index)] = (index, result.rest)
             else:
                 del unfinished[index]
             yield index, result

@@ -25,7 +25,9 @@ def test_any_order_of_completion_gives_every_task_once_and_keeps_the_window(work
         ready = [one for one in opened if one != "task 0"] or list(opened)
         return [str(one) for one in rng.permutation(ready)[: rng.integers(1, 4)]]
 
-    for index, result in windowed(tasks(), workers, "task {}".format, finished, lambda one, task: (one, task)):
+    for index, result in windowed(
+        tasks(), workers, lambda task, _: f"task {task}", finished, lambda one, task: (one, task)
+    ):
         assert result == (f"task {index}", index)
         given.append(index)
         oldest = min(set(taken) - set(given), default=len(taken))
@@ -34,4 +36,4 @@ def test_any_order_of_completion_gives_every_task_once_and_keeps_the_window(work
 
 
 def test_no_tasks_ask_nothing_of_the_cluster() -> None:
-    assert list(windowed([], 2, lambda task: task, lambda opened: pytest.fail("asked"), lambda one, task: one)) == []
+    assert list(windowed([], 2, lambda task, _: task, lambda opened: pytest.fail("asked"), lambda one, task: one)) == []
