@@ -4,31 +4,27 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
-from dataclasses import replace
-from functools import partial
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 import pyarrow as pa
 
-from siggen.columns.record import label_schema
-from siggen.dataset import label_tables
 from siggen.dataset.checked_file import BLOCK_BYTES, DIGITS
-from siggen.dataset.chunk import Chunk, ChunkResult
+from siggen.dataset.excerpt import Excerpt, Excerpts, excerpt_schemas
+from siggen.dataset.manifest import DAMAGE_FOLDER, METADATA_FOLDER
 from siggen.dataset.object_name import data_name
 from siggen.dataset.shard import FileFacts
+from siggen.dataset.sidecar import Sidecar, put_sidecar, ranges, read_sidecar
 from siggen.planning.plan import ShardPlan, estimated_bytes
-from siggen.sets import set_run, shard_making
-from siggen.sets.shard_making import ShardMaking
+from siggen.sets import set_run
+from siggen.sets.shard_work import Answer, ShardWork
 
 if TYPE_CHECKING:
     from siggen.config import Config
-    from siggen.dataset.sidecar import Sidecar
-    from siggen.dataset.storage import Storage
 
-PER_GEARBOX = 4
+PER_GEARBOX = 5
 """Records of the quickstart."""
 
 SPALLED, DAMAGED_SHARE = 2, 10
@@ -40,8 +36,8 @@ VALUES: Mapping[str, Any] = {"string": "healthy", "bool": False, "int32": 0, "in
 def peak_bytes(records: int) -> dict[str, int]:
     """Return the peak of this process when the last shard of a quickstart is done, and when its manifest is written.
 
-    Made up are the tasks, which return nothing, the shards' files, which are not there, and what tables read from
-    them. Plan, chunks, sidecars with as many checksums as there would be, tables, card and manifest are real.
+    Made up are shards and their excerpts, which workers make. Plan, stretches, sidecars with as many checksums as there
+    would be, tables, card and manifest are real.
     """
     import siggen
     from siggen.dataset.environment import peak_memory_bytes
@@ -50,70 +46,60 @@ def peak_bytes(records: int) -> dict[str, int]:
     from siggen.sets.interruption import Interruption
 
     config = siggen.load_config("quickstart", [f"specimens={records // PER_GEARBOX}"])
-    with (
-        tempfile.TemporaryDirectory() as name,
-        Interruption() as interruption,
-        _made_up(config),
-    ):
+    with tempfile.TemporaryDirectory() as name, Interruption() as interruption, _made_up(config):
         run = set_run.set_run(config, LocalFolder(Path(name)), SerialEngine(), None, interruption)
         taken_over = run.make(run.planned)
         assert run.made == records
         done = peak_memory_bytes()["parent"]
-        damage = run.physics.damage_rows(config, SPALLED)
-        run.physics = replace(run.physics, damage_rows=lambda _, record: [] if _is_whole(record) else damage)
         run.conclude(taken_over)
         return {"shards done": done, "manifest written": peak_memory_bytes()["parent"]}
 
 
-def _is_whole(record: int) -> bool:
-    return record // PER_GEARBOX % DAMAGED_SHARE != 0
-
-
 @contextmanager
 def _made_up(config: Config) -> Iterator[None]:
-    """Put records in place that nobody simulates, each with as many blocks of a file as it would have."""
-    records = config.specimens * config.records_per_specimen
-    blocks = estimated_bytes(config) // records // BLOCK_BYTES + 1
-    labels = partial(_labels, label_schema(config))
-    nothing = pa.record_batch({"state": pa.array([], pa.string())})
-    with ExitStack() as stack:
-        stack.enter_context(patch.object(ChunkResult, "batch", lambda _: nothing))
-        stack.enter_context(patch.object(shard_making, "PartSimulation", lambda *_: _nothing))
-        stack.enter_context(patch.object(ShardMaking, "_data", lambda _, shard: _Unwritten(shard, blocks)))
-        stack.enter_context(patch.object(label_tables, "_label_batches", labels))
+    """Put shards in place that nobody makes, each with as many blocks of a file as it would have."""
+    from siggen.sets import physics
+
+    blocks = estimated_bytes(config) // (config.specimens * config.records_per_specimen) // BLOCK_BYTES + 1
+    damage = physics.physics().damage_rows(config, SPALLED)
+    with (
+        patch.object(ShardWork, "__call__", lambda work, task: _committed(work, task.shard, blocks)),
+        patch.object(Excerpts, "read", lambda excerpts, shard: _excerpt(excerpts, shard, damage)),
+    ):
         yield
 
 
-def _nothing(chunk: Chunk) -> ChunkResult:
-    return ChunkResult(chunk, b"", ())
+def _committed(work: ShardWork, shard: ShardPlan, blocks: int) -> Answer:
+    """Commit a shard whose file is not there."""
+    count = shard.record_count
+    specimens, records = ranges(shard)
+    checksums = "0" * (DIGITS * blocks * count)
+    sidecar = Sidecar(
+        shard=shard.key,
+        split=shard.split,
+        identity=work.pieces.maker.identity,
+        data=FileFacts(data_name(shard.key), 0, "0" * 64, checksums, count),
+        specimens=specimens,
+        records=records,
+        rows_per_state=dict.fromkeys(work.simulation.config.state_names, count // PER_GEARBOX),
+        failures=(),
+        environment=work.pieces.maker.environment,
+    )
+    put_sidecar(work.pieces.storage, sidecar)
+    return Answer(shard.key, count, sidecar=sidecar.without_bulk((), ()))
 
 
-class _Unwritten:
-    """A shard's file that is not written."""
-
-    def __init__(self, shard: ShardPlan, blocks: int) -> None:
-        self._shard, self._blocks = shard, blocks
-
-    def __enter__(self) -> _Unwritten:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        pass
-
-    def add(self, batch: pa.RecordBatch) -> None:
-        """Take rows and forget them."""
-
-    def finish(self) -> FileFacts:
-        """Return facts with the checksums of a file as large as it would be."""
-        count = self._shard.record_count
-        checksums = "0" * (DIGITS * self._blocks * count)
-        return FileFacts(data_name(self._shard.key), 0, "0" * 64, checksums, count)
-
-
-def _labels(schema: pa.Schema, _: Storage, sidecar: Sidecar, columns: Sequence[str]) -> Iterator[pa.RecordBatch]:
-    """Yield the labels of a shard: ids are right, all else is the same everywhere."""
-    ids = [i for first, last in sidecar.records for i in range(first, last + 1)]
+def _excerpt(excerpts: Excerpts, shard: str, damage: Sequence[Mapping[str, object]]) -> Excerpt:
+    """Return the rows of a shard: ids are right, all else is the same everywhere; one gearbox of ten shows a spall."""
+    records = read_sidecar(excerpts.storage, shard).records
+    ids = [i for first, last in records for i in range(first, last + 1)]
     own = {"record_id": ids, "specimen_id": [i // PER_GEARBOX for i in ids], "state_id": [i % PER_GEARBOX for i in ids]}
-    fields = [schema.field(name) for name in columns]
+    schemas = excerpt_schemas(excerpts.config)
+    fields = schemas[METADATA_FOLDER]
     arrays = [pa.array(own.get(f.name) or [VALUES.get(str(f.type), [])] * len(ids), f.type) for f in fields]
-    yield pa.RecordBatch.from_arrays(arrays, schema=pa.schema(fields))
+    spalled = [i for i in ids if i // PER_GEARBOX % DAMAGED_SHARE == 0]
+    rows = [{**row, "record_id": i} for i in spalled for row in damage]
+    return {
+        METADATA_FOLDER: pa.RecordBatch.from_arrays(arrays, schema=fields),
+        DAMAGE_FOLDER: pa.RecordBatch.from_pylist(rows, schema=schemas[DAMAGE_FOLDER]),
+    }

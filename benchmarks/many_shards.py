@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-from siggen.sets.manifest_facts import manifest_facts
 
 import siggen
 from benchmarks.row import Row, duration_text
@@ -23,6 +22,7 @@ from siggen.dataset.seal import sealed
 from siggen.dataset.shard import FileFacts, write_table
 from siggen.dataset.shard_index import CHECKSUM_ROWS, INDEX_ROWS, LISTED, PROMISED
 from siggen.dataset.storage import LocalFolder, sha256
+from siggen.sets.set_run import manifest_facts
 
 SHARDS, RECORDS, BLOCKS = 100_000, 120, 600
 """RECORDS of a shard, and BLOCKS of 64 KiB: a shard of quickstart has about 40 MB."""

@@ -31,11 +31,11 @@ def keep(config: Config, file: Path) -> float:
     from siggen.planning.plan import record_ids_of
     from siggen.record.simulation import simulate_specimen
 
-    records = simulate_specimen(config, record_ids_of(config, 0))
+    records = list(simulate_specimen(config, record_ids_of(config, 0)))
     file.write_bytes(pickle.dumps(records))
     started_s = time.process_time()
     for specimen in (1, 2, 3):
-        simulate_specimen(config, record_ids_of(config, specimen))
+        list(simulate_specimen(config, record_ids_of(config, specimen)))
     return (time.process_time() - started_s) / 3
 
 

@@ -10,13 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from diagnostics.indicators.classifier_table import table
+    from diagnostics.loader.window_arrays import windows
     from diagnostics.scoring.score import score
+    from diagnostics.training.estimators import BoostingBaseline, LogisticBaseline
 
-__all__ = ["score", "table"]
+__all__ = ["BoostingBaseline", "LogisticBaseline", "score", "table", "windows"]
 
 _HOMES = {
     "score": "diagnostics.scoring.score",
     "table": "diagnostics.indicators.classifier_table",
+    "windows": "diagnostics.loader.window_arrays",
+    "LogisticBaseline": "diagnostics.training.estimators",
+    "BoostingBaseline": "diagnostics.training.estimators",
 }
 
 

@@ -84,7 +84,7 @@ class ExtrudedBody:
         self.axial = Basis(triangles, ElementTriP2(), intorder=4)
         lame, shear = poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)), 0.5 / (1 + poisson_ratio)
         self.free = free_dofs(self.plane, mesh.bore_radius)
-        self._free_axial = free_dofs(self.axial, mesh.bore_radius)
+        self.free_axial = free_dofs(self.axial, mesh.bore_radius)
         plane = linear_elasticity(lame, shear).assemble(self.plane).tocsr()
         self._assemble(plane, lame, shear)
         self._factorise()
@@ -93,7 +93,7 @@ class ExtrudedBody:
         from skfem import BilinearForm
         from skfem.helpers import div, dot, grad
 
-        p, w = self.free, self._free_axial
+        p, w = self.free, self.free_axial
         self._a = plane[p][:, p]
         self._mp = shear * BilinearForm(lambda u, v, _: dot(u, v)).assemble(self.plane).tocsr()[p][:, p]
         self._l = shear * BilinearForm(lambda u, v, _: dot(grad(u), grad(v))).assemble(self.axial).tocsr()[w][:, w]
@@ -130,7 +130,18 @@ class ExtrudedBody:
             If the conjugate gradients do not converge.
         """
         push = plane_loads[self.free][:, :, None] * face_loads.T[None, :, :]
-        right = (push, np.zeros((self._free_axial.size, *push.shape[1:])))
+        out = np.zeros((self.plane.N, *push.shape[1:]))
+        out[self.free] = self.solved((push, np.zeros((self.free_axial.size, *push.shape[1:]))))[0]
+        return out
+
+    def solved(self, right: Both) -> Both:
+        """Return the displacements of the free degrees of freedom under loads on them, which are used up.
+
+        Raises
+        ------
+        RuntimeError
+            If the conjugate gradients do not converge.
+        """
         x = (np.zeros_like(right[0]), np.zeros_like(right[1]))
         direction = self._precondition(right)
         before = first = _dot(right, direction)
@@ -143,9 +154,7 @@ class ExtrudedBody:
             rest = self._precondition(right)
             now = _dot(right, rest)
             if np.all(now < TOLERANCE**2 * first):
-                out = np.zeros((self.plane.N, *push.shape[1:]))
-                out[self.free] = x[0]
-                return out
+                return x
             ratio = (now / before)[None, :, None]
             direction = (rest[0] + ratio * direction[0], rest[1] + ratio * direction[1])
             before = now
@@ -154,8 +163,8 @@ class ExtrudedBody:
     def _product(self, x: Both) -> Both:
         p, w = x
         m, s, g = self.line.mass, self.line.stiffness, self.line.slope
-        plane = _times(self._a, p @ m) + _times(self._mp, p @ s) + _times(self._d, w @ g.T) + _times(self._e, w @ g)
-        axial = _times(self._l, w @ m) + _times(self._mw, w @ s) + _times(self._dt, p @ g) + _times(self._et, p @ g.T)
+        plane = times(self._a, p @ m) + times(self._mp, p @ s) + times(self._d, w @ g.T) + times(self._e, w @ g)
+        axial = times(self._l, w @ m) + times(self._mw, w @ s) + times(self._dt, p @ g) + times(self._et, p @ g.T)
         return plane, axial
 
     def _precondition(self, right: Both) -> Both:
@@ -166,7 +175,8 @@ class ExtrudedBody:
         return plane @ self._modes.T, axial @ self._modes.T
 
 
-def _times(matrix: sparse.csr_matrix, x: np.ndarray) -> np.ndarray:
+def times(matrix: sparse.csr_matrix, x: np.ndarray) -> np.ndarray:
+    """Return a plane matrix (a, b) times values (b, k, n)."""
     return np.asarray(matrix @ x.reshape(x.shape[0], -1)).reshape(matrix.shape[0], *x.shape[1:])
 
 

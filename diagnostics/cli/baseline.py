@@ -28,7 +28,13 @@ def baseline(
     gears: GearOptions,
     recording: RecordingOptions,
     load: Annotated[
-        str, typer.Option("--load", metavar="L[,L...]", help="Load in any unit: of all recordings, or one for each.")
+        str,
+        typer.Option(
+            "--load",
+            metavar="L[,L...]|slip",
+            help="Load in any unit: of all recordings, or one for each. `slip`: the fall of an induction motor's speed "
+            "tells it.",
+        ),
     ] = "",
     false_alarms: Annotated[
         float, typer.Option(min=0.001, max=0.3, help="Wanted rate of false alarms of `check`.")
@@ -60,8 +66,11 @@ def baseline(
     typer.echo(str(out))
 
 
-def _loads(said: str) -> list[float]:
+def _loads(said: str) -> list[float] | None:
+    """Return the loads as numbers, none of them, or None where slip tells them."""
+    if said == "slip":
+        return None
     try:
         return [float(part) for part in said.split(",")] if said else []
     except ValueError:
-        raise UsageError(f"--load: received '{said}'; allowed: numbers with commas between") from None
+        raise UsageError(f"--load: received '{said}'; allowed: numbers with commas between, or slip") from None

@@ -23,7 +23,9 @@ def check(
         ),
     ],
     fs: Rate = None,
-    load: Annotated[float | None, typer.Option("--load", help="Load, in the unit of `baseline --load`.")] = None,
+    load: Annotated[
+        float | None, typer.Option("--load", help="Load, in the unit of `baseline --load`; not after `--load slip`.")
+    ] = None,
     keep: Annotated[bool, typer.Option(help="Whether to add the verdicts to the machine's history.")] = True,
     as_json: AsJson = False,
 ) -> None:

@@ -39,10 +39,10 @@ class ReferenceOptions:
 def predict(
     model: Annotated[Path, typer.Argument(metavar="MODEL", help="Folder that `report` wrote.", show_default=False)],
     file: Annotated[
-        str,
+        list[str],
         typer.Argument(
-            metavar="FILE",
-            help="Recording: .csv, .mat, .wav, .parquet (FILE:ROW), .npy, .npz, .tdms, .uff, .unv, .h5 or .hdf5.",
+            metavar="FILE...",
+            help="Recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, .tdms, .uff, .unv, .h5 or .hdf5.",
             show_default=False,
         ),
     ],
@@ -52,11 +52,12 @@ def predict(
     healthy: ReferenceOptions,
     indicator: OwnIndicators = None,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for JSON, plots and page.")
+        Path | None,
+        typer.Option("--out", "-o", metavar="DIR", help="Folder for JSON, plots and page; of several, one each in it."),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find the state that a recording is most like, or say why the models give no answer.
+    """Find the state that each recording is most like, or say why the models give no answer.
 
     Example: siggen-diagnostics predict data/quickstart_report run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
@@ -68,40 +69,44 @@ def predict(
     require_packages("prediction", "sklearn", "skops")
     with terminal_stage("reading the models", 1):
         from diagnostics.prediction.prediction import predict_recording
-        from diagnostics.prediction.prediction_page import MEANING, prediction_facts, prediction_rows
+        from diagnostics.prediction.prediction_page import (
+            MEANING,
+            prediction_facts,
+            prediction_headline,
+            prediction_rows,
+            write_prediction,
+        )
         from diagnostics.prediction.released_model import load_model
 
         loaded = load_model(model, load_indicators(indicator))
-    path, row = _one(file)
-    pair = _teeth(path, teeth, loaded.facts.teeth)
+    sources = [source for said in file for source in file_rows(said)]
+    pair = _teeth(sources[0][0], teeth, loaded.facts.teeth)
     facts, names, units = recording.facts(), loaded.facts.channels, loaded.facts.units
-    read = read_recording(path, names, replace(facts, row=row), units)
     references = tuple(
         read_recording(path, names, _reference_facts(facts, path, number, healthy.reference_fs), units)
         for said in healthy.reference or ()
         for path, number in file_rows(said)
     )
-    with terminal_stage("prediction", 1):
-        found = predict_recording(loaded, read, pair, recording.speed_range_hz(), references)
+    found = {}
+    with terminal_stage("prediction", len(sources)) as advance:
+        for path, row in sources:
+            read = read_recording(path, names, replace(facts, row=row), units)
+            name = path.name if row is None else f"{path.name}:{row}"
+            found[name] = predict_recording(loaded, read, pair, recording.speed_range_hz(), references)
+            advance()
     if as_json:
-        echo_json(prediction_facts(found, loaded.facts))
+        echo_json({"predictions": [prediction_facts(one, loaded.facts) for one in found.values()]})
     else:
-        for label, text in prediction_rows(found):
-            typer.echo(f"{label + ':':21} {text}")
+        for name, one in found.items():
+            typer.echo(f"{name}: {prediction_headline(one)}")
+            for label, text in prediction_rows(one):
+                typer.echo(f"  {label + ':':21} {text}")
         typer.echo(MEANING)
-    if out:
-        from diagnostics.prediction.prediction_page import write_prediction
-
-        with terminal_stage("page", 1):
-            page = write_prediction(found, loaded.facts, out)
-        typer.echo(str(page), err=as_json)
-
-
-def _one(said: str) -> tuple[Path, int | None]:
-    first, *others = file_rows(said)
-    if others:
-        raise UsageError(f"{said}: names {1 + len(others)} recordings; allowed: one, such as {first[0]}:{first[1]}")
-    return first
+    if out is None:
+        return
+    for name, one in found.items():
+        place = out / name.replace(":", "_") if len(found) > 1 else out
+        typer.echo(str(write_prediction(one, loaded.facts, place)), err=as_json)
 
 
 def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> tuple[int, int]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, Seed, TrainingOptions, opened
+from diagnostics.cli.set_options import EXPLORER, OwnIndicators, ReportOptions, Seed, TrainingOptions, opened
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
@@ -41,7 +41,7 @@ def report(
     ] = False,
     indicator: OwnIndicators = None,
     training: TrainingOptions,
-    pages: PageOptions,
+    pages: ReportOptions,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
@@ -55,7 +55,8 @@ def report(
     Example: siggen-diagnostics report data/quickstart --models-only --out models --test data/other_gears
     """
     if models_only:
-        _refuse({"--explore": pages.explore, "--open": pages.show}, "--models-only writes no page")
+        of_page = {"--explore": pages.explore, "--open": pages.show, "--predictions": pages.predictions}
+        _refuse(of_page, "--models-only writes no page")
     from diagnostics.base.beside import beside
     from diagnostics.base.extras import missing_packages, require_packages
     from diagnostics.base.progress import terminal_stage
@@ -77,14 +78,15 @@ def report(
     options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
     if is_lives(dataset):
         of_states = {"--models-only": models_only, "--test": second, "--studies": training.studies}
-        _refuse({**of_states, "--indicator": own, "--explore": pages.explore}, "for sets of states; this one has lives")
+        of_pages = {"--explore": pages.explore, "--predictions": pages.predictions}
+        _refuse({**of_states, "--indicator": own, **of_pages}, "for sets of states; this one has lives")
         path = write_life_report(dataset, out or beside(dataset.path, "_report"), seed, terminal_stage)
     else:
         folder = out or beside(dataset.path, "_models" if models_only else "_report")
         if models_only:
             path = _models((dataset, second), folder, seed, options, own)
         else:
-            path = _page((dataset, second), folder, seed, options, own, explore=pages.explore)
+            path = _page((dataset, second), folder, seed, options, own, pages)
     if as_json:
         echo_json(json.loads(((path if models_only else path.parent) / "metrics.json").read_text(encoding="utf-8")))
     else:
@@ -104,19 +106,26 @@ def _page(
     seed: int,
     options: NetworkOptions,
     own: tuple[OwnIndicator, ...],
-    *,
-    explore: bool,
+    pages: ReportOptions,
 ) -> Path:
     """Write the report, and the page to explore beside it where it is wanted; return the report's path."""
     from diagnostics.base.progress import terminal_stage
     from diagnostics.report.report import write_report
+    from diagnostics.report.your_scores import Beside
 
     dataset, second = sets
-    name = EXPLORER if explore else ""
+    name = EXPLORER if pages.explore else ""
     path = write_report(
-        dataset, folder, seed, network=options, other=second, own=own, explorer=name, stage=terminal_stage
+        dataset,
+        folder,
+        seed,
+        network=options,
+        other=second,
+        own=own,
+        beside=Beside(name, pages.predictions),
+        stage=terminal_stage,
     )
-    if explore:
+    if pages.explore:
         from diagnostics.explore.explorer import ExplorerOptions, write_explorer
         from diagnostics.report.examples import reported_gearboxes
 

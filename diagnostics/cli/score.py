@@ -55,7 +55,7 @@ def score(
         check_suffix(out)
     found = scored(open_set(directory), predictions, baselines=baselines, split=split, seed=seed, classes=classes)
     if as_json:
-        echo_json({"split": split, "classes": classes, "scores": found.to_table().to_pylist()})
+        echo_json({"split": split, "classes": classes, "scores": found.numbers()})
     else:
         typer.echo(str(found))
     if out:

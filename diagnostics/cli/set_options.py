@@ -44,6 +44,21 @@ class PageOptions:
     show: Open = False
 
 
+@dataclass(frozen=True, slots=True)
+class ReportOptions(PageOptions):
+    """Further pages, and the user's predictions."""
+
+    predictions: Annotated[
+        Path | None,
+        typer.Option(
+            "--predictions",
+            metavar="FILE",
+            help="Your own predictions, as `score` takes them: their scores stand on the page beside the classifiers'.",
+            show_default=False,
+        ),
+    ] = None
+
+
 def opened(target: Path | str) -> None:
     """Open a file or an address; where there is no browser, say so and leave it at that."""
     address = target if isinstance(target, str) else target.resolve().as_uri()

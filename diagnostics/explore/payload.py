@@ -159,7 +159,7 @@ def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSo
         channels=tuple(channel.name for channel in dataset.channels),
         fs_hz=dataset.fs_hz,
         duration_s=dataset.duration_s,
-        indicators=_indicators(table, rows, channel_quantities(dataset)),
+        indicators=_indicators(table, rows, dataset),
         held=channel_quantities(dataset),
         named=table.named,
         damage=_damage(dataset, labels["record_id"]),
@@ -260,9 +260,15 @@ def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[s
     }
 
 
-def _indicators(table: RecordTable, rows: np.ndarray, held: Mapping[str, ShownQuantity]) -> list[dict[str, Any]]:
-    names = table.names()
-    return packed_indicators(names, table.values(names)[rows], table.settings, table.own, held, table.named)
+def _indicators(table: RecordTable, rows: np.ndarray, dataset: Dataset) -> list[dict[str, Any]]:
+    """Return the indicators of a set in the user's names."""
+    names, words, held = table.names(), words_of(dataset), channel_quantities(dataset)
+    found = packed_indicators(names, table.values(names)[rows], table.settings, table.own, held, table.named)
+    return [
+        {**one, "name": words.column(one["name"])}
+        | {key: words.about(one["name"].rpartition("__")[0], one[key]) for key in ("title", "definition")}
+        for one in found
+    ]
 
 
 def packed_indicators(

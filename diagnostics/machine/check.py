@@ -10,11 +10,12 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from math import isfinite, log
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
 
+from diagnostics.machine.comparable import FEWEST_OVER_SPEED, LOAD_RATIO, SPEED_RATIO, comparable
 from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import CHECKS, Machine
 from diagnostics.machine.recording_indicators import indicator_title
@@ -25,9 +26,6 @@ from diagnostics.training.referenced import log_values
 from siggen.errors import UsageError
 
 UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "other load or speed", "cannot tell"
-SPEED_RATIO = 1.05
-"""Up to which indicators are compared: a line moves by less than the width of most modes."""
-LOAD_RATIO = 1.2
 LISTED = 8
 
 
@@ -101,7 +99,7 @@ class Check:
     moved : tuple of Moved
         Largest deviations first.
     used : int
-        References at the same speed and load.
+        References that it was compared with.
     """
 
     recording: str
@@ -134,22 +132,23 @@ def check_recording(machine: Machine, recording: MeasuredRecording, name: str, l
     except UsageError as error:
         return Check(name, CANNOT_TELL, str(error), float("nan"))
     logs = log_values(pieces.medians(machine.names)[None])[0]
-    alike = _alike(machine, pulses.speed_hz, load)
-    if np.count_nonzero(alike) < FEWEST:
+    beside = comparable(machine, pulses.speed_hz, load)
+    if beside is None:
         return Check(name, OTHER_CONDITIONS, _conditions(machine, pulses.speed_hz, load), pulses.speed_hz)
-    healthy = log_values(machine.values[alike])
+    healthy = log_values(machine.values[beside.used])
     if (same := _same(machine, logs)) is not None:
         return Check(name, CANNOT_TELL, f"it is the reference {same}; give another recording", pulses.speed_hz)
-    if (level := _level_db(machine, healthy, logs)) is not None:
-        reason = f"all channels are {level:+.0f} dB off; is the unit, sensitivity or gain that of the references?"
-        return Check(name, CANNOT_TELL, reason, pulses.speed_hz)
     try:
-        score = change_score(healthy, logs, machine.false_alarms)
+        score = change_score(healthy, logs, machine.false_alarms, beside.conditions)
     except UsageError as error:
         return Check(name, CANNOT_TELL, str(error), pulses.speed_hz)
-    moved = _moved(machine, healthy, logs, score)
+    if (level := _level_db(machine, score.mean, logs)) is not None:
+        reason = f"all channels are {level:+.0f} dB off; is the unit, sensitivity or gain that of the references?"
+        return Check(name, CANNOT_TELL, reason, pulses.speed_hz)
+    moved = _moved(machine, logs, score)
     verdict = CHANGED if score.changed else UNCHANGED
-    return Check(name, verdict, _reason(score, moved), pulses.speed_hz, score, moved, int(np.count_nonzero(alike)))
+    used = int(np.count_nonzero(beside.used))
+    return Check(name, verdict, _reason(score, moved), pulses.speed_hz, score, moved, used)
 
 
 def rate_sentence(references: int, wanted: float) -> str:
@@ -168,14 +167,6 @@ def rate_sentence(references: int, wanted: float) -> str:
     )
 
 
-def _alike(machine: Machine, speed_hz: float, load: float | None) -> np.ndarray:
-    """Return which references ran at the same speed and load."""
-    same = np.abs(np.log(machine.speed_hz / speed_hz)) <= log(SPEED_RATIO)
-    if load is not None and np.isfinite(machine.load).all():
-        same &= np.abs(machine.load - load) <= (LOAD_RATIO - 1.0) * np.abs(machine.load)
-    return np.asarray(same)
-
-
 def _same(machine: Machine, logs: np.ndarray) -> str | None:
     """Return the reference that a recording is: all indicators are equal; noise does not repeat."""
     for name, row in zip(machine.references, log_values(machine.values), strict=True):
@@ -185,31 +176,34 @@ def _same(machine: Machine, logs: np.ndarray) -> str | None:
 
 
 def _conditions(machine: Machine, speed_hz: float, load: float | None) -> str:
-    told = f"{speed_hz:.4g} Hz" + ("" if load is None else f" and load {load:g}")
-    speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
-    known = np.isfinite(machine.load).all()
-    loads = f", loads {machine.load.min():g} to {machine.load.max():g}" if known else ""
+    """Say what the references know nothing of, and what would be needed."""
+    known = load is not None and bool(np.isfinite(machine.load).all()) and not machine.load_from_slip
+    at = f"{speed_hz:.5g} Hz" + (f" and load {load:g}" if known else "")
+    spans = f"{machine.speed_hz.min():.5g} to {machine.speed_hz.max():.5g} Hz"
+    spans += f", loads {machine.load.min():g} to {machine.load.max():g}" if known else ""
+    near, beside = f"{100 * (SPEED_RATIO - 1):.0f} %", f"{100 * (LOAD_RATIO - 1):.0f} %"
     return (
-        f"at {told} fewer than {FEWEST} references ran within {100 * (SPEED_RATIO - 1):.0f} % of the speed and "
-        f"{100 * (LOAD_RATIO - 1):.0f} % of the load; the references: {speeds}{loads}"
+        f"nothing is known of {at}: it takes {FEWEST} references within {near} of the speed or {FEWEST_OVER_SPEED} on "
+        f"both sides of it, under loads that reach within {beside} of this one, without load apart; the references: "
+        f"{spans}" + ("; slip tells loads" if machine.load_from_slip else "")
     )
 
 
-def _level_db(machine: Machine, healthy: np.ndarray, logs: np.ndarray) -> float | None:
+def _level_db(machine: Machine, mean: np.ndarray, logs: np.ndarray) -> float | None:
     """Return by how much all channels are off in level [dB] where that is more than damage does."""
     levels = [k for k, name in enumerate(machine.names) if name.startswith("rms__")]
     if not levels:
         return None
-    off = 20.0 / np.log(10.0) * (logs[levels] - healthy[:, levels].mean(axis=0))
+    off = 20.0 / np.log(10.0) * (logs[levels] - mean[levels])
     alike = np.isfinite(off).all() and np.ptp(off) < 10.0
     return float(off.mean()) if alike and np.abs(off).min() > MOST_DB else None
 
 
-def _moved(machine: Machine, healthy: np.ndarray, logs: np.ndarray, score: ChangeScore) -> tuple[Moved, ...]:
+def _moved(machine: Machine, logs: np.ndarray, score: ChangeScore) -> tuple[Moved, ...]:
     found = []
     for k in np.argsort(-np.nan_to_num(np.abs(score.deviation)))[:LISTED]:
         indicator, _, channel = machine.names[k].partition("__")
-        factor = float(np.exp(logs[k] - healthy[:, k].mean()))
+        factor = float(np.exp(logs[k] - score.mean[k]))
         found.append(Moved(indicator, channel, factor, float(score.deviation[k])))
     return tuple(found)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnostics.base.progress import Advance
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.machine.comparable import slip_loads
 from diagnostics.machine.machine import Machine
 from diagnostics.machine.recording_indicators import check_mesh_lines
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
@@ -21,6 +22,7 @@ from diagnostics.statistics.change_score import FEWEST
 from siggen.errors import UsageError
 
 LONGEST_PIECE_S = 10.0
+LEAST_SLIP, MOST_SLIP = 0.001, 0.05
 FEWEST_TURNS = 10
 """Of the pinion in a piece; averages of fewer leave the noise in."""
 
@@ -34,7 +36,7 @@ def healthy_state(
     facts: RecordingFacts,
     train: tuple[Mesh, ...],
     speed_range_hz: tuple[float, float] | None,
-    loads: Sequence[float],
+    loads: Sequence[float] | None,
     false_alarms: float,
     advance: Advance,
 ) -> Machine:
@@ -45,8 +47,8 @@ def healthy_state(
     sources : sequence of (Path, int or None)
         Files and rows, three at least.
     channels, facts, train, speed_range_hz, false_alarms : see `Machine`
-    loads : sequence of float
-        One per recording, one for all, or none.
+    loads : sequence of float or None
+        One per recording, one for all, or none; None: the fall of speed tells them.
     advance : callable
         Told of every recording that is done.
 
@@ -59,7 +61,7 @@ def healthy_state(
         raise UsageError(
             f"{len(sources)} healthy recordings; allowed: at least {FEWEST}, and 19 for a rate of false alarms of 5 %"
         )
-    if len(loads) not in {0, 1, len(sources)}:
+    if loads is not None and len(loads) not in {0, 1, len(sources)}:
         raise UsageError(f"--load: received {len(loads)} numbers; allowed: one, or one per recording ({len(sources)})")
     read = [read_recording(path, channels, _row(facts, row)) for path, row in sources]
     _refuse_twice(read)
@@ -75,11 +77,13 @@ def healthy_state(
         advance()
     names = rows[0].names
     values = np.stack([pieces.medians(names) for pieces in rows])
-    load = np.full(len(read), np.nan) if not loads else np.broadcast_to(np.asarray(loads, dtype=np.float64), len(read))
+    load = np.broadcast_to(np.asarray(loads or np.nan, dtype=np.float64), len(read)).copy()
+    if loads is None:
+        load = _slips(np.array(speeds))
     called = tuple(f"{path.name}:{row}" if row is not None else path.name for path, row in sources)
     return Machine(
         train, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, called,
-        np.array(speeds), np.array(load),
+        np.array(speeds), load, loads is None,
     )  # fmt: skip
 
 
@@ -111,6 +115,23 @@ def pieces_of(
             "recordings, or leave the shortest out"
         )
     return record_pieces(slow, pulses, first.teeth, duration_s, IndicatorSettings(), train=train), pulses
+
+
+def _slips(speed_hz: np.ndarray) -> np.ndarray:
+    """Return loads read from the speeds of an induction motor's machine, 0 to 1.
+
+    Raises
+    ------
+    UsageError
+        If the speeds differ by less than a mains frequency wanders, or by more than slip does.
+    """
+    fall = 1.0 - float(speed_hz.min() / speed_hz.max())
+    if not LEAST_SLIP <= fall <= MOST_SLIP:
+        raise UsageError(
+            f"--load slip: speeds of the references differ by {100 * fall:.2g} %; allowed: {100 * LEAST_SLIP:g} to "
+            f"{100 * MOST_SLIP:g} %, as between no load and full load. Give loads as numbers, or none"
+        )
+    return slip_loads(speed_hz, float(speed_hz.max()), float(speed_hz.min()))
 
 
 def _row(facts: RecordingFacts, row: int | None) -> RecordingFacts:

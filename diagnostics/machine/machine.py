@@ -14,7 +14,7 @@ from diagnostics.records.gear_train import Mesh, gear_train, train_labels
 from siggen.errors import UsageError
 
 FACTS, TABLE, CHECKS = "machine.json", "references.parquet", "checks.jsonl"
-VERSION = 2
+VERSION = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +42,8 @@ class Machine:
         Names of the recordings.
     speed_hz, load : (references,) float64
         Pinion speed, and load as the user gave it (NaN where he did not).
+    load_from_slip : bool
+        Whether differences of speed tell the load.
     """
 
     train: tuple[Mesh, ...]
@@ -56,6 +58,7 @@ class Machine:
     references: tuple[str, ...]
     speed_hz: np.ndarray
     load: np.ndarray
+    load_from_slip: bool = False
 
 
 def save_machine(machine: Machine, folder: Path) -> None:
@@ -85,6 +88,7 @@ def save_machine(machine: Machine, folder: Path) -> None:
         "fs_hz": machine.fs_hz,
         "duration_s": machine.duration_s,
         "false_alarms": machine.false_alarms,
+        "load_from_slip": machine.load_from_slip,
     }
     (folder / FACTS).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
@@ -126,6 +130,7 @@ def load_machine(folder: Path) -> Machine:
         tuple(table["recording"].to_pylist()),
         _column(table, "speed_hz"),
         _column(table, "load"),
+        content["load_from_slip"],
     )
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PAGE = "machine.html"
-TREND = "Distance from the healthy recordings over all checks, oldest first; the bar is the limit of each."
+TREND = "Distance from the healthy recordings over all checks, oldest first, as a multiple of the limit of each check."
 NO_STATE = (
     "This page says whether the machine has changed against its own healthy recordings. It names no fault: that takes "
     "recordings of known faults, or a model of this machine."
@@ -108,20 +108,23 @@ def _trend(history: Sequence[PastCheck]) -> Figure:
 
     figure, axes = new_figure(height_in=2.8)
     axis = axes[0, 0]
-    known = [(k, past) for k, past in enumerate(history, start=1) if past.score is not None and past.limit is not None]
+    known = [
+        (k, past.verdict, past.score, past.limit)
+        for k, past in enumerate(history, start=1)
+        if past.score is not None and past.limit is not None
+    ]
     for verdict, colour, marker in ((UNCHANGED, HEALTHY_COLOUR, "o"), (CHANGED, FAULT_COLOURS[2], "D")):
-        places = [(k, past.score) for k, past in known if past.verdict == verdict]
+        places = [(k, score / limit) for k, said, score, limit in known if said == verdict]
         if places:
             axis.plot(*zip(*places, strict=True), marker, color=colour, label=verdict, markersize=5)
-    for k, past in known:
-        axis.plot([k - 0.4, k + 0.4], [past.limit, past.limit], color="#1c2733", linewidth=1.2)
+    axis.axhline(1.0, color="#1c2733", linewidth=1.2, label="limit")
     axis.set_yscale("log")
     axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.yaxis.set_major_formatter("{x:g}")
     axis.yaxis.set_minor_formatter(NullFormatter())
     axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     axis.set_xlabel("check")
-    axis.set_ylabel("distance [spreads]")
+    axis.set_ylabel("distance over limit")
     if known:
         axis.legend(loc="upper left")
     return figure

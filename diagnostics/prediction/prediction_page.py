@@ -114,6 +114,17 @@ def _nearness(found: Nearness) -> dict[str, Any]:
     }
 
 
+def prediction_headline(found: Prediction) -> str:
+    """Return what was found, or why nothing is said, in one line."""
+    own = found.own_state
+    told = [] if own is None else [own.verdict if own.score is not None else "nothing can be said of a change"]
+    if found.reasons:
+        return "; ".join([*told, f"no {found.class_kind} is named: {found.reasons[0]}"])
+    share = percent(float(found.votes[0].probability.max()))
+    weak = ", a weak answer" if found.contradiction else ""
+    return "; ".join([*told, f"most like {found.state} ({share}{weak})"])
+
+
 def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
     """Return what the terminal and the page show first: label and text."""
     pulses = found.pulses

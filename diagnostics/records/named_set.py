@@ -55,7 +55,7 @@ class Words:
         own, behind, channel = name.partition("__")
         if "_" not in own or own in self.channels:
             return name
-        mesh = next((short for short, _ in self.names.meshes[1:] if own.endswith(f"_{short}")), "")
+        mesh = self._mesh(own)
         if not mesh or name.startswith("teeth_"):
             return f"{self.names.column(own)}{behind}{channel}"
         for role in GEARS:
@@ -63,13 +63,24 @@ class Words:
             own = re.sub(rf"(?<![a-z0-9]){role}(?![a-z0-9])", gear, own)
         return f"{own}{behind}{channel}"
 
+    def about(self, column: str, text: str) -> str:
+        """Return a text about an indicator, by its column without the channel, with the user's names."""
+        mesh = self._mesh(column)
+        return self(self._in_mesh(mesh, text) if mesh else text)
+
+    def _mesh(self, column: str) -> str:
+        """Return the further mesh that a column is about, or nothing."""
+        return next((short for short, _ in self.names.meshes[1:] if column.endswith(f"_{short}")), "")
+
     def _identifier(self, found: re.Match[str]) -> str:
         own = self.column(found[0].replace(BREAK, ""))
         return own.replace("_", f"_{BREAK}") if BREAK in found[0] else own
 
     def _of_mesh(self, mesh: str, found: re.Match[str]) -> str:
+        return self._in_mesh(mesh, found[0])
+
+    def _in_mesh(self, mesh: str, phrase: str) -> str:
         """Return a phrase about one mesh with the names of its gears."""
-        phrase = found[0]
         for role in GEARS:
             phrase = re.sub(rf"\b{role}\b", self.names.gear(f"{mesh}.{role}"), phrase)
         return phrase

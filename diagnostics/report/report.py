@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.audit.audit import ALONE
-from diagnostics.base.beside import beside
+from diagnostics.base.beside import beside as folder_beside
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
@@ -33,6 +33,8 @@ from diagnostics.report.answer import answer_figure, answer_sentences
 from diagnostics.report.drawing import draw
 from diagnostics.report.report_page import ANSWER, CAPTION, Reported, report_page
 from diagnostics.report.sentences import summary
+from diagnostics.report.your_scores import Beside
+from diagnostics.scoring.score import Scores, score
 from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability, separability, separability_table
 from diagnostics.training.detectors import judged_detectors
@@ -48,11 +50,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 KINDS = ("through_face", SHAM)
+NOTHING_BESIDE = Beside()
 
 
 def audit_beside(dataset: Dataset) -> dict[str, Any] | None:
     """Return the content of `audit.json` in the folder beside a set, DIR_audit; None without one of this very set."""
-    path = beside(dataset.path, "_audit") / "audit.json"
+    path = folder_beside(dataset.path, "_audit") / "audit.json"
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -90,7 +93,7 @@ def write_report(
     network: NetworkOptions | None = None,
     other: Any = None,
     own: Sequence[OwnIndicator] = (),
-    explorer: str = "",
+    beside: Beside = NOTHING_BESIDE,
     stage: Stage = silent_stage,
 ) -> Path:
     """Compute everything and write `report.html`, `metrics.json`, tables, figures and models; return the page's path.
@@ -110,21 +113,22 @@ def write_report(
         Another set to judge on.
     own : sequence of OwnIndicator
         The user's indicators.
-    explorer : str
-        Name of the page to explore beside the report, to which records and counts then lead.
+    beside : Beside
+        Name of the page to explore, to which records and counts then lead; the user's predictions, which get a row.
     stage : Stage
         Told of every step.
 
     Raises
     ------
     UsageError
-        If matplotlib or scikit-learn are missing.
+        If matplotlib or scikit-learn are missing, or predictions cannot be used.
     """
     require_packages("the report", "matplotlib", "sklearn", "skops")
+    network = network or NetworkOptions()
+    _scored(dataset, beside, None, network)  # what is wrong with predictions is said before minutes have passed
     table = set_table(dataset, stage, own=own)
     second = other_table(other, stage, own) if other is not None else None
     folder.mkdir(parents=True, exist_ok=True)
-    network = network or NetworkOptions()
     matrix = feature_matrix(table, set_classes(dataset, network.classes))
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)
@@ -136,7 +140,7 @@ def write_report(
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
         advance()
     with stage("figures", 1) as advance, styled():
-        drawing = draw(dataset, matrix, ordered_states(matrix.labels), training, found, studies, explorer)
+        drawing = draw(dataset, matrix, ordered_states(matrix.labels), training, found, studies, beside.explorer)
         opening = answer_figure(detectors)
         advance()
     drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
@@ -151,14 +155,25 @@ def write_report(
         for side in ("alone", "referenced")
     }
     metrics["studies"] = studies_metrics(studies) if studies else None
+    yours = _scored(dataset, beside, folder if training else None, network)
+    metrics["yours"] = yours.numbers() if yours else None
     (folder / "metrics.json").write_text(words(json.dumps(metrics, indent=1, allow_nan=False)) + "\n", encoding="utf-8")
-    reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, explorer)
+    reported = Reported(
+        dataset, seed, matrix, training, studies, found, detectors, audit, drawing, beside.explorer, yours
+    )
     path = folder / "report.html"
     with stage("page", 1):
         drawn = {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()}
         pictures = _write_pictures(folder, {name: (words.figure(one), text) for name, (one, text) in drawn.items()})
         path.write_text(words(report_page(reported, pictures)), encoding="utf-8")
     return path
+
+
+def _scored(dataset: Dataset, beside: Beside, models: Path | None, options: NetworkOptions) -> Scores | None:
+    """Return the scores of the user's predictions beside those of the models in a folder; None without predictions."""
+    if beside.predictions is None:
+        return None
+    return score(dataset, beside.predictions, baselines=models, classes=options.classes)
 
 
 def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:

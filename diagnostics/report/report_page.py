@@ -33,6 +33,8 @@ from diagnostics.report.sentences import (
     scores_sentence,
     trust_sentence,
 )
+from diagnostics.report.your_scores import your_scores
+from diagnostics.scoring.score import Scores
 from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.detectors import Detectors
@@ -102,6 +104,7 @@ class Reported:
     audit: str
     drawing: Drawing
     explorer: str = ""
+    yours: Scores | None = None
 
 
 def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
@@ -151,6 +154,7 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Detectors": [detector_table(reported.detectors, reported.explorer)] if reported.detectors.alone else [],
         "Records": [*_explore(reported.explorer), tables.set_table(labels, ordered_states(labels), reported.explorer)],
         "Scores": [*_scores(training), grid(drawing.scores)],
+        "Your predictions": your_scores(reported.yours),
         "Records named wrongly": _named(reported),
         "Splits and training specimens": [*study_blocks(reported.studies), grid(drawing.studies)] if training else [],
         "Indicators": [*_indicators(reported), grid(drawing.indicators)],

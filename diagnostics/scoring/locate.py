@@ -28,7 +28,9 @@ def gear_teeth(dataset: Dataset) -> dict[str, str]:
     if is_planetary(columns):
         return {member: f"teeth_{member}" for member in MEMBERS}
     if names.gears:
-        return {own: names.column(f"teeth_{short.replace('.', '_')}") for short, own in names.gears}
+        columns_of = {own: f"teeth_{short.replace('.', '_')}" for short, own in names.gears}
+        # read in the user's words, or in those of the program
+        return {own: named if (named := names.column(one)) in columns else one for own, one in columns_of.items()}
     further = {f"{mesh}.{gear}": f"teeth_{mesh}_{gear}" for mesh in further_meshes(columns) for gear in GEARS}
     return {**{gear: f"teeth_{gear}" for gear in GEARS}, **further}
 

@@ -73,6 +73,11 @@ class Scores:
         """Return one row per score: task, measure, records, name, score, low, high, chance, difference with limits."""
         return pa.Table.from_pylist([self._entry(row) for row in self.rows])
 
+    def numbers(self) -> list[dict[str, object]]:
+        """Return the same for JSON, undefined as None."""
+        rows = (self._entry(row).items() for row in self.rows)
+        return [{name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row} for row in rows]
+
     def to_frame(self) -> Any:
         """Return the same as a pandas data frame.
 
@@ -202,7 +207,7 @@ def _by_classifier(table: pa.Table, truth: Truth, identity: str, where: Any, nam
 def _task_rows(
     task: Task, columns: dict[str, Answers], first: str, truth: Truth, weights: np.ndarray
 ) -> Iterator[ScoreRow]:
-    """Yield the rows of a task: by measure and part, first the predictions, then the others with their differences."""
+    """Yield the rows of a task that the first predictions answer, by measure and part, beside all others."""
     answers = {name: task.answers(found, truth) for name, found in columns.items()}
     for part, chosen in task.parts(truth).items():
         rows, drawn = truth.rows(chosen), weights[:, chosen]
@@ -213,6 +218,8 @@ def _task_rows(
                 if found is not None and not (measure.ranks and _names_alone(found))
             }
             samples = {name: found for name, found in samples.items() if np.isfinite(found[0])}
+            if first not in samples:  # a question that the predictions do not answer
+                continue
             for name, found in samples.items():
                 own = samples.get(first) if name != first else None
                 yield _row(task, measure, part, rows, name, found, own)

@@ -1,5 +1,7 @@
 """ChangeScore: how far a recording stands from healthy ones of the same machine, and how rare that is.
 
+Where loads or speeds differ, a recording is compared with what the others say of its own (`conditions`).
+
 Every recording of a bag (the references and the new one) is judged against all others of the bag in the same way, so
 healthy recordings are exchangeable and the rank of the new one's score has a known distribution whatever the
 features are: conformal prediction (Vovk et al. 2005). Among n references no smaller rate of false alarms than
@@ -9,11 +11,13 @@ as if these were normally distributed (Student's t): a second condition, which c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
 
+from diagnostics.statistics.conditions import Condition, deviation_among_conditions
 from siggen.errors import UsageError
 
 FEWEST = 3
@@ -22,6 +26,8 @@ PRIOR_RECORDINGS = 3.0
 """Weight, in recordings, of the median spread over all features in the spread of each."""
 SHARE = 0.1
 """Share of the features, those farthest off, that make the score."""
+PRIOR_SCORES, PRIOR_SCORE_SPREAD = 4.0, 0.4
+"""Weight and spread of what is known of log scores where conditions differ: three of them do not tell their spread."""
 LEAST_SPREAD = 1e-3
 """Of a logarithm: what no recording repeats to."""
 
@@ -41,7 +47,9 @@ class ChangeScore:
     references : (n,) float64
         Scores of the references, each against the others and the new one.
     deviation : (features,) float64
-        Of the new recording from the mean of the references, in spreads; NaN where undefined.
+        Of the new recording from what the references say of it, in spreads; NaN where undefined.
+    mean : (features,) float64
+        What they say: logarithms; NaN where undefined.
     changed : bool
     """
 
@@ -51,6 +59,7 @@ class ChangeScore:
     normal_p: float
     references: np.ndarray
     deviation: np.ndarray
+    mean: np.ndarray
     changed: bool
 
 
@@ -59,7 +68,9 @@ def attainable_rate(references: int, wanted: float) -> float:
     return max(wanted, 1.0 / (references + 1.0))
 
 
-def change_score(healthy: np.ndarray, new: np.ndarray, false_alarms: float = 0.05) -> ChangeScore:
+def change_score(
+    healthy: np.ndarray, new: np.ndarray, false_alarms: float = 0.05, conditions: Sequence[Condition] = ()
+) -> ChangeScore:
     """Return how far a recording stands from healthy ones.
 
     Parameters
@@ -83,16 +94,19 @@ def change_score(healthy: np.ndarray, new: np.ndarray, false_alarms: float = 0.0
         raise UsageError(
             "no indicator is defined in all recordings; use longer recordings with two whole turns or more"
         )
-    scores = np.array([_score(_deviation(bag[:, known], i)) for i in range(len(bag))])
+    told = [_deviation(bag[:, known], i, conditions) for i in range(len(bag))]
+    scores = np.array([_score(deviation) for _, deviation in told])
     references, score = scores[:-1], float(scores[-1])
     rank_p = (1.0 + np.count_nonzero(references >= score)) / len(bag)
-    normal_p, normal_limit = _normal(np.log(references), float(np.log(score)), false_alarms)
+    normal_p, normal_limit = _normal(
+        np.log(references), float(np.log(score)), false_alarms, PRIOR_SCORES if conditions else 0.0
+    )
     rate = attainable_rate(len(healthy), false_alarms)
     allowed_above = int(np.floor(rate * len(bag) + 1e-9)) - 1
     rank_limit = float(np.sort(references)[::-1][allowed_above])
     few = rate > false_alarms
-    deviation = np.full(bag.shape[1], np.nan)
-    deviation[known] = _deviation(bag[:, known], len(healthy))
+    deviation, mean = np.full((2, bag.shape[1]), np.nan)
+    mean[known], deviation[known] = told[-1]
     return ChangeScore(
         score,
         max(rank_limit, normal_limit) if few else rank_limit,
@@ -100,18 +114,24 @@ def change_score(healthy: np.ndarray, new: np.ndarray, false_alarms: float = 0.0
         normal_p,
         references,
         deviation,
+        mean,
         bool(rank_p <= rate and (not few or normal_p <= false_alarms)),
     )
 
 
-def _deviation(bag: np.ndarray, i: int) -> np.ndarray:
-    """Return how far row i stands from the mean of the others (features,), in spreads."""
+def _deviation(bag: np.ndarray, i: int, conditions: Sequence[Condition]) -> tuple[np.ndarray, np.ndarray]:
+    """Return what the others say of row i (features,), and how far it stands from that, in spreads."""
+    if conditions:
+        return deviation_among_conditions(
+            bag, i, sum((one.covariance() for one in conditions[1:]), conditions[0].covariance())
+        )
     others = np.delete(bag, i, axis=0)
     variance = others.var(axis=0, ddof=1)
     typical = max(float(np.median(variance)), LEAST_SPREAD**2)
     degrees = len(others) - 1.0
     shrunk = (PRIOR_RECORDINGS * typical + degrees * variance) / (PRIOR_RECORDINGS + degrees)
-    return np.asarray((bag[i] - others.mean(axis=0)) / np.sqrt(shrunk * (1.0 + 1.0 / len(others))))
+    mean = others.mean(axis=0)
+    return mean, np.asarray((bag[i] - mean) / np.sqrt(shrunk * (1.0 + 1.0 / len(others))))
 
 
 def _score(deviation: np.ndarray) -> float:
@@ -119,11 +139,12 @@ def _score(deviation: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.sort(np.abs(deviation))[-count:] ** 2)))
 
 
-def _normal(references: np.ndarray, new: float, rate: float) -> tuple[float, float]:
+def _normal(references: np.ndarray, new: float, rate: float, prior: float) -> tuple[float, float]:
     """Return the share of log scores above the new one, and the score that `rate` of them exceed."""
     from scipy.stats import t
 
-    spread = max(float(references.std(ddof=1)), LEAST_SPREAD) * sqrt(1.0 + 1.0 / references.size)
-    middle, degrees = float(references.mean()), references.size - 1
+    middle, degrees = float(references.mean()), prior + references.size - 1
+    squares = prior * PRIOR_SCORE_SPREAD**2 + float(((references - middle) ** 2).sum())
+    spread = max(sqrt(squares / degrees), LEAST_SPREAD) * sqrt(1.0 + 1.0 / references.size)
     limit = np.exp(middle + spread * t.isf(rate, degrees))
     return float(t.sf((new - middle) / spread, degrees)), float(limit)

@@ -18,7 +18,9 @@ from diagnostics.training.splits import SpecimenSplit
 MOST_TREES, DEFAULT_TREES = 100, 60
 
 
-def train_boosting(matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> FeatureClassifier:
+def train_boosting(
+    matrix: FeatureMatrix, split: SpecimenSplit, seed: int, target: np.ndarray | None = None
+) -> FeatureClassifier:
     """Fit on training specimens with as many trees as give the lowest log loss on validation specimens.
 
     Parameters
@@ -29,8 +31,10 @@ def train_boosting(matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> Fe
         Whose specimens are which.
     seed : int
         Seed of the histograms' sample.
+    target : (n,) int, optional
+        Labels to learn, default the true states.
     """
-    truth = state_index(matrix, split.classes)
+    truth = state_index(matrix, split.classes) if target is None else target
     known = defined_columns(matrix, split.train)
     train, validation = known.rows(split.train).values, known.rows(split.validation).values
     note, trees = "", DEFAULT_TREES

@@ -1,6 +1,6 @@
 """A hidden machine: its configuration, the recordings of its user, and features of records in tables.
 
-A machine has fixed numbers and one transfer path; its bearings, masses, bolts, relief, accuracy, housing and noise come
+A machine has fixed numbers and one transfer path; its bearings, masses, walls, relief, accuracy, housing and noise come
 from ranges that no preset has. Its user has three healthy recordings of one gearbox.
 """
 
@@ -55,7 +55,7 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
         }
 
     relief = rng.uniform(3.0, 15.0)
-    bolts = {"shear_stiffness_n_per_m": log(3e7, 3e8), "axial_stiffness_n_per_m": log(6e7, 5e8)}
+    wall_mm = log(6.0, 20.0)
     found: dict[str, Any] = {
         "extends": "quickstart",
         "name": f"hidden_{number}",
@@ -78,7 +78,7 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
         "variation": {"speed": {"random_rms": log(1e-4, 8e-4)}},
         "housing": {
             "damping_ratio": {"kind": "uniform", "low": 0.015, "high": 0.05},
-            "feet": {**bolts, "damping_ratio": float(rng.uniform(0.02, 0.06))},
+            "wall_mm": wall_mm,
         },
         "sensors": [
             {

@@ -1,10 +1,11 @@
-"""Table of docs/understand/iso_6336.md: mean mesh stiffness of 20 pairs by our models beside ISO 6336-1, method B."""
+"""Tables of docs/understand/iso_6336.md: mean mesh stiffness of pairs by our models beside ISO 6336-1, method B."""
 
-from math import radians
+from math import cos, radians
 
 import numpy as np
 
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.geometry.helical import transverse_gear
 from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
@@ -32,6 +33,7 @@ PAIRS = (
     (60, 100),
     (100, 100),
 )
+HELICAL_PAIRS, HELICES_DEG = ((18, 47), (25, 50), (40, 80)), (0, 10, 20, 30)
 MODELS = {
     "base_circle": StiffnessOptions("base_circle"),
     "rack_trochoid": StiffnessOptions("rack_trochoid"),
@@ -42,18 +44,24 @@ MODELS = {
 }
 
 
-def gear_pair(first: int, second: int) -> GearPair:
+def gear_pair(first: int, second: int, helix_deg: float = 0.0) -> GearPair:
     """Return a standard pair whose roots are three times their bores."""
+    helix = radians(helix_deg)
     gears = (
-        SpurGear(z, MODULE_M, radians(20), 0.0, 1.0, 0.25, (z / 2 - 1.25) * MODULE_M / RADIUS_RATIO)
+        SpurGear(z, MODULE_M, radians(20), 0.0, 1.0, 0.25, (z / 2 / cos(helix) - 1.25) * MODULE_M / RADIUS_RATIO)
         for z in (first, second)
     )
-    return GearPair(*gears, FACE_WIDTH_M, 206e9, 0.3)
+    return GearPair(*(transverse_gear(gear, helix) for gear in gears), FACE_WIDTH_M, 206e9, 0.3, helix_rad=helix)
 
 
 def iso_single(pair: GearPair) -> tuple[float, float]:
-    """Return c'_th and c' of ISO 6336-1, equations 82 to 94, without shift [N/(mm um)]; C_M 0.8, C_R 1, C_B 0.975."""
-    theory = 1.0 / (0.04723 + 0.15551 / pair.pinion.teeth + 0.25791 / pair.gear.teeth)
+    """Return c'_th cos β and c' of ISO 6336-1, equations 82 to 94, without shift [N/(mm um)].
+
+    C_M 0.8, C_R 1, C_B 0.975. Numbers of teeth are those of the normal section, z/cos³ β.
+    """
+    share = cos(pair.helix_rad)
+    first, second = (gear.teeth / share**3 for gear in (pair.pinion, pair.gear))
+    theory = share / (0.04723 + 0.15551 / first + 0.25791 / second)
     return theory, theory * 0.8 * (1 + 0.5 * (1.2 - 1.25))
 
 
@@ -108,6 +116,23 @@ def main() -> None:
         shape = np.array(ratios[name]) / np.array(singles[name])
         spans = [f"{min(v):.2f} to {max(v):.2f}" for v in (ratios[name], singles[name], untwisted[name], shape)]
         print(f"| {name} | " + " | ".join(spans) + " |")
+    helical()
+
+
+def helical() -> None:
+    """Print the table of helical pairs, by calibrated teeth."""
+    print(
+        "\n| z1/z2 | β | transverse ε | cγα of c'th cos β | calibrated | calibrated, weber_banaschek |\n"
+        + "|---" * 6
+        + "|"
+    )
+    for first, second in HELICAL_PAIRS:
+        for helix_deg in HELICES_DEG:
+            pair = gear_pair(first, second, helix_deg)
+            theory = iso_single(pair)[0] * (0.75 * pair.contact_ratio + 0.25)
+            means = [ours(pair, MODELS[name])[1] for name in ("calibrated", "calibrated, weber_banaschek")]
+            cells = " | ".join(f"{mean:.1f} ({mean / theory:.2f})" for mean in means)
+            print(f"| {first}/{second} | {helix_deg}° | {pair.contact_ratio:.2f} | {theory:.1f} | {cells} |")
 
 
 if __name__ == "__main__":

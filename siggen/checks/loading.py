@@ -58,7 +58,6 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.checks.density_files import with_density_files
     from siggen.checks.mode_files import mode_problems, with_mode_file
     from siggen.checks.physical_problems import physical_problems
-    from siggen.checks.quantity_names import quantity_problems
     from siggen.checks.state_problems import state_problems
     from siggen.specimen.measured_path import response_problems, with_measured_responses
 
@@ -76,6 +75,8 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     told = [*written, *parsed.problems, *unread, *unread_modes, *unusable]
     problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:
+        from siggen.checks.quantity_names import quantity_problems
+
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:
         files = () if file is None else extended_files(file)

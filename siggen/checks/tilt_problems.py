@@ -3,10 +3,12 @@
 Derived: springs k at the distances l from the gear's middle (`tilting_shaft`), a force F in that middle, towards the
 bearings, and no moment give, per axis, the tilt F S_1/(S_0 S_2 - S_1²) with S_j = Σ k l^j. The flanks' tilt is the sum
 over axes and gears, each times the squared share of the line of action along the axis; bounds of the numbers enter gear
-by gear. Half the face times the tilt is how far an end is behind: beyond approach and backlash together it meets the
-other flank, of which the contact across the face knows nothing. Refused is what tilts too far in half of the gearboxes
-of a set; where fewer do, plan says so. How far a motion swings about that is known only when it is simulated: it then
-ends as `outside_model`.
+by gear. The axial force of helical teeth, tan β_b F at the pitch point, is a moment M about the vertical axis of each
+gear: it tilts the horizontal one by M S_0/(S_0 S_2 - S_1²) more, of which the flanks see the difference of both gears.
+Half the face times the tilt is how far an end is behind: beyond approach and backlash together it meets the other
+flank, of which the contact across the face knows nothing. Refused is what tilts too far in half of the gearboxes of a
+set; where fewer do, plan says so. How far a motion swings about that is known only when it is simulated: it then ends
+as `outside_model`.
 """
 
 from __future__ import annotations
@@ -122,16 +124,17 @@ def static_tilts_rad(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: 
     shaft: Shaft = getattr(dynamics.shafts, which)
     rotor = under_load(dynamics, which, pair, torque_nm)
     along = {"vertical": np.cos(pair.working_pressure_angle_rad), "horizontal": np.sin(pair.working_pressure_angle_rad)}
+    levers = {"vertical": 0.0, "horizontal": _axial_lever_m(pair, which)}
     bearings = {"vertical": rotor.bearing_stiffness_y_n_per_m, "horizontal": rotor.bearing_stiffness_x_n_per_m}
     found = []
     for span, place, thick in product(*map(bounds, (shaft.bearing_span_mm, shaft.gear_position, shaft.diameter_mm))):
         beam = Beam(1e-3 * span, place, 1e-3 * thick, pair.youngs_modulus_pa, pair.poisson_ratio, 0.0)
         each = []
         for axis, share in along.items():
-            softness = [_tilt_per_n(beam, k) for k in bounds(bearings[axis])]
-            each.append((share**2 * min(softness), share**2 * max(softness)))
+            ends = [_tilt_per_n(beam, k, levers[axis] / share) for k in bounds(bearings[axis])]
+            each.append((share**2 * min(ends), share**2 * max(ends)))
         found.append([sum(ends) for ends in zip(*each, strict=True)])
-    force_n = torque_nm / pair.pinion.base_radius_m
+    force_n = (1.0 + np.tan(pair.base_helix_rad) ** 2) * torque_nm / pair.pinion.base_radius_m  # as slices feel it
     return force_n * min(low for low, _ in found), force_n * max(high for _, high in found)
 
 
@@ -152,13 +155,19 @@ def under_load(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float)
     return rotor.model_copy(update=numbers)
 
 
-def _tilt_per_n(beam: Beam, bearing_n_per_m: float) -> float:
-    """Return the tilt per force in the middle of the gear [rad/N] on both bearings together."""
+def _axial_lever_m(pair: GearPair, which: str) -> float:
+    """Return the moment about the vertical axis per force along the line of action, as it tilts the flanks [m]."""
+    radius = pair.member(which).base_radius_m / np.cos(pair.working_pressure_angle_rad)
+    return float(np.tan(pair.base_helix_rad) * radius * (1.0 if which == "gear" else -1.0))
+
+
+def _tilt_per_n(beam: Beam, bearing_n_per_m: float, lever_m: float) -> float:
+    """Return the tilt per force [rad/N] at the middle of the gear, with a moment at a lever, on both bearings."""
     levers = np.array(list(beam.levers_m.values()))
     give_way = [cantilever_compliance_m_per_n(beam, abs(lever)) for lever in levers]
     springs = 1.0 / (2.0 / bearing_n_per_m + np.array(give_way))
     zeroth, first, second = (float((springs * levers**power).sum()) for power in (0, 1, 2))
-    return first / (zeroth * second - first**2)
+    return (first + lever_m * zeroth) / (zeroth * second - first**2)
 
 
 def _problem(dynamics: Dynamics, pair: GearPair, tilts: FlankTilts) -> Problem:

@@ -61,7 +61,7 @@ def verify(
         for maker in found.made_by:
             same = "as this one" if maker == found.here else f"this is {found.here}"
             typer.echo(f"made by {maker}; {same}")
-        for line in problem_lines(found.mismatches):
+        for line in problem_lines(found):
             typer.echo(line, err=True)
         typer.echo("differs from its manifest" if found.mismatches else "as its manifest promises")
         for line in precision_lines(precision) if precision is not None else ():

@@ -106,12 +106,13 @@ def _places(sections: Mapping[str, Any]) -> Places | None:
     model, stages = sections["dynamics"].model, tuple(stage.name for stage in sections["stages"])
     if stages:  # other models and housings are refused
         return Places("casing" if model == "casing" else "8dof", stages)
+    helical = "gears" in sections and bounds(sections["gears"].helix_deg) != (0.0, 0.0)
     if model != "casing":
-        return Places(model)
+        return Places(model, helical=helical)
     housing = sections.get("housing")
     if isinstance(housing, PlateHousing):
-        return Places(PLATES)
-    return None if housing is None else Places(MODAL if isinstance(housing, ModalHousing) else model)
+        return Places(PLATES, helical=helical)
+    return None if housing is None else Places(MODAL if isinstance(housing, ModalHousing) else model, helical=helical)
 
 
 def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

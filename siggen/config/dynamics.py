@@ -40,7 +40,7 @@ class Unbalance(Section):
     )
 
 
-BEARINGS = "both bearings of the shaft, horizontal (x) and vertical (y)"
+BEARINGS = "both bearings of the shaft, horizontal (x) and vertical (y); along it (z), where helical teeth push"
 DAMPED = "the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
 MACHINE = "of the machine that drives, or is driven"
 
@@ -68,6 +68,7 @@ class Rotor(PlainRotor):
         description="of its gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
         "allows; needs manufacture",
     )
+    bearing_stiffness_z_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1e8, description=BEARINGS)
     bearing: BallGeometry | None = Field(
         default=None,
         description="null: the stiffnesses above, at any load (damage is in one of the defaults); given: each of two "

@@ -39,6 +39,3 @@ def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
 def _of_dynamics(dynamics: Any) -> Iterator[Problem]:
     if dynamics.mesh.squeeze_film != "off":
         yield Problem("dynamics.mesh.squeeze_film", "'on'", f"allowed: off with helical teeth; {SPUR}")
-    if dynamics.shafts is not None:
-        allowed = f"allowed: null with helical teeth, whose axial force would tilt the gears too; {SPUR}"
-        yield Problem("dynamics.shafts", "shafts that bend", allowed)

@@ -66,11 +66,11 @@ class ChunkResult:
 
     def batch(self) -> pa.RecordBatch:
         """Return the rows without copying them; there may be none."""
-        return _batch(self.rows)
+        return unpacked_batch(self.rows)
 
     def internals_batch(self) -> pa.RecordBatch | None:
         """Return the rows of internal quantities, or None in a set without them."""
-        return None if self.internals is None else _batch(self.internals)
+        return None if self.internals is None else unpacked_batch(self.internals)
 
 
 def chunks(shard: str, specimens: Sequence[range], group_rows: int) -> Iterator[Chunk]:
@@ -108,8 +108,10 @@ class ChunkSimulation:
         with collected("other") as times:
             done, records, failures = self._simulated(chunk, until_s)
             with stage("rows"):
-                rows = _stream(record_batch(self.config, records))
-                internals = _stream(internals_batch(self.config, self.quantities, records)) if self.quantities else None
+                rows = packed_batch(record_batch(self.config, records))
+                internals = (
+                    packed_batch(internals_batch(self.config, self.quantities, records)) if self.quantities else None
+                )
         return ChunkResult(done, rows, tuple(failures), internals, times.seconds, f"{platform.node()} {os.getpid()}")
 
     def _simulated(self, chunk: Chunk, until_s: float) -> tuple[Chunk, list[Record], list[RecordFailure]]:
@@ -168,12 +170,14 @@ class ChunkSimulation:
         return f"one of the records {ids[0]} to {ids[-1]} (none of them alone)"
 
 
-def _batch(rows: bytes) -> pa.RecordBatch:
+def unpacked_batch(rows: bytes) -> pa.RecordBatch:
+    """Return the rows of an Arrow stream of one batch, without copying them."""
     with pa.ipc.open_stream(pa.py_buffer(rows)) as stream:
         return stream.read_next_batch()
 
 
-def _stream(batch: pa.RecordBatch) -> bytes:
+def packed_batch(batch: pa.RecordBatch) -> bytes:
+    """Return an Arrow stream of one batch."""
     sink = pa.BufferOutputStream()
     with pa.ipc.new_stream(sink, batch.schema) as writer:
         writer.write_batch(batch)

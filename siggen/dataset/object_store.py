@@ -128,6 +128,14 @@ class ObjectStore:
         with self._writing(name):
             self._client.delete_object(**self._place(name))
 
+    def delete_below(self, folder: str) -> None:
+        """Delete all objects below a folder; one request per 1000 of them."""
+        names = self.names(folder)
+        for start in range(0, len(names), PAGE_OBJECTS):
+            keys = [{"Key": self._place(name)["Key"]} for name in names[start : start + PAGE_OBJECTS]]
+            with self._writing(folder):
+                self._client.delete_objects(Bucket=self.path.bucket, Delete={"Objects": keys, "Quiet": True})
+
     def delete_leftovers(self) -> list[str]:
         """Delete what a killed process of this machine left of this set among the temporary files.
 
@@ -156,6 +164,11 @@ class ObjectStore:
             self._lock = None
             lock.release()
 
+    def check_writing(self) -> None:
+        """Raise DatasetError if another writer took the lock over; this one was silent for too long."""
+        if self._lock is not None:
+            self._lock.check()
+
     @property
     def _client(self) -> Any:
         """The client of this process: connections must not be shared with a forked one."""
@@ -173,8 +186,7 @@ class ObjectStore:
 
     @contextmanager
     def _writing(self, name: str) -> Iterator[None]:
-        if self._lock is not None:
-            self._lock.check()
+        self.check_writing()
         with in_words(str(self.path / name), "written"):
             yield
 

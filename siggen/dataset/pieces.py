@@ -1,134 +1,118 @@
-"""What is made of a shard before the shard is: results of chunks, kept in small files so that little can be lost.
+"""What is made of a shard before the shard is: results of chunks, kept in small files by the workers that made them.
 
-A piece is `pieces/<shard>/<first record>`: sealed JSON, a NUL, then Arrow streams one behind the other. It says for
-which set, by which code and in which environment it was made, and carries the hash of its streams. A run takes over
-what fits in all of this and deletes the rest. Pieces end with the commit of their shard; a finished set has none.
+A piece is `pieces/<shard>/<first record>`, a file of `sealed_streams`. Whoever closes the shard takes over what is
+whole and of its own making, and deletes the pieces once the shard is committed.
 """
 
 from __future__ import annotations
 
-import hashlib
-import time
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from siggen.columns.record import RecordFailure
-from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.columns.internals import internals_schema
+from siggen.columns.record import RecordFailure, record_schema
 from siggen.dataset.chunk import Chunk, ChunkResult
-from siggen.dataset.seal import sealed, unsealed
+from siggen.dataset.sealed_streams import UNUSABLE, Maker, read_head, read_streams, sealed_streams
 from siggen.dataset.storage import Storage
-from siggen.errors import DatasetError, VerificationError
+from siggen.keys.column import Column
+
+if TYPE_CHECKING:
+    from siggen.config import Config
 
 FOLDER = "pieces"
-KEEP_S = 10.0
-"""How long results wait for others: one request per so many seconds, and no file at all for a shard that takes less."""
-
-KEEP_BYTES = 64 << 20
-END_OF_HEAD = b"\0"
 
 
 @dataclass(frozen=True, slots=True)
-class Maker:
-    """What makes the bytes of a row; pieces of another maker are of no use."""
-
-    identity: str
-    fingerprint: str
-    environment: Mapping[str, str]
-
-    def facts(self) -> dict[str, object]:
-        """Return them with the versions of the files, as a piece carries them."""
-        versions = {"schema_version": SCHEMA_VERSION, "simulation_version": SIMULATION_VERSION}
-        return {**versions, **asdict(self), "environment": dict(self.environment)}
-
-
-@dataclass(slots=True)
 class Pieces:
-    """The pieces of a set that is being made; used by the one process that writes the set.
-
-    Attributes
-    ----------
-    schemas
-        Of rows and of internal quantities, None without them.
-    found
-        Shard -> chunks that earlier runs left, with the pieces that hold them.
-    """
+    """The pieces of a set that is being made; `quantities` are the internal ones that it stores."""
 
     storage: Storage
     maker: Maker
-    schemas: tuple[pa.Schema, pa.Schema | None]
-    found: dict[str, dict[Chunk, str]] = field(default_factory=dict)
-    _written: dict[str, set[str]] = field(default_factory=dict)
-    _waiting: dict[str, list[ChunkResult]] = field(default_factory=dict)
-    _records: dict[str, int] = field(default_factory=dict)
-    _kept_s: float = field(default_factory=time.monotonic)
-    _last: tuple[str, dict[Chunk, ChunkResult]] = ("", {})
+    config: Config
+    quantities: tuple[Column, ...] = ()
 
-    def find(self, shards: Collection[str]) -> None:
-        """Look for what earlier runs left of these shards; what is of no use is deleted."""
-        for name in self.storage.sizes(FOLDER):
+    @property
+    def schemas(self) -> tuple[pa.Schema, pa.Schema | None]:
+        """Of rows and of internal quantities; worked out anew, since pyarrow's do not survive the way to a worker."""
+        inner = internals_schema(self.config, self.quantities) if self.quantities else None
+        return record_schema(self.config), inner
+
+    def put(self, results: Sequence[ChunkResult]) -> None:
+        """Keep results of one shard, which follow each other."""
+        self.storage.put(piece_name(results[0].chunk), _packed(self.maker, results))
+
+    def find(self, shards: Sequence[str]) -> dict[str, tuple[Chunk, ...]]:
+        """Return what earlier runs kept of shards, judged by the heads of pieces; what is of no use is deleted."""
+        found: dict[str, tuple[Chunk, ...]] = {}
+        wanted = set(shards)
+        for name in self.storage.names(FOLDER):
             shard = name.split("/")[1]
-            held = _usable(self.storage, name, self.maker, self.schemas) if shard in shards else None
-            if not held or any(chunk.shard != shard for chunk in held):
+            held = self._chunks(name) if shard in wanted else ()
+            if held and all(chunk.shard == shard for chunk in held) and piece_name(held[0]) == name:
+                found[shard] = (*found.get(shard, ()), *held)
+            else:
                 self.storage.delete(name)
-                continue
-            self.found.setdefault(shard, {}).update(dict.fromkeys(held, name))
-            self._written.setdefault(shard, set()).add(name)
-            self._count(held)
+        return found
 
-    def read(self, chunk: Chunk) -> ChunkResult:
-        """Return a chunk that was found."""
-        name = self.found[chunk.shard][chunk]
-        if self._last[0] != name:
-            held = _usable(self.storage, name, self.maker, self.schemas)
-            if held is None:
-                raise DatasetError(f"{self.storage.location}/{name} was changed just now; the same command goes on")
-            self._last = (name, held)
-        return self._last[1][chunk]
+    def of_shard(self, shard: str) -> ShardPieces:
+        """Return the pieces that are there of a shard."""
+        return ShardPieces(self, shard, frozenset(self.storage.names(f"{FOLDER}/{shard}")))
 
-    def add(self, result: ChunkResult) -> None:
-        """Take a result, which is on disk `KEEP_S` later at most if another comes."""
-        self._waiting.setdefault(result.chunk.shard, []).append(result)
-        self._count([result.chunk])
-        size = sum(len(one.rows) + len(one.internals or b"") for shard in self._waiting.values() for one in shard)
-        if time.monotonic() - self._kept_s >= KEEP_S or size >= KEEP_BYTES:
-            self.keep()
-
-    def keep(self) -> None:
-        """Write what waits."""
-        for shard, results in list(self._waiting.items()):
-            name = f"{FOLDER}/{shard}/{results[0].chunk.records.start:012d}"
-            self.storage.put(name, _packed(self.maker, results))
-            self._written.setdefault(shard, set()).add(name)
-            del self._waiting[shard]
-        self._kept_s = time.monotonic()
-
-    def records(self) -> int:
-        """Return the number of records of unfinished shards that are kept or wait for it."""
-        return sum(self._records.values())
-
-    def drop(self, shard: str) -> None:
-        """Delete the pieces of a shard that is committed."""
-        self._waiting.pop(shard, None)
-        self.found.pop(shard, None)
-        self._records.pop(shard, None)
-        self._last = ("", {})
-        for name in sorted(self._written.pop(shard, ())):
-            self.storage.delete(name)
+    def read(self, name: str) -> tuple[ChunkResult, ...]:
+        """Return what a piece holds; nothing if it is gone or not whole, or of another maker."""
+        try:
+            held = tuple(_parts(*read_streams(self.storage, name, self.maker)))
+            schemas = self.schemas
+            return held if all(_is_sound(one, schemas) for one in held) else ()
+        except UNUSABLE:
+            return ()
 
     def clear(self) -> None:
         """Delete all pieces, also of shards that are no part of this run."""
-        for name in self.storage.sizes(FOLDER):
-            self.storage.delete(name)
+        self.storage.delete_below(FOLDER)
 
-    def _count(self, held: Collection[Chunk]) -> None:
-        for chunk in held:
-            self._records[chunk.shard] = self._records.get(chunk.shard, 0) + len(chunk.records)
+    def _chunks(self, name: str) -> tuple[Chunk, ...]:
+        try:
+            facts = read_head(self.storage, name, self.maker)
+            return tuple(_chunk(facts, part) for part in facts["parts"])
+        except UNUSABLE:
+            return ()
 
 
-def _packed(maker: Maker, results: list[ChunkResult]) -> bytes:
+@dataclass(slots=True)
+class ShardPieces:
+    """The pieces of a shard, read one after the other, so that one at a time is in memory."""
+
+    pieces: Pieces
+    shard: str
+    names: frozenset[str]
+    _read: tuple[str, Mapping[int, ChunkResult]] = ("", {})
+
+    def result(self, chunk: Chunk) -> ChunkResult | None:
+        """Return the result that begins with a chunk and holds no more; None if no piece has it."""
+        found = self._read[1].get(chunk.records.start)
+        name = piece_name(chunk)
+        if found is None and name in self.names and name != self._read[0]:
+            self._read = (name, {one.chunk.records.start: one for one in self.pieces.read(name)})
+            found = self._read[1].get(chunk.records.start)
+        is_of_it = found is not None and found.chunk.shard == self.shard
+        return found if found is not None and is_of_it and found.chunk.records.stop <= chunk.records.stop else None
+
+    def drop(self) -> None:
+        """Delete the pieces."""
+        if self.names:
+            self.pieces.storage.delete_below(f"{FOLDER}/{self.shard}")
+
+
+def piece_name(first: Chunk) -> str:
+    """Return the name of the piece that begins with a chunk."""
+    return f"{FOLDER}/{first.shard}/{first.records.start:012d}"
+
+
+def _packed(maker: Maker, results: Sequence[ChunkResult]) -> bytes:
     streams = b"".join(one.rows + (one.internals or b"") for one in results)
     parts = [
         {
@@ -139,37 +123,24 @@ def _packed(maker: Maker, results: list[ChunkResult]) -> bytes:
         }
         for one in results
     ]
-    sha256 = hashlib.sha256(streams).hexdigest()
-    head = {**maker.facts(), "shard": results[0].chunk.shard, "sha256": sha256, "parts": parts}
-    return sealed(head) + END_OF_HEAD + streams
+    return sealed_streams(maker, {"shard": results[0].chunk.shard, "parts": parts}, streams)
 
 
-def _usable(
-    storage: Storage, name: str, maker: Maker, schemas: tuple[pa.Schema, pa.Schema | None]
-) -> dict[Chunk, ChunkResult] | None:
-    """Return what a piece holds; None if it is not whole, or of another maker."""
-    head, _, streams = storage.get(name).partition(END_OF_HEAD)
-    try:
-        facts = unsealed(name, head)
-        if any(facts.get(key) != value for key, value in maker.facts().items()):
-            return None
-        if hashlib.sha256(streams).hexdigest() != facts["sha256"]:
-            return None
-        held = {one.chunk: one for one in _parts(facts, streams)}
-        return held if all(_is_sound(one, schemas) for one in held.values()) else None
-    except (VerificationError, LookupError, TypeError, ValueError, pa.ArrowException):  # from whoever wrote it
-        return None
+def _chunk(facts: Mapping[str, Any], part: Mapping[str, Any]) -> Chunk:
+    first, stop = part["records"]
+    if not 0 <= first < stop:
+        raise ValueError("no records")
+    return Chunk(str(facts["shard"]), range(first, stop))
 
 
 def _parts(facts: Mapping[str, Any], streams: bytes) -> Iterator[ChunkResult]:
     start = 0
     for part in facts["parts"]:
-        chunk = Chunk(str(facts["shard"]), range(*part["records"]))
         middle = start + part["rows"]
         end = middle + (part["internals"] or 0)
         internals = None if part["internals"] is None else streams[middle:end]
         failures = tuple(RecordFailure(**failure) for failure in part["failures"])
-        yield ChunkResult(chunk, streams[start:middle], failures, internals)
+        yield ChunkResult(_chunk(facts, part), streams[start:middle], failures, internals)
         start = end
 
 

@@ -6,9 +6,11 @@ it 256 rows are read at a time, when one of these files is. The manifest promise
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -31,11 +33,14 @@ from siggen.dataset.object_name import (
 )
 from siggen.dataset.shard import FileFacts, write_table
 from siggen.dataset.sidecar import Sidecar, read_sidecar
-from siggen.dataset.storage import Storage, sha256
+from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError, counted
 
 INDEX_ROWS, CHECKSUM_ROWS = 1 << 16, 256
 """Shards of a row group: the index is read at once, checksums with those of a few neighbours."""
+
+READERS = 8
+"""Sidecars that are read at once: a store takes its time to answer."""
 
 LISTED = pa.schema(
     [
@@ -87,13 +92,15 @@ def write_index(storage: Storage, sidecars: Sequence[Sidecar], environments: Seq
     """
     listed = [_listing(*row) for row in zip(sidecars, environments, strict=True)]
     cuts = range(0, len(sidecars), CHECKSUM_ROWS)
-    promised = ([_promises(storage, one.shard) for one in sidecars[i : i + CHECKSUM_ROWS]] for i in cuts)
-    checksums = (pa.RecordBatch.from_pylist(rows, schema=PROMISED) for rows in promised)
     index = pa.RecordBatch.from_pylist(listed, schema=LISTED)
-    return [
-        write_table(storage, INDEX, LISTED, [index], INDEX_ROWS),
-        write_table(storage, CHECKSUMS, PROMISED, checksums, CHECKSUM_ROWS),
-    ]
+    with ThreadPoolExecutor(READERS) as readers:
+        groups = ([one.shard for one in sidecars[i : i + CHECKSUM_ROWS]] for i in cuts)
+        promised = (list(readers.map(partial(_promises, storage), group)) for group in groups)
+        checksums = (pa.RecordBatch.from_pylist(rows, schema=PROMISED) for rows in promised)
+        return [
+            write_table(storage, INDEX, LISTED, [index], INDEX_ROWS),
+            write_table(storage, CHECKSUMS, PROMISED, checksums, CHECKSUM_ROWS),
+        ]
 
 
 def _listing(sidecar: Sidecar, environment: int) -> dict[str, Any]:
@@ -109,10 +116,11 @@ def _listing(sidecar: Sidecar, environment: int) -> dict[str, Any]:
 def _promises(storage: Storage, shard: str) -> dict[str, Any]:
     # read again, since a run does not keep the checksums of all shards
     sidecar = read_sidecar(storage, shard)
+    content = storage.get(sidecar.name)
     return {
         "shard": shard,
-        "sidecar_bytes": storage.size(sidecar.name),
-        "sidecar_sha256": bytes.fromhex(sha256(storage, sidecar.name)),
+        "sidecar_bytes": len(content),
+        "sidecar_sha256": hashlib.sha256(content).digest(),
         **_promising("data", sidecar.data),
         **({} if sidecar.internals is None else _promising("internals", sidecar.internals)),
     }

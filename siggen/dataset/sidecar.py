@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
@@ -9,13 +10,14 @@ from siggen.columns.record import RecordFailure
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.checked_file import Checksums, checksums
 from siggen.dataset.gate import sidecar_facts
-from siggen.dataset.id_ranges import Range
+from siggen.dataset.id_ranges import IdRanges, Range
 from siggen.dataset.inventory import SidecarTable
 from siggen.dataset.object_name import sidecar_name
 from siggen.dataset.seal import sealed
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
+from siggen.planning.plan import ShardPlan
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +64,13 @@ class Sidecar:
         internals = None if self.internals is None else replace(self.internals, crc32_per_64_kib="")
         data = replace(self.data, crc32_per_64_kib="")
         return replace(self, data=data, internals=internals, specimens=specimens, records=records)
+
+
+def ranges(shard: ShardPlan) -> tuple[IdRanges, IdRanges]:
+    """Return the ranges of specimens and of records of a planned shard."""
+    if shard.counts:
+        return IdRanges(shard.specimens), IdRanges(array("q", shard.record_ids))
+    return IdRanges(shard.specimens), IdRanges(shard.specimens, shard.records_per_specimen)
 
 
 def put_sidecar(storage: Storage, sidecar: Sidecar) -> None:

@@ -8,7 +8,7 @@ import os
 import secrets
 import stat
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path, PurePath
 from typing import BinaryIO, Protocol
 
@@ -19,6 +19,7 @@ LEFTOVER_SUFFIX = ".siggen-part"
 """Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
 
 READ_BYTES = 1 << 20
+MAKE_ATTEMPTS = 5
 HOW_TO_GO_ON = (
     "`siggen verify` finds all damaged files of a set; delete them, and `siggen generate` with the set's config.yaml "
     "makes them again"
@@ -68,11 +69,20 @@ class Storage(Protocol):
     def delete(self, name: str) -> None:
         """Delete an object, if it is there."""
 
+    def delete_below(self, folder: str) -> None:
+        """Delete all objects below a folder."""
+
     def delete_leftovers(self) -> list[str]:
         """Delete files that a killed process left half written, and return their names."""
 
     def writing(self) -> AbstractContextManager[None]:
-        """Return a guard that keeps a second writer out."""
+        """Return a guard that keeps a second writer out.
+
+        Of the set, not of its files: workers of whoever holds it write them, each with a copy of the storage.
+        """
+
+    def check_writing(self) -> None:
+        """Raise DatasetError if another writer took the set over inside `writing()`."""
 
 
 def sha256(storage: Storage, name: str) -> str:
@@ -92,22 +102,35 @@ def file_sha256(file: BinaryIO) -> str:
 def copy_object(source: Storage, name: str, target: Storage, promised_sha256: str) -> None:
     """Copy an object into another storage under the same name, if it is the one that is promised.
 
+    Between folders of one file system both names lead to the same bytes afterwards, where it has hard links. Nothing
+    here writes into a file that is there: whoever makes one of them again puts another in its place.
+
     Raises
     ------
     DatasetError
         If it is missing, or its SHA-256 is another one; then nothing is stored.
     """
-    digest = hashlib.sha256()
     with source.open(name) as file, target.draft(name) as draft:
-        with draft.open("wb") as copy:
-            while piece := file.read(READ_BYTES):
-                digest.update(piece)
-                copy.write(piece)
-        if digest.hexdigest() != promised_sha256:
+        if isinstance(source, LocalFolder) and source.link(name, draft):
+            with draft.open("rb") as linked:
+                digest = file_sha256(linked)
+        else:
+            digest = _copied(file, draft)
+        if digest != promised_sha256:
             raise DatasetError(
                 f"{source.location}/{name} is not the file that is promised (SHA-256 differs), and was not copied; "
                 f"`siggen verify {source.location}` finds all damaged files"
             )
+
+
+def _copied(file: BinaryIO, path: Path) -> str:
+    """Copy an open file and return its SHA-256."""
+    digest = hashlib.sha256()
+    with path.open("wb") as copy:
+        while piece := file.read(READ_BYTES):
+            digest.update(piece)
+            copy.write(piece)
+    return digest.hexdigest()
 
 
 class LocalFolder:
@@ -121,6 +144,9 @@ class LocalFolder:
         """The folder as the user wrote it."""
         return str(self.path)
 
+    def __reduce__(self) -> tuple[type[LocalFolder], tuple[Path]]:
+        return LocalFolder, (self.path.absolute(),)  # whoever reads it may work in another folder
+
     def put(self, name: str, content: bytes) -> None:
         """Write the content to a hidden file, then rename it: a reader never sees half of it."""
         with self.draft(name) as path:
@@ -132,7 +158,7 @@ class LocalFolder:
         target = self._file(name)
         self._check_links(target.parent)
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            _make(target.parent)
             is_taken = target.is_dir() and not target.is_symlink()
         except (FileExistsError, NotADirectoryError):
             is_taken = True
@@ -175,6 +201,14 @@ class LocalFolder:
         except OSError as error:
             raise DatasetError(f"{path} cannot be read ({error.strerror})") from error
 
+    def link(self, name: str, path: Path) -> bool:
+        """Give a file a second name, a path outside; False where the file system cannot."""
+        try:
+            os.link(self._file(name), path)
+        except OSError:
+            return False
+        return True
+
     def size(self, name: str) -> int:
         """Return the file's size in bytes."""
         return self._file(name).stat().st_size
@@ -201,9 +235,17 @@ class LocalFolder:
         self._check_links(file.parent)
         file.unlink(missing_ok=True)
         for folder in file.parents:
-            if folder == self.path or not folder.is_dir() or any(folder.iterdir()):
+            if folder == self.path:
                 return
-            folder.rmdir()
+            try:
+                folder.rmdir()
+            except OSError:  # another process put something there
+                return
+
+    def delete_below(self, folder: str) -> None:
+        """Delete all files below a folder, and the folders that are empty then."""
+        for name in self.names(folder):
+            self.delete(name)
 
     def delete_leftovers(self) -> list[str]:
         """Delete half-written files; call it only while holding `writing()`."""
@@ -245,6 +287,9 @@ class LocalFolder:
             if lock is not None:
                 os.close(lock)
 
+    def check_writing(self) -> None:
+        """Do nothing: the lock of a folder ends with its process alone."""
+
     def _file(self, name: str) -> Path:
         check_below(name, self.location)
         return self.path / name
@@ -258,6 +303,15 @@ class LocalFolder:
                 f"{path} leads out of {self.path} by a link; a set has all its files in its own folder: "
                 "copy the set with what its links lead to (cp -rL), and read the copy"
             )
+
+
+def _make(folder: Path) -> None:
+    """Make a folder and those above it, which another process may delete, empty as they are, at the same moment."""
+    for _ in range(MAKE_ATTEMPTS - 1):
+        with suppress(FileNotFoundError):
+            folder.mkdir(parents=True, exist_ok=True)
+            return
+    folder.mkdir(parents=True, exist_ok=True)
 
 
 def _real(path: Path) -> Path:

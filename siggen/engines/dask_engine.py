@@ -58,16 +58,23 @@ class DaskEngine:
         EngineError
             If a task raised, or the workers that ran it died too often.
         """
-        from distributed import wait
+        from distributed import as_completed
 
         self._draining = False
         call = answer if self.address is not None else partial(_child_answer, os.getpid())
         with self._client() as client:
+            done = as_completed(loop=client.loop)
+
+            def submit(task: Task) -> Any:
+                future = client.submit(call, function, task, pure=False)
+                done.add(future)
+                return future
+
             yield from windowed(
                 tasks,
                 self.workers,
-                submit=lambda task: client.submit(call, function, task, pure=False),
-                finished=lambda opened: wait(opened, return_when="FIRST_COMPLETED").done,
+                submit=submit,
+                finished=lambda _: done.next_batch(),
                 value=_value,
                 drained=lambda: self._draining,
             )

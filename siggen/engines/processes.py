@@ -96,12 +96,14 @@ class _Pool:
         self.workers.clear()
 
     def _take(self) -> None:
-        """Take tasks from the iterable while the window has room."""
+        """Take tasks from the iterable while the window has room and there are some."""
         while not self.exhausted and not self.draining and self.taken < self._oldest() + WINDOW_PER_WORKER * self.limit:
             try:
                 task = next(self.tasks)
             except StopIteration:
                 self.exhausted = True
+                return
+            if task is None:
                 return
             self.unfinished[self.taken] = task
             self.waiting.append(self.taken)

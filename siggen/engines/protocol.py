@@ -45,6 +45,8 @@ class Engine(Protocol):
 
         Tasks are taken from the iterable as they are needed, and never further than a fixed window ahead of the
         oldest unfinished one: whoever puts results back in order holds a bounded number of them.
+        None instead of a task says that nothing can begin before another result was yielded: ask again then. An engine
+        that hands it out all the same loses a moment, and yields what the function gives for it.
         Closing the iterator stops the work.
 
         Raises

@@ -87,7 +87,7 @@ class RayEngine:
                 tasks,
                 self.workers,
                 submit=lambda task: run.remote(everywhere, task),
-                finished=lambda opened: ray.wait(opened, num_returns=1)[0],
+                finished=lambda opened: _finished(ray, list(opened)),
                 value=partial(_value, ray),
                 drained=lambda: self._draining,
             )
@@ -159,6 +159,12 @@ def _child_answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
     """Answer on a worker of this machine's cluster: its parent is Ray's own process, which ends with the driver."""
     end_with(os.getppid())
     return answer(function, task)
+
+
+def _finished(ray: Any, opened: list[Any]) -> list[Any]:
+    """Wait for one, and return all that are there then: each question costs time with every open task."""
+    first = ray.wait(opened, num_returns=1)[0]
+    return list(ray.wait(opened, num_returns=len(opened), timeout=0)[0] or first)
 
 
 def _value(ray: Any, reference: Any, task: object) -> Any:

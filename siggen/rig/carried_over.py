@@ -116,6 +116,7 @@ def _dynamics(scales: PairScales) -> dict[str, float]:
     }
     for i, (wheel, end) in enumerate((("pinion", "input"), ("gear", "output"))):
         damping = (scales.bearing[i] * scales.mass[i]) ** 0.5
+        found[f"{wheel}.bearing_stiffness_z_n_per_m"] = scales.bearing[i]
         for axis in "xy":
             found[f"{wheel}.bearing_stiffness_{axis}_n_per_m"] = scales.bearing[i]
             found[f"{wheel}.bearing_damping_{axis}_n_s_per_m"] = damping

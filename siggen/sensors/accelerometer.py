@@ -20,7 +20,7 @@ from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
-from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, PLATES, Places
+from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity
 from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
 
@@ -126,8 +126,11 @@ class Accelerometer(SourceKeys, Sensor):
         """Yield what does not go with the model: its place, or what its path leaves out or has in it."""
         if self.path is None or places.model == "torsional":
             yield from super().model_problems(places)
-            if "axial" in self.axes and places.model not in {PLATES, MODAL}:
-                allowed = "allowed: vertical, horizontal; axial needs housing.kind: plates or modal, or a path"
+            if "axial" in self.axes and self.place not in places.moved_along:
+                allowed = (
+                    "allowed: vertical, horizontal; axial needs housing.kind: plates or modal, a path, or helical "
+                    "teeth with dynamics.model: 8dof or 6dof"
+                )
                 yield Problem("axes", ", ".join(self.axes), allowed)
             yield from self._position_problems(places.model)
             return

@@ -29,7 +29,7 @@ class ForceWasher(Sensor):
         default="pinion_bearing",
         description="whose bearings, NAME_bearing: of the shaft of NAME.gear; not with dynamics.model: torsional",
     )
-    axes: Annotated[tuple[Literal["vertical", "horizontal"], ...], Field(min_length=1)] = Field(
+    axes: Annotated[tuple[Literal["vertical", "horizontal", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="what it measures, one channel each"
     )
     floor_n: Annotated[Number, Within(least=0)] = Field(
@@ -40,6 +40,9 @@ class ForceWasher(Sensor):
     def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield bearings that the model has not."""
         yield from places.problems(self.place, places.bearings)
+        if "axial" in self.axes and places.bearings and not places.helical:
+            allowed = "allowed: vertical, horizontal; spur teeth press on no bearing along the shaft (gears.helix_deg)"
+            yield Problem("axes", ", ".join(self.axes), allowed)
 
     @property
     def limit(self) -> float:

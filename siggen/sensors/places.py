@@ -64,10 +64,12 @@ class Places:
     ----------
     model : `dynamics.model`, with its housing where that gives way
     stages : names of the further stages, in the order of power
+    helical : whether teeth push along the shafts
     """
 
     model: str
     stages: tuple[str, ...] = ()
+    helical: bool = False
 
     @property
     def gears(self) -> tuple[str, ...]:
@@ -82,6 +84,17 @@ class Places:
             if self.model in {"torsional", PLANETARY}
             else (*BEARINGS, *(f"{stage}_bearing" for stage in self.stages))
         )
+
+    @property
+    def pressed_along(self) -> tuple[str, ...]:
+        """Bearings that hold a shaft along its axis against a force."""
+        return self.bearings if self.helical else ()
+
+    @property
+    def moved_along(self) -> tuple[str, ...]:
+        """Places that move along the shafts: on a housing that gives way, and shafts on the ground."""
+        on_ground = self.pressed_along if self.model in {"6dof", "8dof"} else ()
+        return self.motions if self.model in {PLATES, MODAL} else on_ground
 
     @property
     def motions(self) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from siggen.dataset.environment import fingerprint, version_text
 from siggen.dataset.id_ranges import in_ranges
 from siggen.dataset.reading import as_internals, as_record, row_of
 from siggen.dataset.shard import FileFacts
-from siggen.dataset.sidecar import Sidecar, committed, promised_shard, read_sidecar
+from siggen.dataset.sidecar import Sidecar, committed, promised_shard, ranges, read_sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import running
@@ -25,7 +25,6 @@ from siggen.errors import counted
 from siggen.keys.column import Column
 from siggen.planning.plan import ShardPlan, record_ids_of
 from siggen.sets.record_comparison import result_difference
-from siggen.sets.shard_making import ranges
 
 if TYPE_CHECKING:
     from siggen.config import Config

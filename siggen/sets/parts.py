@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from siggen.dataset.environment import fingerprint, version_text
+from siggen.dataset.excerpt import excerpt_name
 from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.manifest import CONFIG
-from siggen.dataset.sidecar import Sidecar
+from siggen.dataset.sidecar import Sidecar, ranges
 from siggen.dataset.storage import Storage, copy_object
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
@@ -27,10 +30,12 @@ from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
-from siggen.sets.shard_making import ranges
 
 if TYPE_CHECKING:
     from siggen.config import Config
+
+COPIES = 8
+"""Shards that `merge` copies at once: hashing lets other threads work, and disks and stores take their time."""
 
 
 class Part(NamedTuple):
@@ -179,14 +184,27 @@ def _common_config(sources: Sequence[Storage]) -> Config:
 
 
 def _copy_missing(run: SetRun, sources: Sequence[Storage], target: Storage) -> None:
-    """Copy the shards that the target has not, hashed on the way, the sidecar last; from the first whole copy."""
-    for shard in (shard for shard in run.planned if shard.key not in run.sidecars):
-        for source in sources:
-            run.interruption.check()
-            sidecar = _promised(run, source, shard)
-            if sidecar is not None and _is_copied(source, sidecar, target):
-                run.accept(sidecar.without_bulk(*ranges(shard)))
-                break
+    """Copy the shards that the target has not, some at a time."""
+    missing = [shard for shard in run.planned if shard.key not in run.sidecars]
+    with ThreadPoolExecutor(COPIES) as copies:
+        try:
+            for sidecar in copies.map(partial(_copied, run, sources, target), missing):
+                run.interruption.check()
+                if sidecar is not None:
+                    run.accept(sidecar)
+        except BaseException:
+            copies.shutdown(cancel_futures=True)
+            raise
+
+
+def _copied(run: SetRun, sources: Sequence[Storage], target: Storage, shard: ShardPlan) -> Sidecar | None:
+    """Copy a shard, hashed on the way, the sidecar last; from the first part where it is whole, or from none."""
+    for source in sources:
+        sidecar = _promised(run, source, shard)
+        if sidecar is not None and _is_copied(source, sidecar, target):
+            _copy_excerpt(source, shard.key, target)
+            return sidecar.without_bulk(*ranges(shard))
+    return None
 
 
 def _promised(run: SetRun, storage: Storage, shard: ShardPlan) -> Sidecar | None:
@@ -204,6 +222,13 @@ def _is_copied(source: Storage, sidecar: Sidecar, target: Storage) -> bool:
         return False
     target.put(sidecar.name, content)
     return True
+
+
+def _copy_excerpt(source: Storage, shard: str, target: Storage) -> None:
+    """Copy what the tables take from a shard, if the part has it; whoever reads it checks whether it is of use."""
+    name = excerpt_name(shard)
+    if source.exists(name):
+        target.put(name, source.get(name))
 
 
 def _check_complete(run: SetRun) -> None:

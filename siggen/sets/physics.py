@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from siggen.dataset.chunk import Simulate
-from siggen.dataset.label_tables import DamageRows
-from siggen.dataset.life_tables import LifeRows
+from siggen.dataset.excerpt import DamageRows, LifeRows
 from siggen.keys.column import Column
 
 if TYPE_CHECKING:

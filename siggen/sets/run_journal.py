@@ -103,7 +103,7 @@ class RunJournal:
         What a run does once, as compiling or looking for earlier shards, is no part of its pace.
         """
         working = self.driver.so_far()
-        rate = made / max(working.get("waiting", 0.0) + working.get("writing", 0.0), 1e-9)
+        rate = made / max(working.get("waiting", 0.0), 1e-9)
         facts = {**_content(sidecar), "bytes": sum(file.bytes for file in sidecar.files), "seconds": round(seconds, 3)}
         facts |= {"records_done": done, "records_total": total, "records_per_s": round(rate, 3)}
         self._tell("shard_done", {**facts, "left_s": round((total - done) / rate, 1) if rate else None})

@@ -16,7 +16,6 @@ DRIVER = {
     "taking over": "shards of earlier runs, hashed",
     "compiling": "compiled code, the first time after an install",
     "waiting": "for records of the workers; without workers, making them",
-    "writing": "shards, with their hashes",
     "engine": "starting and ending workers",
     "closing": "tables, card, manifest",
 }
@@ -27,6 +26,7 @@ WORKERS = {
     "loop": "time integration",
     "sensing": "paths, sensors, noise, background",
     "rows": "rows of the files",
+    "files": "shards, with their hashes, and what tables take from them",
     "other": "labels, start of a chunk",
 }
 

@@ -8,19 +8,19 @@ from dataclasses import asdict, dataclass, field
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from siggen.columns.internals import internals_schema
 from siggen.columns.record import RecordFailure, channels, listed_columns, record_schema
 from siggen.dataset.card import card
 from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.environment import environment, fingerprint
+from siggen.dataset.excerpt import Excerpt, Excerpts
 from siggen.dataset.extensions import EXTENSIONS
 from siggen.dataset.folder import config_bytes
-from siggen.dataset.label_tables import write_damage, write_metadata
-from siggen.dataset.life_tables import write_life
+from siggen.dataset.label_tables import write_tables
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
-from siggen.dataset.object_name import sidecar_name
-from siggen.dataset.pieces import Maker, Pieces
+from siggen.dataset.object_name import SIDECAR_FOLDER, sidecar_name
+from siggen.dataset.pieces import Pieces
 from siggen.dataset.seal import sealed
+from siggen.dataset.sealed_streams import Maker
 from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
@@ -33,7 +33,7 @@ from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import LossLimit
 from siggen.sets.run_facts import run_facts
 from siggen.sets.run_journal import Events, RunJournal
-from siggen.sets.shard_making import ShardMaking, ranges
+from siggen.sets.shard_making import ShardMaking
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -151,6 +151,7 @@ class SetRun:
     environment: dict[str, str] = field(default_factory=environment)
     sidecars: dict[str, Sidecar] = field(default_factory=dict)
     pieces: Pieces = field(init=False)
+    excerpts: Excerpts = field(init=False)
     making: ShardMaking = field(init=False)
     done: int = 0
     made: int = 0
@@ -161,10 +162,11 @@ class SetRun:
 
     def __post_init__(self) -> None:
         maker = Maker(self.config.identity, fingerprint(self.environment), self.environment)
-        inner = internals_schema(self.config, self.quantities) if self.quantities else None
-        self.pieces = Pieces(self.storage, maker, (record_schema(self.config), inner))
+        self.pieces = Pieces(self.storage, maker, self.config, self.quantities)
+        makers = (self.physics.damage_rows, self.physics.life_rows)
+        self.excerpts = Excerpts(self.config, self.storage, maker, *makers)
         shared = (self.config, self.storage, self.engine, self.physics, self.quantities, self.interruption)
-        self.making = ShardMaking(*shared, self.journal, self.environment, self.pieces, self._written)
+        self.making = ShardMaking(*shared, self.journal, self.pieces, self.excerpts, self._advance)
 
     def finish(self) -> Generation:
         """Make what is missing, from the first shard to the manifest.
@@ -201,11 +203,12 @@ class SetRun:
         """Make those of the wanted shards that no earlier run committed; return how many one did."""
         self.total = sum(shard.record_count for shard in wanted)
         self.journal.expect(self.total)
-        self._advance(0)
+        self.progress(self.done, self.total)
         with self.journal.driver.during("taking over"):
             self.take_over(wanted)
         taken_over = len(self.sidecars)
-        self.making.make([shard for shard in wanted if shard.key not in self.sidecars], self._committed)
+        missing = [shard for shard in wanted if shard.key not in self.sidecars]
+        self.making.make(missing, tuple(self.sidecars), self._committed)
         return taken_over
 
     def conclude(self, taken_over: int) -> Generation:
@@ -234,17 +237,13 @@ class SetRun:
     def accept(self, sidecar: Sidecar) -> None:
         """Take a shard over."""
         self.sidecars[sidecar.shard] = sidecar
-        self._advance(sum(last - first + 1 for first, last in sidecar.records))
+        self._advance(sum(last - first + 1 for first, last in sidecar.records), 0)
         self.journal.taken_over(sidecar, self.done, self.total)
 
     def _committed(self, shard: ShardPlan, sidecar: Sidecar, seconds: float) -> None:
-        self.sidecars[shard.key] = sidecar.without_bulk(*ranges(shard))
+        self.sidecars[shard.key] = sidecar
         self.shards_made += 1
         self.journal.shard_done(sidecar, seconds, self.made, self.done, self.total)
-
-    def _written(self, records: int, is_made: bool) -> None:
-        self.made += records if is_made else 0
-        self._advance(records)
 
     def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
         """Write configuration, tables, card and run.json; the manifest comes last and makes the set a finished one."""
@@ -253,9 +252,7 @@ class SetRun:
         for split in SPLITS:
             of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
             if of_split:
-                tables.append(write_metadata(self.storage, self.config, split, of_split))
-                tables.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows))
-                tables += write_life(self.storage, self.config, split, of_split, self.physics.life_rows)
+                tables += write_tables(self.storage, self.config, split, self._excerpts(of_split))
             self.interruption.check()
         self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
         written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
@@ -263,9 +260,15 @@ class SetRun:
         counts = {"made": self.made, "taken_over": taken_over}
         facts = run_facts(self.config, self.engine, sidecars, self.journal, **counts, environment=self.environment)
         self.pieces.clear()
+        self.excerpts.clear()
         self.storage.put(RUN, sealed(facts))
         self.storage.put(MANIFEST, sealed(manifest))
         return manifest
+
+    def _excerpts(self, sidecars: Sequence[Sidecar]) -> Iterator[Excerpt]:
+        for excerpt in self.excerpts.in_order([sidecar.shard for sidecar in sidecars]):
+            self.interruption.check()
+            yield excerpt
 
     @contextmanager
     def _told(self) -> Iterator[None]:
@@ -273,42 +276,45 @@ class SetRun:
         try:
             yield
         except KeyboardInterrupt:
+            self._tidy()
             message = self._how_to_continue(self._lost())
             self.journal.end("interrupted", message, self.made, len(self.sidecars) - self.shards_made)
             raise InterruptionError(message) from None
         except Exception as error:
-            with suppress(SiggenError, OSError):  # what went wrong first is what has to be said
-                self.pieces.keep()
+            self._tidy()
             self.journal.end("failed", str(error), self.made, len(self.sidecars) - self.shards_made)
             raise
         self.journal.end("done", "", self.made, len(self.sidecars) - self.shards_made)
 
+    def _tidy(self) -> None:
+        """Delete what workers had half written when the engine ended them."""
+        with suppress(SiggenError, OSError):  # what went wrong first is what has to be said
+            self.storage.delete_leftovers()
+
     def _lost(self) -> str:
-        """Keep what can be kept, and say how much work is lost."""
+        """Say how much work is lost."""
         under_way = self.making.under_way
         lost_s = [] if under_way is None else under_way.lost_s()
-        try:
-            self.pieces.keep()
-        except (SiggenError, OSError) as error:
-            return f"what was made since the last piece is lost ({error})"
         if not lost_s:
             return "nothing is lost"
         return f"lost is what was under way, {sum(lost_s):.0f} s of work (of one worker {lost_s[-1]:.0f} s at most)"
 
     def _how_to_continue(self, lost: str) -> str:
-        # a signal may come between the commit of the first shard that is missing here and its note
-        following = next((shard.key for shard in self.planned if shard.key not in self.sidecars), "")
-        finished = len(self.sidecars) + self.storage.exists(sidecar_name(following))
-        kept = self.pieces.records()
+        # workers may have committed shards of which this process has not heard
+        there = set(self.storage.names(SIDECAR_FOLDER))
+        finished = {shard.key for shard in self.planned if sidecar_name(shard.key) in there}
+        kept = self.making.records_kept(finished)
         others = f", and {counted(kept, 'record')} of others" if kept else ""
         return (
-            f"stopped: {finished} of {len(self.planned)} shards of {self.storage.location} are finished and stay"
+            f"stopped: {len(finished)} of {len(self.planned)} shards of {self.storage.location} are finished and stay"
             f"{others}; {lost}; the same command continues from there"
         )
 
-    def _advance(self, records: int) -> None:
-        self.done += records
-        self.progress(self.done, self.total)
+    def _advance(self, done: int, made: int) -> None:
+        self.made += made
+        if done:
+            self.done += done
+            self.progress(self.done, self.total)
 
 
 def unchanged(storage: Storage, events: Events | None = None) -> Generation:

@@ -1,43 +1,50 @@
-"""From missing shards to committed ones: chunks to workers, their results in order into files, pieces meanwhile."""
+"""From missing shards to committed ones: stretches of records to workers, then the closing of each shard.
+
+The process that drives a run sees no rows: workers keep what they make in pieces, and one of them puts the pieces of a
+shard together as soon as all are there.
+"""
 
 from __future__ import annotations
 
-from array import array
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from siggen.columns.internals import internals_group_rows, internals_schema
-from siggen.columns.record import RecordFailure, record_schema
-from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
-from siggen.dataset.id_ranges import IdRanges
-from siggen.dataset.object_name import data_name, internals_name
+from siggen.dataset.chunk import Chunk, ChunkSimulation
+from siggen.dataset.excerpt import Excerpts
+from siggen.dataset.object_name import SIDECAR_FOLDER, sidecar_name
 from siggen.dataset.pieces import Pieces
-from siggen.dataset.shard import TableFile, table_draft
-from siggen.dataset.sidecar import Sidecar, put_sidecar
+from siggen.dataset.sidecar import Sidecar, ranges
 from siggen.dataset.storage import Storage
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import DrainingEngine, Engine, Unfinished
 from siggen.engines.registry import running
+from siggen.errors import EngineError
 from siggen.keys.column import Column
-from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group
+from siggen.planning.plan import ShardPlan
 from siggen.record.compilation import run_part
 from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
 from siggen.sets.run_journal import RunJournal
-from siggen.sets.under_way import STOP_AT_ONCE_S, Answer, PartSimulation, UnderWay
+from siggen.sets.shard_work import Answer, Closing, Excerpting, ShardWork, Stretch, Task, planned_rows, shard_chunks
+from siggen.sets.under_way import STOP_AT_ONCE_S, UnderWay
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
+STRETCHES_PER_WORKER = 4
+"""Of what is left, a worker takes the share that leaves it so many: long stretches first, and short ones at the end."""
 
-class Segment(NamedTuple):
-    """Records of a shard that a piece holds, or that have to be made."""
 
-    chunk: Chunk
-    is_kept: bool
+@dataclass(slots=True)
+class Unclosed:
+    """A shard that is being made: records that are neither simulated nor kept, and those that are; when it began."""
+
+    shard: ShardPlan
+    left: int
+    kept: int
+    begun_s: float
 
 
 @dataclass(slots=True)
@@ -47,7 +54,7 @@ class ShardMaking:
     Attributes
     ----------
     advance : callable
-        Called with records that were written, and whether this run made them.
+        Called with how many records more are kept or written, and how many this run made.
     under_way
         What the workers have, from the first task on.
     """
@@ -59,40 +66,71 @@ class ShardMaking:
     quantities: tuple[Column, ...]
     interruption: Interruption
     journal: RunJournal
-    environment: dict[str, str]
     pieces: Pieces
-    advance: Callable[[int, bool], None]
+    excerpts: Excerpts
+    advance: Callable[[int, int], None]
     under_way: UnderWay | None = field(default=None, init=False)
+    _unclosed: dict[str, Unclosed] = field(default_factory=dict, init=False)
+    _ready: deque[ShardPlan] = field(default_factory=deque, init=False)
+    _open: int = field(default=0, init=False)
 
-    def make(self, missing: Sequence[ShardPlan], committed: Callable[[ShardPlan, Sidecar, float], None]) -> None:
-        """Simulate and write shards one after the other, from one stream of chunks.
+    def make(
+        self,
+        missing: Sequence[ShardPlan],
+        there: Iterable[str],
+        committed: Callable[[ShardPlan, Sidecar, float], None],
+    ) -> None:
+        """Simulate and write shards, and the excerpts of all.
 
         Parameters
         ----------
+        there : iterable of str
+            Shards that are committed; those without an excerpt get one.
         committed : callable
             Called with every shard that is there, its sidecar and the seconds that it took.
         """
         with self.journal.driver.during("taking over"):
-            self.pieces.find({shard.key for shard in missing})
+            self._delete_sidecars(missing)
+            found = self.pieces.find([shard.key for shard in missing])
+            bare = self.excerpts.missing(there)
+        self.advance(sum(len(chunk.records) for held in found.values() for chunk in held), 0)
         if missing and isinstance(self.engine, ProcessEngine):
             with self.journal.driver.during("compiling"):
                 self._compile(self.engine)
+        self._open = len(missing) + len(bare)
         self.under_way = UnderWay(self.engine.workers)
-        tasks = self.under_way.taken(s.chunk for shard in missing for s in self._segments(shard) if not s.is_kept)
+        work = self._work()
+        tasks = self.under_way.taken(self._tasks(bare, self._stretches(missing, found, work)))
         with (
             self.journal.driver.during("engine"),
-            running(self.engine, self._function(), tasks) as results,
+            running(self.engine, work, tasks) as results,
             self.interruption.drained_by(self._drain),
         ):
-            ordered = self.journal.waiting(in_order(self._heard(results)))
-            for shard in missing:
-                with self.journal.driver.during("writing"):
-                    self._write(shard, ordered, committed)
+            for _, answer in self.journal.waiting(results):
+                self._hear(answer, committed)
+                if not self._open:
+                    break
         self.under_way = None
+        if self.interruption.draining:
+            raise KeyboardInterrupt
+        if self._open:
+            raise EngineError(f"the engine ended before its tasks did: {self._open} shards are not closed")
 
-    def _function(self) -> Callable[[Chunk], Answer]:
+    def records_kept(self, committed: Container[str]) -> int:
+        """Return the number of records in pieces, without those of shards that are committed, by their names."""
+        return sum(one.kept for shard, one in self._unclosed.items() if shard not in committed)
+
+    def _delete_sidecars(self, missing: Sequence[ShardPlan]) -> None:
+        """Take the sidecars of shards back that cannot be used: from now on one is there where this run made it."""
+        there = set(self.storage.names(SIDECAR_FOLDER))
+        for name in (sidecar_name(shard.key) for shard in missing):
+            if name in there:
+                self.storage.delete(name)
+
+    def _work(self) -> ShardWork:
         simulation = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
-        return PartSimulation(simulation) if isinstance(self.engine, DrainingEngine) else simulation
+        is_parted = isinstance(self.engine, DrainingEngine)
+        return ShardWork(simulation, self.pieces, self.excerpts, planned_rows(simulation), is_parted)
 
     def _drain(self) -> bool:
         """Let the workers finish what they are at, where a minute of work would be lost otherwise."""
@@ -107,17 +145,6 @@ class ShardMaking:
         )
         return True
 
-    def _heard(self, results: Iterator[tuple[int, Answer]]) -> Iterator[tuple[int, Answer]]:
-        """Yield results which can no longer be lost; those that come at the end of a run are kept alone."""
-        assert self.under_way is not None
-        for index, answer in results:
-            self.pieces.add(self.under_way.hear(answer))
-            if not self.interruption.draining:
-                yield index, answer
-        if self.interruption.draining:
-            self.under_way = None
-            raise KeyboardInterrupt
-
     def _compile(self, engine: ProcessEngine) -> None:
         """Compile once for all workers, which would compile the same side by side."""
         parts = self.physics.to_compile(self.config)
@@ -126,115 +153,93 @@ class ShardMaking:
                 for _ in compiled:
                     self.interruption.check()
 
-    def _segments(self, shard: ShardPlan) -> Iterator[Segment]:
-        """Cut a shard at what pieces hold; once more rather than kept, since all of a set would fill memory."""
-        config = self.config
-        specimens = [record_ids_of(config, specimen) for specimen in shard.specimens]
-        rows = internals_group_rows(config, self.quantities) if self.quantities else rows_per_group(config)
-        kept = {chunk.records.start: chunk for chunk in self.pieces.found.get(shard.key, ())}
-        for chunk in chunks(shard.key, specimens, min(rows, rows_per_group(config))):
-            yield from _cut(chunk, kept)
+    def _tasks(self, bare: Sequence[str], stretches: Iterator[Stretch]) -> Iterator[Task | None]:
+        """Yield what is to be done, shards that can be closed first; None where that waits for workers."""
+        yield from (Excerpting(shard) for shard in bare)
+        while self._open:
+            if self._ready:
+                yield Closing(self._ready.popleft())
+            elif (stretch := next(stretches, None)) is not None or not self._ready:
+                yield stretch
 
-    def _write(
+    def _stretches(
+        self, missing: Sequence[ShardPlan], found: Mapping[str, Sequence[Chunk]], work: ShardWork
+    ) -> Iterator[Stretch]:
+        """Cut shards into stretches of what no piece holds."""
+        kept = {chunk.records.start: chunk for held in found.values() for chunk in held}
+        left = sum(shard.record_count for shard in missing) - sum(len(chunk.records) for chunk in kept.values())
+        for shard in missing:
+            gaps = list(_gaps(shard_chunks(work.simulation, shard, work.group_rows), kept))
+            pending = sum(len(chunk.records) for gap in gaps for chunk in gap)
+            self._unclosed[shard.key] = Unclosed(shard, pending, shard.record_count - pending, self.journal.seconds)
+            if not gaps:
+                self._ready.append(shard)
+            for gap in gaps:
+                while gap:
+                    chosen = _taken(gap, self._share(left, work))
+                    size = sum(len(chunk.records) for chunk in chosen)
+                    left -= size
+                    yield Stretch(shard, chosen, size == shard.record_count)
+
+    def _share(self, left: int, work: ShardWork) -> int:
+        """Return how many records a stretch may have; a chunk, if it has more, and where parts are not handed in."""
+        if not work.is_parted:
+            return 1
+        return left if self.engine.workers == 1 else left // (STRETCHES_PER_WORKER * self.engine.workers)
+
+    def _hear(
         self,
-        shard: ShardPlan,
-        made: Iterator[ChunkResult],
+        heard: Answer | Unfinished[Task, Answer] | None,
         committed: Callable[[ShardPlan, Sidecar, float], None],
     ) -> None:
-        """Write the rows of a shard as they come, then commit it with its sidecar."""
-        begun_s = self.journal.seconds
-        failures: list[RecordFailure] = []
-        rows_per_state = dict.fromkeys(self.config.state_names, 0)
-        with self._data(shard) as data, self._internals(shard) as internals:
-            for result in self._results(shard, made):
-                self.interruption.check()
-                batch = result.batch()
-                failures.extend(result.failures)
-                for state in batch.column("state").to_pylist():
-                    rows_per_state[state] += 1
-                data.add(batch)
-                if internals is not None and (inner := result.internals_batch()) is not None:
-                    internals.add(inner)
-            facts = data.finish()
-            internal_facts = None if internals is None else internals.finish()
-        specimens, records = ranges(shard)
-        sidecar = Sidecar(
-            shard=shard.key,
-            split=shard.split,
-            identity=self.config.identity,
-            data=facts,
-            internals=internal_facts,
-            specimens=specimens,
-            records=records,
-            rows_per_state=rows_per_state,
-            failures=tuple(failures),
-            environment=self.environment,
-        )
-        put_sidecar(self.storage, sidecar)
-        committed(shard, sidecar, self.journal.seconds - begun_s)
-        self.pieces.drop(shard.key)
-
-    def _results(self, shard: ShardPlan, made: Iterator[ChunkResult]) -> Iterator[ChunkResult]:
-        """Yield the results of a shard in order, from its pieces and from the workers."""
-        for segment in self._segments(shard):
-            if segment.is_kept:
-                yield self.pieces.read(segment.chunk)
-                self.advance(len(segment.chunk.records), False)
-                continue
-            following = segment.chunk.records.start
-            while following < segment.chunk.records.stop:
-                result = next(made)
-                assert result.chunk.records.start == following  # whatever the engine, in_order puts it right
-                self.journal.add(result.cpu_s)
-                self.journal.failed(shard.key, result.failures)
-                yield result
-                following = result.chunk.records.stop
-                self.advance(len(result.chunk.records), True)
-
-    def _data(self, shard: ShardPlan) -> AbstractContextManager[TableFile]:
-        schema, rows = record_schema(self.config), rows_per_group(self.config)
-        return table_draft(self.storage, data_name(shard.key), schema, rows)
-
-    def _internals(self, shard: ShardPlan) -> AbstractContextManager[TableFile | None]:
-        if not self.quantities:
-            return nullcontext()
-        schema = internals_schema(self.config, self.quantities)
-        rows = internals_group_rows(self.config, self.quantities)
-        return table_draft(self.storage, internals_name(shard.key), schema, rows)
+        self.interruption.check()
+        self.storage.check_writing()
+        if heard is None:
+            return
+        assert self.under_way is not None
+        answer = self.under_way.hear(heard)
+        if answer.error is not None:
+            raise answer.error
+        self.journal.add(answer.cpu_s)
+        one = self._unclosed.get(answer.shard)
+        if one is None:  # its excerpt is there
+            self._open -= 1
+            return
+        done = min(answer.records, one.left)  # more were lost from pieces, and made once more
+        one.left, one.kept = one.left - done, one.kept + done
+        self.advance(done, answer.records)
+        self.journal.failed(answer.shard, answer.failures)
+        if answer.sidecar is not None:
+            del self._unclosed[answer.shard]
+            self._open -= 1
+            committed(one.shard, answer.sidecar.without_bulk(*ranges(one.shard)), self.journal.seconds - one.begun_s)
+        elif one.left == 0:
+            self._ready.append(one.shard)
 
 
-def ranges(shard: ShardPlan) -> tuple[IdRanges, IdRanges]:
-    """Return the ranges of specimens and of records of a planned shard."""
-    if shard.counts:
-        return IdRanges(shard.specimens), IdRanges(array("q", shard.record_ids))
-    return IdRanges(shard.specimens), IdRanges(shard.specimens, shard.records_per_specimen)
+def _taken(gap: deque[Chunk], most: int) -> tuple[Chunk, ...]:
+    """Take chunks from the beginning of a gap: one, and more while they have no more than so many records."""
+    chosen = [gap.popleft()]
+    size = len(chosen[0].records)
+    while gap and (size := size + len(gap[0].records)) <= most:
+        chosen.append(gap.popleft())
+    return tuple(chosen)
 
 
-def _cut(chunk: Chunk, kept: dict[int, Chunk]) -> Iterator[Segment]:
-    """Cut a chunk at what is kept of it, given by its first record."""
-    start, stop = chunk.records.start, chunk.records.stop
-    while start < stop:
-        found = kept.get(start)
-        if found is not None and found.records.stop <= stop:
-            yield Segment(found, True)
-            start = found.records.stop
-        else:
-            end = min((first for first in kept if start < first < stop), default=stop)
-            yield Segment(Chunk(chunk.shard, range(start, end)), False)
-            start = end
-
-
-def in_order(answers: Iterator[tuple[int, Answer]]) -> Iterator[ChunkResult]:
-    """Yield results by position of their task; the engine's window bounds how many wait for a slow one."""
-    waiting: dict[int, deque[Answer]] = {}
-    following = 0
-    for index, answer in answers:
-        waiting.setdefault(index, deque()).append(answer)
-        while waiting.get(following):
-            first = waiting[following].popleft()
-            if isinstance(first, Unfinished):
-                yield first.result
+def _gaps(planned: Iterable[Chunk], kept: Mapping[int, Chunk]) -> Iterator[deque[Chunk]]:
+    """Yield chunks that follow each other, of what is missing between those kept, which come by their first record."""
+    gap: deque[Chunk] = deque()
+    for chunk in planned:
+        start, stop = chunk.records.start, chunk.records.stop
+        while start < stop:
+            found = kept.get(start)
+            if found is not None and found.records.stop <= stop:
+                if gap:
+                    yield gap
+                gap, start = deque(), found.records.stop
             else:
-                del waiting[following]
-                following += 1
-                yield first
+                end = min((first for first in kept if start < first < stop), default=stop)
+                gap.append(Chunk(chunk.shard, range(start, end)))
+                start = end
+    if gap:
+        yield gap

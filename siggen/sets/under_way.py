@@ -6,29 +6,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
-from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation
 from siggen.engines.protocol import Unfinished
-
-PART_S = 10.0
-"""A worker gives back what it has after this time, at the end of a record."""
+from siggen.sets.shard_work import Answer, Task
 
 STOP_AT_ONCE_S = 45.0
 """Less than the minute that a worker may lose, by what stopping takes."""
-
-Answer = ChunkResult | Unfinished[Chunk, ChunkResult]
-
-
-@dataclass(frozen=True, slots=True)
-class PartSimulation:
-    """Simulates a chunk in parts of `PART_S`, for engines that hand in the rest of a task."""
-
-    simulation: ChunkSimulation
-
-    def __call__(self, chunk: Chunk) -> Answer:
-        """Simulate a part of a chunk, or the last one."""
-        result = self.simulation.part(chunk, PART_S)
-        rest = chunk.rest(result.chunk)
-        return result if rest is None else Unfinished(result, rest)
 
 
 @dataclass(slots=True)
@@ -51,21 +33,21 @@ class UnderWay:
     def __post_init__(self) -> None:
         self._begun_s = self.clock()
 
-    def taken(self, tasks: Iterable[Chunk]) -> Iterator[Chunk]:
+    def taken(self, tasks: Iterable[Task | None]) -> Iterator[Task | None]:
         """Yield tasks, which are open as soon as they are taken."""
         for task in tasks:
-            self._open += 1
+            self._open += task is not None
             yield task
 
-    def hear(self, answer: Answer) -> ChunkResult:
+    def hear(self, heard: Answer | Unfinished[Task, Answer]) -> Answer:
         """Note an answer and return what it holds."""
-        if isinstance(answer, Unfinished):
-            result: ChunkResult = answer.result
+        if isinstance(heard, Unfinished):
+            answer: Answer = heard.result
         else:
-            result = answer
+            answer = heard
             self._open -= 1
-        self._heard_s[result.worker] = self.clock()
-        return result
+        self._heard_s[answer.worker] = self.clock()
+        return answer
 
     def lost_s(self) -> list[float]:
         """Return for every worker that is busy how long it has given nothing back, the longest last [s]."""

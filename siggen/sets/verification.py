@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
@@ -43,6 +44,7 @@ OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, LI
 
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
+STRANGER = "not part of the set"
 HASHES_ALONE = "hashes checked"
 """How the comparison begins of a set whose records another version of the simulation made."""
 
@@ -215,7 +217,7 @@ def _content_problem(storage: Storage, name: str, promised: str) -> str:
 
 def _strangers(storage: Storage, files: Mapping[str, object]) -> Iterator[Mismatch]:
     for folder in OWN_FOLDERS:
-        yield from (Mismatch(name, "not part of the set") for name in storage.names(folder) if name not in files)
+        yield from (Mismatch(name, STRANGER) for name in storage.names(folder) if name not in files)
 
 
 def _run(storage: Storage) -> Iterator[Mismatch]:
@@ -283,6 +285,14 @@ def _environment(dataset: Dataset, record_id: int) -> Mapping[str, str]:
     return {} if owner is None else dataset.inventory.environments[owner.environment]
 
 
-def problem_lines(mismatches: Sequence[Mismatch]) -> list[str]:
-    """Return one line per mismatch."""
-    return [f"{mismatch.what}: {mismatch.problem}" for mismatch in mismatches]
+def problem_lines(found: Verification) -> list[str]:
+    """Return one line per mismatch, and what repairs the set."""
+    lines = [f"{one.what}: {one.problem}" for one in found.mismatches]
+    spare = [one.what for one in found.mismatches if one.problem == STRANGER or one.what in (RUN, PHYSICS)]
+    damaged = [one.what for one in found.mismatches if one.what not in spare and not one.what.startswith("record")]
+    if spare:
+        lines.append(f"to repair it: remove {', '.join(spare)}")
+    if damaged and not found.comparison.startswith(HASHES_ALONE):
+        config = "CONFIG, the file that the set was made of," if CONFIG in damaged else quote(f"{found.path}/{CONFIG}")
+        lines.append(f"to make again what is missing or differs: siggen generate {config} --out {quote(found.path)}")
+    return lines

@@ -57,13 +57,14 @@ class ChannelWay:
     Attributes
     ----------
     shown : motions, forces and readings of shafts; of a housing of plates those of the modes that move with the gears
-    accelerance : (bearing forces, k) beyond those motions, m/s² per N; None for none
+    accelerance : (forces, k) beyond those motions, m/s² per N from bearing forces; None for none
     entries : (entries of `Body`, k) the same from where other machines press on the housing
     """
 
     shown: Mapping[Input, Weight]
     accelerance: ComplexArray | None
     entries: ComplexArray | None
+    forces: tuple[str, ...] = INPUTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -292,7 +293,7 @@ def _response(
     for one, weight in way.shown.items():
         total += (weight if isinstance(weight, float) else weight[block]) * found[one.kind][one.name]
     if way.accelerance is not None:
-        for name, row in zip(INPUTS, way.accelerance[:, block], strict=True):
+        for name, row in zip(way.forces, way.accelerance[:, block], strict=True):
             total += row * forced.bearing_force[name]
             if name in inputs:  # a force between shaft and seat presses on the housing the other way
                 total[inputs.index(name)] -= row

@@ -32,6 +32,7 @@ from siggen.specimen.housing import housing_settle_s, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
 from siggen.specimen.sensor_mass import Loading, sensor_loading
 from siggen.specimen.specimen_housing import SpecimenHousing
+from siggen.specimen.structure import moved_along
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,12 +73,13 @@ class ChannelInstrument:
     ----------
     name, sensor, gain : of the channel
     seen : what of the model it shows -> factor on it; several with cross-axis sensitivity
-    accelerance : (inputs, k) m/s² per N from the bearing forces, before the sensor; None without a path
+    accelerance : (forces, k) m/s² per N from bearing forces, before the sensor; None without a path
     sensor_response : (k,) of mounting, sensor and coupling; None without
     path_modes, path_rms_m_s2_per_n : number of modes, and rms accelerance over inputs and band; 0 without a path
     path_number : which of several measured paths
     high_pass_hz : corner of the coupling, None without
     transducer : what makes a reading of the whole record; None where it reads what it shows
+    forces : bearing forces that its path begins at
     """
 
     name: str
@@ -91,6 +93,7 @@ class ChannelInstrument:
     path_number: int = 0
     high_pass_hz: float | None = None
     transducer: Transducer | None = None
+    forces: tuple[str, ...] = INPUTS
 
     @property
     def is_plain(self) -> bool:
@@ -139,9 +142,10 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
     named = partial(_named, config.seed, specimen.specimen_id)
     grid = frequencies(blocks.memory, config.fs_hz)
+    along = moved_along(specimen)
     channels, ways = [], {}
     for sensor in specimen.sensors:
-        paths = _Paths(housing, grid, sensor_loading(config, specimen, housing, sensor, grid))
+        paths = _Paths(housing, grid, sensor_loading(config, specimen, housing, sensor, grid), along)
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
             channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, paths)
@@ -168,7 +172,7 @@ def channel_ways(
     if not channel.is_plain:
         ways |= {one: weight * sensed for one, weight in channel.seen.items()}
     if channel.accelerance is not None:
-        for name, row in zip(INPUTS, channel.accelerance, strict=True):
+        for name, row in zip(channel.forces, channel.accelerance, strict=True):
             force, through = Input(FORCE, name), row * sensed
             ways[force] = ways[force] + through if force in ways else through
     if background is not None and background.inputs:
@@ -183,11 +187,12 @@ def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
 
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing, a grid of frequencies (k,), and what the mass of a sensor does to its place."""
+    """A housing, a grid of frequencies (k,), what the mass of a sensor does to its place, motions along the shafts."""
 
     housing: SpecimenHousing | None
     grid: FloatArray
     loading: Loading | None
+    along: tuple[str, ...]
 
 
 def _channel(
@@ -198,19 +203,22 @@ def _channel(
     shown: Mapping[Input, Weight] = plain if paths.loading is None else paths.loading.weights(plain)
     motions = {one.name: weight for one, weight in shown.items() if one.kind == MOTION}
     accelerance, beyond, entries = None, None, None
+    forces = INPUTS if housing is None else housing.forces
     if isinstance(sensor.through, MeasuredPath):
         weights = sensor.weights(axis, draw)
         accelerance = beyond = _measured(sensor, weights, draw, grid)
+        forces = INPUTS
     elif housing is not None and motions:
         coupled, others = slice(housing.coupled), slice(housing.coupled, None)
-        beyond = housing.shown_accelerance(motions, INPUTS, grid, others)
+        beyond = housing.shown_accelerance(motions, forces, grid, others)
         entries = housing.shown_accelerance(motions, tuple(housing.entries), grid, others)
-        accelerance = beyond + housing.shown_accelerance(motions, INPUTS, grid, coupled)
+        accelerance = beyond + housing.shown_accelerance(motions, forces, grid, coupled)
     channel = ChannelInstrument(
         name=f"{sensor.name}_{axis}",
         sensor=sensor,
         gain=gain,
-        seen=_of_model(shown, housing),
+        seen=_of_model(shown, housing, paths.along),
+        forces=forces,
         accelerance=accelerance,
         sensor_response=sensor.response(draw, grid),
         high_pass_hz=sensor.coupling_hz(draw),
@@ -219,16 +227,21 @@ def _channel(
         path_number=path_number(sensor, draw.uniform),
         transducer=sensor.transducer(axis, draw),
     )
-    return channel, ChannelWay(shown, beyond, entries)
+    return channel, ChannelWay(shown, beyond, entries, forces)
 
 
-def _of_model(shown: Mapping[Input, Weight], housing: SpecimenHousing | None) -> dict[Input, Weight]:
-    """Return what of the model's motion is shown as it is: nothing that the modes of a housing give, nothing axial."""
+def _of_model(
+    shown: Mapping[Input, Weight], housing: SpecimenHousing | None, along: tuple[str, ...]
+) -> dict[Input, Weight]:
+    """Return what of the model's motion is shown as it is: nothing that the modes of a housing give.
+
+    `along` are the motions along the shafts that the model has.
+    """
     motions = {} if housing is None else housing.motions
     return {
         one: weight
         for one, weight in shown.items()
-        if one.kind != MOTION or not (one.name in motions or one.name.endswith("/axial"))
+        if one.kind != MOTION or not (one.name in motions or (one.name.endswith("/axial") and one.name not in along))
     }
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing, loaded_bearing
-from siggen.dynamics.structure.structure import Rotor, SpurStage
+from siggen.dynamics.structure.gear_stage import GearStage, Rotor
 from siggen.gears.geometry.gear_pair import GearPair
 
 BEARINGS = 2
@@ -22,7 +22,7 @@ BEARINGS = 2
 GRAVITY_M_S2 = 9.81
 
 
-def loaded_bearings(dynamics: Dynamics, stage: SpurStage, pair: GearPair, torque_nm: float) -> dict[str, LoadedBearing]:
+def loaded_bearings(dynamics: Dynamics, stage: GearStage, pair: GearPair, torque_nm: float) -> dict[str, LoadedBearing]:
     """Return one of both bearings of each shaft whose stiffness follows the load, under a torque on the pinion."""
     found = {}
     for which in ("pinion", "gear"):
@@ -48,7 +48,7 @@ def cage_sense(dynamics: Dynamics, which: str) -> float:
     return pinion if which == "pinion" else -pinion
 
 
-def on_loaded_bearings(stage: SpurStage, found: dict[str, LoadedBearing]) -> SpurStage:
+def on_loaded_bearings(stage: GearStage, found: dict[str, LoadedBearing]) -> GearStage:
     """Return a stage on bearings under load."""
     rotors = {"pinion": stage.pinion, "gear": stage.gear}
     rotors |= {which: _on(rotors[which], one) for which, one in found.items()}

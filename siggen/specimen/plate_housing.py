@@ -46,12 +46,13 @@ def plate_housing(config: Config, specimen: Specimen, numbers: PlateNumbers) -> 
     """Return the box of plates of a specimen with its modes."""
     box, modes, ratio = damped_modes(config, specimen, numbers)
     pair, shafts = gear_pair(specimen.gears), specimen.dynamics.shafts
-    seats = _seats(box, modes, shafts)
+    pushed = pair.helix_rad != 0.0
+    seats = _seats(box, modes, shafts, located=pushed)
     uniform = named_uniforms(config.seed, Stage.PATH, specimen.specimen_id)
     return SpecimenHousing(
         modes=modes,
         damping_ratio=ratio,
-        seats={name: motion for name, motion in seats.items() if not name.endswith("axial")},
+        seats={name: motion for name, motion in seats.items() if pushed or not name.endswith("axial")},
         motions={**seats, **_sensors(box, modes, specimen.sensors, uniform)},
         entries=_entries(box, modes, seats, pair, uniform),
         bolts=partial(_bolts, box, modes, constant(numbers.loose_foot_share)),
@@ -99,14 +100,20 @@ def _made(
     return box, modes
 
 
-def _seats(box: Box, modes: BoxModes, shafts: Shafts | None) -> dict[str, Motion]:
-    """Return the motion of both seats of every shaft, weighted with what each of them bears of a force on the gear."""
+def _seats(box: Box, modes: BoxModes, shafts: Shafts | None, *, located: bool) -> dict[str, Motion]:
+    """Return the motion of both seats of every shaft, weighted with what each of them bears of a force on the gear.
+
+    Along the axis one bearing of a `located` shaft bears all of it, that in the front wall.
+    """
     found = {}
     for shaft in ("pinion", "gear"):
         front = 0.5 if shafts is None else 1.0 - constant(getattr(shafts, shaft).gear_position)
         of_walls = [seat_motions(modes.halves, box.seats[shaft], wall) for wall in ("front", "back")]
         for axis, number in (("vertical", "y"), ("horizontal", "x"), ("axial", "z")):
             first, second = (motions[number] for motions in of_walls)
+            if located and axis == "axial":
+                found[f"{shaft}_bearing/{axis}"] = first
+                continue
             none = Motion(0.0 * first.even, 0.0 * first.odd)
             found[f"{shaft}_bearing/{axis}"] = none.plus(first, front).plus(second, 1.0 - front)
     return found

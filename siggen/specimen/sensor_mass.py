@@ -24,7 +24,6 @@ from siggen.sensing.inputs import MOTION, Input, Weight
 from siggen.sensing.mass_loading import mass_loading
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.background import BLOCK, mean_meshes
-from siggen.specimen.measured_path import INPUTS
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import linear_structure
 
@@ -85,8 +84,10 @@ def _accelerance(
             result[i, :, block] = forced.acceleration[name]
             if housing is not None:
                 beyond = slice(housing.coupled, None)
-                direct = housing.accelerance(housing.motions[name], (*INPUTS, *names), frequency_hz[block], beyond)
-                result[i, :, block] += direct[len(INPUTS) :]
-                for seat, row in zip(INPUTS, direct, strict=False):
+                direct = housing.accelerance(
+                    housing.motions[name], (*housing.forces, *names), frequency_hz[block], beyond
+                )
+                result[i, :, block] += direct[len(housing.forces) :]
+                for seat, row in zip(housing.forces, direct, strict=False):
                     result[i, :, block] += row * forced.bearing_force[seat]
     return result

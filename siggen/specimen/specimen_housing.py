@@ -56,6 +56,11 @@ class SpecimenHousing:
         return min(max(least, int((self.modes.frequency_hz < COUPLED_HZ).sum())), MOST)
 
     @property
+    def forces(self) -> tuple[str, ...]:
+        """Bearing forces that press on it, as place/axis."""
+        return tuple(self.seats)
+
+    @property
     def pairs(self) -> list[tuple[float, float]]:
         """Natural frequencies [Hz] and damping ratios, ascending."""
         return list(zip(self.modes.frequency_hz.tolist(), self.damping_ratio.tolist(), strict=True))

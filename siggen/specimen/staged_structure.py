@@ -9,7 +9,8 @@ from siggen.config import PlainRotor, RigidHousing, Stage
 from siggen.dynamics.structure.body import Body, Point, rigid_body
 from siggen.dynamics.structure.casing_structure import refuse_single_bolt
 from siggen.dynamics.structure.drivetrain import PLACES, CommonShaft, NextStage, drivetrain
-from siggen.dynamics.structure.structure import SpurStage, Structure
+from siggen.dynamics.structure.gear_stage import GearStage
+from siggen.dynamics.structure.structure import Structure
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
@@ -21,7 +22,7 @@ LEAST_SPAN = 0.5 / min(PLACES[0], PLACES[1] - PLACES[0])
 """Distance of the bearings of a common shaft over both faces, from which on neither gears nor bearings overlap."""
 
 
-def staged_structure(first: SpurStage, specimen: Specimen) -> Structure:
+def staged_structure(first: GearStage, specimen: Specimen) -> Structure:
     """Return the structure of a gearbox with further meshes behind the first one.
 
     Raises

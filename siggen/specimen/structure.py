@@ -9,19 +9,14 @@ from siggen.config import Coupling as CouplingSection
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.external_forces import shaft_direction
+from siggen.dynamics.structure.axial_motion import axial_bearings
 from siggen.dynamics.structure.body import Body, modal_body
 from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
+from siggen.dynamics.structure.gear_stage import Coupling, GearStage
+from siggen.dynamics.structure.gear_stage import Rotor as RotorNumbers
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.planetary import planetary_structure
-from siggen.dynamics.structure.structure import (
-    Coupling,
-    SpurStage,
-    Structure,
-    eight_dof,
-    six_dof,
-    vector,
-)
-from siggen.dynamics.structure.structure import Rotor as RotorNumbers
+from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof, vector
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
@@ -55,6 +50,12 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     return replace(found, motions=shafts)
 
 
+def moved_along(specimen: Specimen) -> tuple[str, ...]:
+    """Return the motions along the shafts that sensors on them see: of helical teeth on bearings on the ground."""
+    grounded = specimen.dynamics.model in {"6dof", "8dof"} and not specimen.stages and specimen.planetary is None
+    return tuple(axial_bearings(gear_stage(specimen.dynamics, gear_pair(specimen.gears)))) if grounded else ()
+
+
 def linear_structure(config: Config, specimen: Specimen) -> tuple[Structure, Body | None]:
     """Return the structure on which small forces act, and what carries its bearings; it moves as its body does.
 
@@ -68,9 +69,9 @@ def linear_structure(config: Config, specimen: Specimen) -> tuple[Structure, Bod
     return replace(assembled, motions=motions), body
 
 
-def supported_stage(specimen: Specimen) -> SpurStage:
+def supported_stage(specimen: Specimen) -> GearStage:
     """Return the stage of a drawn specimen on its bearings, those that follow the load under that of its point."""
-    stage = spur_stage(specimen.dynamics, gear_pair(specimen.gears))
+    stage = gear_stage(specimen.dynamics, gear_pair(specimen.gears))
     return on_loaded_bearings(stage, specimen_bearings(specimen))
 
 
@@ -79,7 +80,7 @@ def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
     if specimen.bearing_point is None:
         return {}
     pair, torque_nm = gear_pair(specimen.gears), specimen.bearing_point.torque_nm
-    return loaded_bearings(specimen.dynamics, spur_stage(specimen.dynamics, pair), pair, torque_nm)
+    return loaded_bearings(specimen.dynamics, gear_stage(specimen.dynamics, pair), pair, torque_nm)
 
 
 def specimen_body(config: Config, specimen: Specimen) -> Body:
@@ -92,15 +93,15 @@ def specimen_body(config: Config, specimen: Specimen) -> Body:
         return modal_body(coupled_modes(housing), pair.working_pressure_angle_rad)
     assert isinstance(specimen.housing, RigidHousing)
     casing = casing_numbers(specimen.housing, pair.working_centre_distance_m, specimen.sensors)
-    body = casing_body(spur_stage(specimen.dynamics, pair), casing)
+    body = casing_body(gear_stage(specimen.dynamics, pair), casing)
     # Of a second mesh a rigid casing feels the moment alone: the force times the distance of both lines of action.
     arm_m = pair.pinion.base_radius_m + pair.gear.base_radius_m
     return replace(body, entries={**body.entries, "second_stage": {"phi_c": arm_m}})
 
 
-def spur_stage(dynamics: Dynamics, pair: GearPair) -> SpurStage:
+def gear_stage(dynamics: Dynamics, pair: GearPair) -> GearStage:
     """Return motor, gears and load of a drawn `dynamics` section in SI."""
-    return SpurStage(
+    return GearStage(
         working_pressure_angle_rad=pair.working_pressure_angle_rad,
         pinion=rotor_numbers(dynamics.pinion, pair.pinion, pair.face_width_m),
         gear=rotor_numbers(dynamics.gear, pair.gear, pair.face_width_m),
@@ -108,10 +109,11 @@ def spur_stage(dynamics: Dynamics, pair: GearPair) -> SpurStage:
         load_inertia_kg_m2=constant(dynamics.load_inertia_kg_m2),
         input_coupling=_coupling(dynamics.input_coupling),
         output_coupling=_coupling(dynamics.output_coupling),
+        base_helix_rad=pair.base_helix_rad,
     )
 
 
-def _shafts(dynamics: Dynamics, stage: SpurStage, pair: GearPair) -> tuple[Shaft, Shaft] | None:
+def _shafts(dynamics: Dynamics, stage: GearStage, pair: GearPair) -> tuple[Shaft, Shaft] | None:
     """Return the shafts that bend, each with the moment of inertia of its gear about a diameter: J/2 + m b²/12."""
     if dynamics.shafts is None:
         return None

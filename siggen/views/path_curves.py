@@ -16,7 +16,6 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import ChannelInstrument, settle_s, specimen_instrument
-from siggen.specimen.measured_path import INPUTS
 from siggen.specimen.specimen_housing import SpecimenHousing
 
 FILE_NUMBERS = 150_000
@@ -43,7 +42,7 @@ class PathCurves:
         step = self._step
         columns = {"frequency_hz": self.frequency_hz[::step]}
         for channel in self.channels:
-            for name, curve in zip(INPUTS, _rows(channel), strict=True):
+            for name, curve in zip(channel.forces, _rows(channel), strict=True):
                 stem = f"{channel.name}_from_{name.replace('/', '_')}"
                 columns |= {
                     f"{stem}_real_m_s2_per_n": curve.real[::step],
@@ -54,7 +53,7 @@ class PathCurves:
     @property
     def _step(self) -> int:
         """Rows that are left out between two: as few as make a file that can be read again, as many as modes allow."""
-        numbers = self.frequency_hz.size * (1 + 2 * len(INPUTS) * max(len(c.sensor.axes) for c in self.channels))
+        numbers = self.frequency_hz.size * (1 + 2 * max(len(c.forces) * len(c.sensor.axes) for c in self.channels))
         wide = MODES_PER_MEMORY / max(self.memory_s, 1e-9) / (self.frequency_hz[1] - self.frequency_hz[0])
         return max(min(-(-numbers // FILE_NUMBERS), int(wide)), 1)
 

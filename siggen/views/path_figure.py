@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from siggen.specimen.measured_path import INPUTS
 from siggen.views.path_curves import PathCurves
 from siggen.views.picture_file import save_figure
 
@@ -28,7 +27,7 @@ def path_figure(found: PathCurves) -> Figure:
     panels = figure.subplots(count, 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     shown = found.frequency_hz >= LOWEST_HZ
     for panel, channel in zip(panels, found.channels, strict=True):
-        for name, row in zip(INPUTS, channel.accelerance, strict=True):  # type: ignore[arg-type]
+        for name, row in zip(channel.forces, channel.accelerance, strict=True):  # type: ignore[arg-type]
             label = name.replace("_bearing/", ", ")
             panel.loglog(found.frequency_hz[shown], np.abs(row[shown]), lw=0.9, label=label)
         panel.set_title(channel.name, loc="left", fontsize="medium")

@@ -146,7 +146,7 @@ def _draw_across(axis: Axes, pressure: FacePressure, positions: Sequence[int]) -
     axis.set_ylim(bottom=0.0)
     axis.set_xlabel("across the face [mm]")
     axis.set_ylabel("load per length [N/mm]")
-    axis.legend(fontsize=8, title_fontsize=8, title="pinion angle since first contact, force of the pair")
+    axis.legend(fontsize=8, title_fontsize=8, title="angle of the driving gear since first contact, force of the pair")
 
 
 def _draw_course(axis: Axes, pressure: FacePressure, positions: Sequence[int]) -> None:
@@ -154,5 +154,5 @@ def _draw_course(axis: Axes, pressure: FacePressure, positions: Sequence[int]) -
     for colour, at in zip(COLOURS, positions, strict=False):
         axis.axvline(float(pressure.roll_deg[at]), color=colour, lw=1.0, ls="--")
     axis.set_ylim(bottom=0.0)
-    axis.set_xlabel("pinion angle since first contact [°]")
+    axis.set_xlabel("angle of the driving gear since first contact [°]")
     axis.set_ylabel("force of the pair in the record [N]")

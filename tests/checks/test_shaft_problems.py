@@ -67,10 +67,12 @@ def test_plan_says_what_limits_shafts() -> None:
     assert any("outside_model" in note for note in shaft_notes(load_config(with_shafts())))
 
 
-def test_the_tilt_of_plan_is_that_of_the_motion() -> None:
+@pytest.mark.parametrize("helix_deg", [0.0, 12.0, -12.0])
+def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
     # The closed form of the check against the static state of the assembled gearbox.
-    uneven = {"gear_position": 0.42, "bearing_span_mm": 120.0}
-    config = load_config(with_shafts(**uneven))
+    uneven = with_shafts(gear_position=0.42, bearing_span_mm=120.0)
+    healthy = {"gears": {**uneven["gears"], "helix_deg": helix_deg}, "states": [{"name": "healthy"}]}
+    config = load_config(uneven | healthy)
     config = load_config(config.canonical() | {"operating_points": [{"speed_hz": 20.0, "torque_nm": 45.0}]})
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, 0)

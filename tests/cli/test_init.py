@@ -17,6 +17,7 @@ from siggen.cli.app import app
 from siggen.config import read_yaml
 from siggen.errors import UsageError
 from siggen.specimen.gears import gear_pair
+from tests.command import command
 
 RIGS = {
     "25/56": ["--teeth", "25,56", "--module", "2", "--face-width", "20", "--speed", "15,25", "--torque", "20"],
@@ -78,7 +79,7 @@ def fresh(*arguments: str) -> subprocess.CompletedProcess[str]:
 def test_all_digits_that_a_user_gives_are_written(tmp_path: Path) -> None:
     file = tmp_path / "rig.yaml"
     given = ["--teeth", "32,80", "--module", "1.5125", "--face-width", "20.1255", "--bores", "20.3452,30"]
-    made = fresh(*given, "--speed", "24.1667", "--torque", "60.55,61.123456", "--out", str(file))
+    made = command("siggen", "init", *given, "--speed", "24.1667", "--torque", "60.55,61.123456", "--out", str(file))
     assert made.returncode == 0, made.stderr
     config = load_config(file)
     point = config.operating_points[0]
@@ -89,7 +90,9 @@ def test_all_digits_that_a_user_gives_are_written(tmp_path: Path) -> None:
 
 def test_a_speed_in_rpm_is_that_in_hz_and_face_width_and_torque_are_proposed(tmp_path: Path) -> None:
     file = tmp_path / "rig.yaml"
-    made = fresh("--teeth", "32,80", "--module", "1.5", "--speed", "1200rpm,1450/60", "--out", str(file))
+    made = command(
+        "siggen", "init", "--teeth", "32,80", "--module", "1.5", "--speed", "1200rpm,1450/60", "--out", str(file)
+    )
     assert made.returncode == 0, made.stderr
     config = load_config(file)
     speed = config.operating_points[0].speed_hz

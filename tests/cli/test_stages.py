@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -17,6 +15,7 @@ import yaml
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
+from tests.command import Ended, command
 from tests.config.mill import mill
 from tests.config.staged import SLOW, SPALL, staged
 
@@ -28,14 +27,8 @@ SENSORS = [
 ]
 
 
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", "from siggen.cli.app import main; main()", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=600,
-    )
+def run(*arguments: str) -> Ended:
+    return command("siggen", *arguments)
 
 
 def written(folder: Path, **changes: Any) -> str:

@@ -8,7 +8,8 @@ import numpy as np
 
 from siggen.dynamics.structure.body import Bolts, Casing
 from siggen.dynamics.structure.casing_structure import casing_structure
-from siggen.dynamics.structure.structure import Bearing, Coupling, Rotor, SpurStage, Structure
+from siggen.dynamics.structure.gear_stage import Bearing, Coupling, GearStage, Rotor
+from siggen.dynamics.structure.structure import Structure
 
 PRESSURE_ANGLE = np.radians(20.0)
 BASE_RADIUS_1 = 0.5 * 3e-3 * 18 * np.cos(PRESSURE_ANGLE)
@@ -27,8 +28,8 @@ def bearing(stiffness: float, mass: float) -> Bearing:
     return Bearing(stiffness, stiffness, damping, damping)
 
 
-def make_stage(bearing_stiffness: float = 2e8) -> SpurStage:
-    return SpurStage(
+def make_stage(bearing_stiffness: float = 2e8) -> GearStage:
+    return GearStage(
         working_pressure_angle_rad=PRESSURE_ANGLE,
         pinion=Rotor(BASE_RADIUS_1, 1.0, 1.6e-4, bearing(bearing_stiffness, 1.0)),
         gear=Rotor(BASE_RADIUS_2, 3.0, 6.4e-3, bearing(bearing_stiffness, 3.0)),

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.structure import Bearing, Coupling, Rotor, SpurStage, Structure, eight_dof
+from siggen.dynamics.structure.gear_stage import Bearing, Coupling, GearStage, Rotor
+from siggen.dynamics.structure.structure import Structure, eight_dof
 from siggen.gears.stiffness.mesh_tables import MeshTables
 
 PRESSURE_ANGLE = np.radians(20.0)
@@ -15,10 +16,10 @@ BASE_PITCH = 2.0 * np.pi * BASE_RADIUS_1 / 18
 CONTACT_RATIO = 1.64
 
 
-def make_stage(bearing_damping: float = 2134.0, shaft_damping: float = 0.231) -> SpurStage:
+def make_stage(bearing_damping: float = 2134.0, shaft_damping: float = 0.231) -> GearStage:
     bearing = Bearing(8.5364e7, 8.5364e7, bearing_damping, bearing_damping)
     shaft = Coupling(330.0, shaft_damping)
-    return SpurStage(
+    return GearStage(
         working_pressure_angle_rad=PRESSURE_ANGLE,
         pinion=Rotor(BASE_RADIUS_1, 0.412, 2.37e-4, bearing),
         gear=Rotor(BASE_RADIUS_2, 3.14, 1.125e-2, bearing),
@@ -46,12 +47,12 @@ def arched_row(points: int) -> np.ndarray:
 
 
 @pytest.fixture(scope="session")
-def stage() -> SpurStage:
+def stage() -> GearStage:
     return make_stage()
 
 
 @pytest.fixture(scope="session")
-def structure(stage: SpurStage) -> Structure:
+def structure(stage: GearStage) -> Structure:
     return eight_dof(stage)
 
 

@@ -9,7 +9,8 @@ A page says by a comment above a block, which readers of the page do not see, ho
 * `<!-- not run: why -->`: never;
 * `<!-- other numbers -->`, above an output: times, or numbers of a larger set; its words are compared.
 
-A comment `<!-- given: runs/quickstart -->` anywhere names what lies in the reader's folder before the page begins.
+A comment `<!-- given: runs/quickstart -->` anywhere names what lies in the reader's folder before the page begins;
+above a slow block, it lies there where slow blocks run too.
 """
 
 from __future__ import annotations
@@ -87,8 +88,10 @@ def blocks_of(text: str) -> list[Block]:
     return found
 
 
-def given(text: str) -> list[str]:
-    """Return what a page begins with."""
+def given(text: str, *, slow: bool) -> list[str]:
+    """Return what a page begins with; without `slow`, not what stands above slow blocks alone."""
+    if not slow:
+        text = FENCE.sub(lambda block: "" if "<!-- slow -->" in block["marks"] else block[0], text)
     return [name for names in GIVEN.findall(text) for name in names.split(", ")]
 
 

@@ -5,9 +5,10 @@ They are made once, by the installed commands, and copied.
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from nptdms import ChannelObject, TdmsWriter
@@ -16,12 +17,9 @@ import siggen
 from tests.diagnostics.calibration.hidden_machine import FS_HZ, write_recording
 from tests.publication.conftest import facts_file
 
-SPLITS = ("--set", "splits={train: 10, validation: 5, test: 5}")
-SMALLER = {
-    "runs/quickstart": ("configs/quickstart.yaml", "specimens=10"),
-    "runs/bench": ("configs/bench.yaml", "specimens=4", "duration_s=0.5"),
-}
-"""Set -> its configuration and what is smaller."""
+SET, SMALLER = "runs/quickstart", ("specimens=10", "splits={train: 10, validation: 5, test: 5}")
+READ_ALONE = ("specimens=1", "duration_s=0.5", "splits={train: 10, validation: 5, test: 5}")
+"""What is smaller where blocks only read the set: those that evaluate it are slow ones."""
 PAIRS = {"18/47": (4242, 3.0, 34.0, True), "25/56": (4243, 2.0, 22.0, False)}
 """Recorded pair -> seed, module [mm], speed [Hz], and whether there is a tacho."""
 FACTS = "publication.yaml"
@@ -36,18 +34,18 @@ class Given:
     def __init__(self, cache: Path, environment: Mapping[str, str]) -> None:
         self._cache, self._environment = cache, environment
 
-    def put(self, name: str, folder: Path) -> None:
-        """Copy a thing of this name into a folder.
+    def put(self, name: str, folder: Path, changes: Sequence[str] = SMALLER) -> None:
+        """Copy a thing of this name into a folder; `changes` are what is smaller of a set.
 
         Raises
         ------
         ValueError
             If nothing of this name is known.
         """
-        made = self._cache / name.replace("/", "_").replace(" ", "_")
-        if name in SMALLER:
+        made = self._cache / re.sub(r"\W+", "_", " ".join((name, *changes)))
+        if name == SET:
             if not made.exists():
-                self._generate(name, made)
+                self._generate(changes, made)
             shutil.copytree(made, folder / name)
         elif name.startswith("recordings "):
             if not made.exists():
@@ -58,12 +56,11 @@ class Given:
         elif name != STORE:
             raise ValueError(f"nothing is known of the given {name!r}")
 
-    def _generate(self, name: str, out: Path) -> None:
-        config, *changes = SMALLER[name]
-        file = str(Path(__file__).parents[2] / config)
+    def _generate(self, changes: Sequence[str], out: Path) -> None:
+        file = str(Path(__file__).parents[2] / "configs" / "quickstart.yaml")
         command = ["siggen", "generate", file, "--out", str(out), "--engine", "serial"]
         command += [word for change in changes for word in ("--set", change)]
-        subprocess.run([*command, *SPLITS], check=True, env=dict(self._environment), capture_output=True)
+        subprocess.run(command, check=True, env=dict(self._environment), capture_output=True)
 
 
 def record(pair: str, folder: Path) -> None:

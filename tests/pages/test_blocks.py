@@ -11,12 +11,13 @@ from tests.pages.printed import difference
 from tests.pages.running import failing, reader_environment
 
 PAGE = """# Page
-<!-- given: runs/quickstart, recordings 18/47 -->
+<!-- given: runs/quickstart, publication.yaml -->
 
 ```yaml title="a.yaml"
 key: 1
 ```
 
+<!-- given: recordings 18/47 -->
 <!-- slow -->
 <!-- smaller: 2 for 24 -->
 ```console
@@ -35,7 +36,8 @@ def test_a_page_is_read_with_its_marks() -> None:
     file, command = blocks_of(PAGE)
     assert (file.title, file.text, file.line) == ("a.yaml", "key: 1\n", 4)
     assert (command.is_slow, command.source, command.prints) == (True, "echo 2\n", "24\n")
-    assert given(PAGE) == ["runs/quickstart", "recordings 18/47"]
+    assert given(PAGE, slow=False) == ["runs/quickstart", "publication.yaml"]
+    assert given(PAGE, slow=True) == ["runs/quickstart", "publication.yaml", "recordings 18/47"]
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 
 from tests.dataset.s3_server import s3_server
 from tests.pages.blocks import PAGES, ROOT, Block, blocks_of, given
-from tests.pages.given import STORE, Given
+from tests.pages.given import READ_ALONE, SMALLER, STORE, Given
 from tests.pages.running import failing, reader_environment, reader_folder
 
 Followed = Callable[[Path, bool], str]
@@ -61,8 +61,8 @@ def wrong(things: Given, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Ite
 
         def followed(page: Path, slow: bool) -> str:
             folder = reader_folder(tmp_path)
-            for name in given(page.read_text(encoding="utf-8")):
-                things.put(name, folder)
+            for name in given(page.read_text(encoding="utf-8"), slow=slow):
+                things.put(name, folder, SMALLER if slow else READ_ALONE)
                 if name == STORE:
                     open_until_the_end.enter_context(s3_server(monkeypatch))
             wanted = [block for block in blocks(page) if block.is_run and (slow or not block.is_slow)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -46,6 +48,26 @@ def test_parts_and_merge_give_the_bytes_of_a_set_generated_at_once(tmp_path: Pat
     assert file_bytes(tmp_path / "merged") == file_bytes(tmp_path / "at_once")
     assert [file_bytes(path) for path in parts] == before
     assert merge_fake(parts, tmp_path / "merged").was_finished
+
+
+@pytest.mark.parametrize("can_link", [True, False])
+def test_merged_shards_take_no_second_place_and_one_that_is_made_again_leaves_its_part(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, can_link: bool
+) -> None:
+    def refused(*_: object) -> None:
+        raise OSError(errno.EXDEV, "another file system")
+
+    if not can_link:
+        monkeypatch.setattr(os, "link", refused)
+    write_part(tmp_path / "1", (1, 1))
+    merge_fake([tmp_path / "1"], tmp_path / "out")
+    name = "data/train-00001.parquet"
+    assert (tmp_path / "1" / name).samefile(tmp_path / "out" / name) == can_link
+    before = file_bytes(tmp_path / "1")
+    (tmp_path / "out" / name).unlink()
+    assert write_fake_set(tmp_path / "out").records_made == 6
+    assert file_bytes(tmp_path / "1") == before
+    assert (tmp_path / "out" / name).read_bytes() == before[name]
 
 
 def test_a_part_that_stopped_continues_and_a_folder_of_parts_can_become_the_set(tmp_path: Path) -> None:

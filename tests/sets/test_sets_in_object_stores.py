@@ -65,7 +65,9 @@ def test_a_set_has_the_bytes_of_one_in_a_folder_and_is_verified_and_read_there(t
     with patch.object(ObjectStore, "_writing", counted):
         made = write(PLACE)
     assert str(made.path) == PLACE
-    assert sorted(puts) == sorted([*FAKE_FILES, "config.yaml"])  # one PUT each; config.yaml begins and ends the work
+    # one PUT each; config.yaml begins and ends the work, and excerpts of shards are deleted at once
+    excerpts = [f"excerpts/{Path(name).stem}" for name in FAKE_FILES if name.startswith("data/")]
+    assert sorted(puts) == sorted([*FAKE_FILES, "config.yaml", *excerpts, "excerpts"])
     assert puts[-1] == "manifest.json"
     write_fake_set(tmp_path / "set")
     assert digests(object_bytes(PLACE)) == digests(file_bytes(tmp_path / "set"))

@@ -12,14 +12,14 @@ from siggen.seeding import Stage, named_uniforms
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.plate_housing import sensor_place
 from siggen.specimen.specimen_housing import SpecimenHousing
-from siggen.specimen.structure import spur_stage
+from siggen.specimen.structure import gear_stage
 from tests.dynamics.housing.rigid_body import mass_points
 
 
 def rigid_twin(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Structure:
     """Return the gears in a rigid casing with the box's mass, inertia, bolts and places of sensors."""
     casing = _casing(config, specimen, housing)
-    return locked_load(casing_structure(spur_stage(specimen.dynamics, gear_pair(specimen.gears)), casing))
+    return locked_load(casing_structure(gear_stage(specimen.dynamics, gear_pair(specimen.gears)), casing))
 
 
 def _casing(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Casing:

@@ -5,8 +5,6 @@ The set is the one of the short form, renamed: signals are equal to the bit.
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -22,13 +20,13 @@ from siggen.config import yaml_text
 from siggen.errors import UsageError
 from siggen.record.simulation import simulate
 from siggen.views.face_pressure import face_pressure
+from tests.command import command
 from tests.config.mill import mill
 from tests.config.staged import SLOW, SPALL, staged
 
 COMMON: dict[str, Any] = {
     "specimens": 3, "fs_hz": 12_800.0, "duration_s": 0.3, "manufacture": {"accuracy_class": 6, "flank_waves": "on"},
 }  # fmt: skip
-CODE = "from {}.cli.app import main; main()"
 
 
 def states(gear: str) -> list[dict[str, Any]]:
@@ -37,8 +35,7 @@ def states(gear: str) -> list[dict[str, Any]]:
 
 def run(app: str, *arguments: object) -> str:
     """Return what a command printed."""
-    words = [str(one) for one in arguments]
-    done = subprocess.run([sys.executable, "-c", CODE.format(app), *words], capture_output=True, text=True, check=False)
+    done = command(app, *map(str, arguments))
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout + done.stderr
 
@@ -68,7 +65,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("mill")
     sensors = [{"name": "end", "place": "output_bearing"}, {"kind": "encoder", "name": "out", "place": "karl"}]
     (folder / "mill.yaml").write_text(yaml_text(mill(**COMMON, sensors=sensors, states=states("eva"))))
-    printed = run("siggen", "generate", folder / "mill.yaml", "--out", folder / "set", "--workers", 1)
+    printed = run("siggen", "generate", folder / "mill.yaml", "--out", folder / "set", "--engine", "serial")
     assert "pinion" not in printed
     return folder
 

@@ -27,7 +27,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("rig")
     drawing = "--teeth 18,47 --module 3 --face-width 20 --speed 33,36 --torque 30,45 --sensors 1"
     walk(folder, f"siggen init {drawing} --out rig.yaml")
-    walk(folder, f"siggen generate rig.yaml {SIZE} --out set --workers 1")
+    walk(folder, f"siggen generate rig.yaml {SIZE} --out set --engine serial")
     return folder
 
 

@@ -7,39 +7,41 @@ import os
 import shlex
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from tests.command import command
 
 PROGRAMS = Path(sys.executable).parent
 CLEAN = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 FS_HZ = 12_800.0
 
 
-def walk(folder: Path, command: str, code: int = 0) -> str:
+def walk(folder: Path, line: str, code: int = 0) -> str:
     """Run one command in a fresh process, `python FILE` or an installed program; return all that it said."""
-    done = _run(folder, command, code)
-    return done.stdout + done.stderr
-
-
-def printed(folder: Path, command: str, code: int = 0) -> dict[str, Any]:
-    """Return the JSON object that a command prints, read from its standard output alone."""
-    found: dict[str, Any] = json.loads(_run(folder, f"{command} --json", code).stdout)
-    return found
-
-
-def _run(folder: Path, command: str, code: int) -> subprocess.CompletedProcess[str]:
-    program, *rest = shlex.split(command)
+    program, *rest = shlex.split(line)
     python = [sys.executable, "-P"] if program == "python" else [str(PROGRAMS / program)]
     environment = {**CLEAN, "OMP_NUM_THREADS": "1"}
     done = subprocess.run(
         [*python, *rest], cwd=folder, env=environment, capture_output=True, text=True, timeout=500, check=False
     )
     said = done.stdout + done.stderr
-    assert done.returncode == code, f"{command}: exit code {done.returncode}\n{said}"
+    assert done.returncode == code, f"{line}: exit code {done.returncode}\n{said}"
     assert "Traceback" not in said
-    return done
+    return said
+
+
+def printed(folder: Path, line: str, code: int = 0) -> dict[str, Any]:
+    """Return the JSON object that a command prints, read from its standard output alone; here no process is fresh."""
+    program, *rest = shlex.split(line)
+    with chdir(folder):
+        done = command({"siggen": "siggen", "siggen-diagnostics": "diagnostics"}[program], *rest, "--json")
+    assert done.returncode == code, f"{line}: exit code {done.returncode}\n{done.stderr}"
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
 
 
 def recorded(seed: int, depth: float) -> np.ndarray:

@@ -131,5 +131,5 @@ def gear_number(rotation: str) -> int:
 
 def _on_shaft(structure: Structure, place: str, values: FloatArray) -> FloatArray:
     """Return a vector (n,) with its entries at the gears of a shaft alone."""
-    own = {f"{axis}_{gear}" for gear in _gears(structure, place) for axis in "xy"}
+    own = {f"{axis}_{gear}" for gear in _gears(structure, place) for axis in "xyz"}
     return np.where([name in own for name in structure.coordinates], values, 0.0)

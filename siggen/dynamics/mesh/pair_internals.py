@@ -137,8 +137,9 @@ def _drives(pairs: FloatArray) -> NDArray[np.bool_]:
 
 
 def _contact_values(pairs: FloatArray, line_m: float, contact: PairContact) -> list[FloatArray]:
-    touching = _drives(pairs)
-    # Where nothing touches any contact will do: its values are replaced.
+    # An edge may touch outside of the line of action, where involutes have no radius. Where nothing touches any contact
+    # will do: its values are replaced.
+    touching = _drives(pairs) & (relative_radius(pairs[:, :, PLACE], line_m) > 0.0)
     position = np.where(touching, pairs[:, :, PLACE], 0.5 * abs(line_m))
     force = np.where(touching, pairs[:, :, NORMAL] / np.where(touching, pairs[:, :, CARRYING], 1.0), 1.0)
     radius = relative_radius(position, line_m)

@@ -2,7 +2,8 @@
 
 Derived. In a mirror along the centre line rotations change their sign, and shifts and tilts of the gears are reflected
 at it. So p, t and the sliding of drive flanks, reflected, are those of back flanks: gears are pushed apart under either
-torque. Positions s' count from the base tangent point of the gear (`siggen.gears.geometry.back_flanks`), s = T - s'.
+torque. Along their axes helical teeth, which keep their hand, push the other way (`axial_motion`). Positions s' count
+from the base tangent point of the gear (`siggen.gears.geometry.back_flanks`), s = T - s'.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.structure.axial_motion import turned_back
 from siggen.dynamics.structure.mesh_vectors import Flanks
 from siggen.dynamics.structure.structure import Structure
 
@@ -35,12 +37,17 @@ def on_back_flanks(structure: Structure, line_m: float, ahead_pitches: float) ->
     sliding = np.stack([still + line_m * turning, -turning])
     mirrored = replace(
         mesh,
-        vector=_fixed(_reflected(structure, mesh.vector)),
+        vector=_fixed(_back_approach(structure, mesh.vector)),
         sliding=_fixed(sliding),
         tilt=None if mesh.tilt is None else _fixed(_reflected(structure, mesh.tilt)),
         flanks=Flanks(-1.0, ahead_pitches),
     )
     return replace(structure, meshes=(mirrored,))
+
+
+def _back_approach(structure: Structure, approach: FloatArray) -> FloatArray:
+    row = dict(zip(structure.coordinates, _reflected(structure, approach).tolist(), strict=True))
+    return np.array(list(turned_back(row).values()))
 
 
 def _fixed(vector: FloatArray) -> FloatArray:

@@ -18,12 +18,17 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.housing.ordered_sums import squares
 from siggen.dynamics.housing.stiff_pencil import solve_lower, solve_upper, upper_root
+from siggen.dynamics.structure.axial_motion import (
+    axial_approach,
+    axial_bearings,
+    axial_inertias,
+    tilt_share,
+)
 from siggen.dynamics.structure.body import Body, Casing, axis_vector, rigid_body
+from siggen.dynamics.structure.gear_stage import GearStage, Rotor
 from siggen.dynamics.structure.mesh_vectors import MeshVectors
 from siggen.dynamics.structure.structure import (
     Element,
-    Rotor,
-    SpurStage,
     Structure,
     assemble,
     shafts,
@@ -36,7 +41,7 @@ from siggen.dynamics.structure.tilting_shaft import Shaft, crossed_ends, tilting
 AXES = ("vertical", "horizontal")
 
 
-def torsional(stage: SpurStage) -> Structure:
+def torsional(stage: GearStage) -> Structure:
     """Return the rotations alone, q = [θ_m, θ_1, θ_2, θ_L]; what can be seen are the gears' base circles.
 
     Source: standard literature (torsional spur gear model).
@@ -51,7 +56,7 @@ def torsional(stage: SpurStage) -> Structure:
     return _structure(stage, inertias, stiffness, damping, {}, rims, {})
 
 
-def casing_structure(stage: SpurStage, casing: Casing, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:
+def casing_structure(stage: GearStage, casing: Casing, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:
     """Return the gears in a rigid casing, q = [θ_m, θ_1, θ_2, θ_L, x_1, y_1, x_2, y_2, x_c, y_c, φ_c] and tilts.
 
     Sensors at the bearings sit on the casing. A sensor of another name is seen as `casing_<name>`.
@@ -64,7 +69,7 @@ def casing_structure(stage: SpurStage, casing: Casing, shafts_of_gears: tuple[Sh
     return carried_structure(stage, casing_body(stage, casing), shafts_of_gears)
 
 
-def casing_body(stage: SpurStage, casing: Casing) -> Body:
+def casing_body(stage: GearStage, casing: Casing) -> Body:
     """Return a rigid casing as the body that carries a stage.
 
     Raises
@@ -92,11 +97,12 @@ def refuse_single_bolt(casing: Casing) -> None:
         )
 
 
-def carried_structure(stage: SpurStage, body: Body, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:
+def carried_structure(stage: GearStage, body: Body, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:
     """Return the gears in a body, q = [θ_m, θ_1, θ_2, θ_L, x_1, y_1, x_2, y_2, coordinates of the body].
 
     With shafts that bend, the tilts [φ_x1, φ_y1, φ_x2, φ_y2] come behind: what a gear moves along x and y at a distance
-    along its axis, per distance. Seats do not tilt.
+    along its axis, per distance. Seats do not tilt. With helical teeth [z_1, z_2] come last (`axial_motion`); a body
+    without seats along the shafts holds them where they are.
     """
     angle = stage.working_pressure_angle_rad
     bearings = {
@@ -105,21 +111,46 @@ def carried_structure(stage: SpurStage, body: Body, shafts_of_gears: tuple[Shaft
     }
     held = _held(bearings, shafts_of_gears)
     crossing = _crossing(held, bearings, stage, shafts_of_gears)
+    along, grounded = _axial(stage, body)
+    held |= {name: (element,) for name, element in along.items()}
     inertias = {**_rotations(stage), **_translations(stage), **body.inertias, **_tilt_inertias(shafts_of_gears)}
+    inertias |= axial_inertias(stage)
     coordinates = tuple(inertias)
-    stiffness, damping = assemble(coordinates, (*shafts(stage), *body.supports))
+    stiffness, damping = assemble(coordinates, (*shafts(stage), *body.supports, *grounded.values()))
     springs = seated_springs(coordinates, held, tuple(body.seats), body.flexibility_m_per_n, crossing)
-    line_of_action = {"y_1": 1.0, "y_2": -1.0}
+    centre_line = axis_vector("horizontal", angle)
+    line_of_action = {
+        "y_1": 1.0,
+        "y_2": -1.0,
+        **axial_approach(stage, None if shafts_of_gears is None else centre_line),
+    }
     across = {"x_1": 1.0, "x_2": -1.0}
     motions = {name: vector(coordinates, row) for name, row in body.motions.items()}
     structure = _structure(
         stage, inertias, stiffness + springs.stiffness, damping + springs.damping, line_of_action, motions, across
     )
-    tilt = None if shafts_of_gears is None else vector(coordinates, {"phi_y_1": 1.0, "phi_y_2": -1.0})
-    mesh = replace(structure.mesh, tilt=tilt, centre_line=axis_vector("horizontal", angle))
+    share = tilt_share(stage)
+    tilt = None if shafts_of_gears is None else vector(coordinates, {"phi_y_1": share, "phi_y_2": -share})
+    mesh = replace(structure.mesh, tilt=tilt, centre_line=centre_line)
+    rows = {name: vector(coordinates, one.direction) for name, one in grounded.items()}
+    forces = {name: (one.stiffness * rows[name], one.damping * rows[name]) for name, one in grounded.items()}
     return replace(
-        structure, meshes=(mesh,), bearing_forces=springs.forces, bearing_directions=springs.directions
-    )  # fmt: skip
+        structure,
+        meshes=(mesh,),
+        bearing_forces=springs.forces | forces,
+        bearing_directions=springs.directions | rows,
+    )
+
+
+def _axial(stage: GearStage, body: Body) -> tuple[dict[str, Element], dict[str, Element]]:
+    """Return place/axis -> what holds the shafts along their axes: in seats of the body, and without one."""
+    seated: dict[str, Element] = {}
+    grounded: dict[str, Element] = {}
+    for name, one in axial_bearings(stage).items():
+        seat = {key: -value for key, value in body.seats.get(name, {}).items()}
+        found = seated if name in body.seats else grounded
+        found[name] = Element({one.coordinate: 1.0, **seat}, one.stiffness, one.damping)
+    return seated, grounded
 
 
 def _held(
@@ -143,7 +174,7 @@ Crossing = Mapping[str, Sequence[tuple[float, float]]]
 def _crossing(
     held: dict[str, tuple[Element, ...]],
     bearings: Mapping[str, Element],
-    stage: SpurStage,
+    stage: GearStage,
     shafts_of_gears: tuple[Shaft, Shaft] | None,
 ) -> Crossing:
     """Return what ties both axes of bearings that do; of shafts that bend their springs are put into `held`."""
@@ -232,7 +263,7 @@ def _inverse(matrix: FloatArray) -> FloatArray:
     return np.asarray(0.5 * (inverse + inverse.T))
 
 
-def _rotations(stage: SpurStage) -> dict[str, float]:
+def _rotations(stage: GearStage) -> dict[str, float]:
     return {
         "theta_m": stage.motor_inertia_kg_m2,
         "theta_1": stage.pinion.inertia_kg_m2,
@@ -241,12 +272,12 @@ def _rotations(stage: SpurStage) -> dict[str, float]:
     }
 
 
-def _translations(stage: SpurStage) -> dict[str, float]:
+def _translations(stage: GearStage) -> dict[str, float]:
     pinion, gear = stage.pinion.mass_kg, stage.gear.mass_kg
     return {"x_1": pinion, "y_1": pinion, "x_2": gear, "y_2": gear}
 
 
-def _centre_distance_m(stage: SpurStage) -> float:
+def _centre_distance_m(stage: GearStage) -> float:
     radii = stage.pinion.base_radius_m + stage.gear.base_radius_m
     return float(radii / np.cos(stage.working_pressure_angle_rad))
 
@@ -267,7 +298,7 @@ def _bearings(index: str, name: str, rotor: Rotor, body: Body, angle_rad: float)
 
 
 def _structure(
-    stage: SpurStage,
+    stage: GearStage,
     inertias: Mapping[str, float],
     stiffness: FloatArray,
     damping: FloatArray,

@@ -20,8 +20,9 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.body import Body
 from siggen.dynamics.structure.casing_structure import seated_springs
+from siggen.dynamics.structure.gear_stage import Bearing, GearStage, Rotor
 from siggen.dynamics.structure.mesh_vectors import MeshVectors
-from siggen.dynamics.structure.structure import Bearing, Element, Rotor, SpurStage, Structure, assemble, shafts, vector
+from siggen.dynamics.structure.structure import Element, Structure, assemble, shafts, vector
 
 PLACES = (1.0 / 3.0, 2.0 / 3.0)
 """Of both gears between the bearings of their shaft (assumed)."""
@@ -73,7 +74,7 @@ class NextStage:
     direction_rad: float
 
 
-def drivetrain(first: SpurStage, behind: Sequence[NextStage], body: Body | None = None) -> Structure:
+def drivetrain(first: GearStage, behind: Sequence[NextStage], body: Body | None = None) -> Structure:
     """Return motor, shafts with their gears, load, and what carries the bearings: the ground, or a body.
 
     q = [θ_m, x_1, y_1, θ_1, x_2, ..., θ_L, coordinates of the body], gears numbered in the order of power. The bearings
@@ -157,7 +158,7 @@ def _in_series(direction: dict[str, float], stiffness: float, damping: float, be
     return Element(direction, stiffness * share, damping * share**2)
 
 
-def _carried(first: SpurStage, behind: Sequence[NextStage]) -> list[_Carried]:
+def _carried(first: GearStage, behind: Sequence[NextStage]) -> list[_Carried]:
     """Return the shafts in the order of power."""
     names, seats = ["gear", *(stage.name for stage in behind)], [first.gear, *(stage.gear for stage in behind)]
     found = [_Carried("pinion_bearing", (1,), first.pinion.bearing, None)]
@@ -187,14 +188,14 @@ def _gears_of_shafts(behind: Sequence[NextStage]) -> list[tuple[int, ...]]:
     return [(1,), *between, (ends[-1][1],)]
 
 
-def _inertias(first: SpurStage, rotors: Sequence[Rotor]) -> dict[str, float]:
+def _inertias(first: GearStage, rotors: Sequence[Rotor]) -> dict[str, float]:
     found = {"theta_m": first.motor_inertia_kg_m2}
     for number, rotor in enumerate(rotors, start=1):
         found |= {f"x_{number}": rotor.mass_kg, f"y_{number}": rotor.mass_kg, f"theta_{number}": rotor.inertia_kg_m2}
     return found | {"theta_l": first.load_inertia_kg_m2}
 
 
-def _torsion(first: SpurStage, behind: Sequence[NextStage]) -> list[Element]:
+def _torsion(first: GearStage, behind: Sequence[NextStage]) -> list[Element]:
     """Return the couplings at both ends, and the shafts between two gears."""
     driving, driven = shafts(first)
     lines = _gears_of_shafts(behind)
@@ -215,7 +216,7 @@ def _lines(behind: Sequence[NextStage]) -> tuple[tuple[str, ...], ...]:
 
 
 def _meshes(
-    coordinates: Sequence[str], first: SpurStage, behind: Sequence[NextStage], to_gear: float
+    coordinates: Sequence[str], first: GearStage, behind: Sequence[NextStage], to_gear: float
 ) -> tuple[MeshVectors, ...]:
     gears = _Gears("", first.working_pressure_angle_rad, first.pinion, first.gear, 0.0)
     found, sense = [_mesh(coordinates, gears, 1, (1.0, to_gear))], 1.0

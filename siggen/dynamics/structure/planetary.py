@@ -20,8 +20,9 @@ from math import cos, pi, sin, tan
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.structure.gear_stage import Coupling
 from siggen.dynamics.structure.mesh_vectors import MeshVectors
-from siggen.dynamics.structure.structure import Coupling, Element, Structure, assemble, vector
+from siggen.dynamics.structure.structure import Element, Structure, assemble, vector
 
 
 @dataclass(frozen=True, slots=True)

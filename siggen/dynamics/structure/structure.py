@@ -4,6 +4,7 @@ Equations: 8-DOF translation-torsion model of a spur gear stage (reference: stan
 in paper A: Influence of Tooth Pitting on TVMS and Vibration Response of a Spur Gear Pair); signs of the mesh vector
 derived. Coordinates are deviations from rigid rotation. y is vertical, along the pitch-line velocity of the pinion at
 the mesh; x runs along the centre line from pinion to gear; rotations count positive in the running sense of the shaft.
+With helical teeth shafts move along their axes too, z_1 and z_2 (`axial_motion`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.structure.axial_motion import axial_approach, axial_bearings, axial_inertias
+from siggen.dynamics.structure.gear_stage import Coupling, GearStage
 from siggen.dynamics.structure.mesh_vectors import MeshVectors
 
 
@@ -110,69 +113,6 @@ class Structure:
         return {"input_coupling": ("theta_m", first), "output_coupling": (last, "theta_l")}
 
 
-@dataclass(frozen=True, slots=True)
-class Bearing:
-    """Both bearings of one shaft together, along the centre line (x) and vertical (y).
-
-    `stiffness_xy_n_per_m`: force along one axis per way along the other, of bearings that are stiffer along a slanted
-    load.
-    """
-
-    stiffness_x_n_per_m: float
-    stiffness_y_n_per_m: float
-    damping_x_n_s_per_m: float
-    damping_y_n_s_per_m: float
-    stiffness_xy_n_per_m: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Coupling:
-    """A torsional shaft with its coupling."""
-
-    stiffness_nm_per_rad: float
-    damping_nm_s_per_rad: float
-
-
-@dataclass(frozen=True, slots=True)
-class Rotor:
-    """One gear with its bearings."""
-
-    base_radius_m: float
-    mass_kg: float
-    inertia_kg_m2: float
-    bearing: Bearing
-
-
-@dataclass(frozen=True, slots=True)
-class SpurStage:
-    """Numbers of a motor, a pinion, a gear and a load; the 6-DOF variant uses only the gears."""
-
-    working_pressure_angle_rad: float
-    pinion: Rotor
-    gear: Rotor
-    motor_inertia_kg_m2: float
-    load_inertia_kg_m2: float
-    input_coupling: Coupling
-    output_coupling: Coupling
-
-    @property
-    def ratio(self) -> float:
-        """Torque at the load per torque at the motor, z_2/z_1."""
-        return self.gear.base_radius_m / self.pinion.base_radius_m
-
-    @property
-    def line_of_action_m(self) -> float:
-        """Distance T of the base tangent points [m]."""
-        radii = self.pinion.base_radius_m + self.gear.base_radius_m
-        return float(radii * np.tan(self.working_pressure_angle_rad))
-
-    @property
-    def equivalent_mesh_mass_kg(self) -> float:
-        """J_1 J_2 / (J_1 R_b2² + J_2 R_b1²) [kg]."""
-        pinion, gear = self.pinion, self.gear
-        return 1.0 / (pinion.base_radius_m**2 / pinion.inertia_kg_m2 + gear.base_radius_m**2 / gear.inertia_kg_m2)
-
-
 def vector(coordinates: Sequence[str], entries: Mapping[str, float]) -> FloatArray:
     """Return the (n,) vector with the named entries and zeros elsewhere, read-only.
 
@@ -201,24 +141,24 @@ def assemble(coordinates: Sequence[str], elements: Sequence[Element]) -> tuple[F
     return stiffness, damping
 
 
-def eight_dof(stage: SpurStage) -> Structure:
-    """Return motor, pinion, gear and load: q = [θ_m, x_1, y_1, θ_1, x_2, y_2, θ_2, θ_L].
+def eight_dof(stage: GearStage) -> Structure:
+    """Return motor, pinion, gear and load: q = [θ_m, x_1, y_1, θ_1, x_2, y_2, θ_2, θ_L] and z_1, z_2 of helical teeth.
 
     Source: standard literature (8-DOF spur gear model), see the module.
     """
     inertias = {"theta_m": stage.motor_inertia_kg_m2, **_gear_inertias(stage), "theta_l": stage.load_inertia_kg_m2}
-    return _spur_structure(stage, inertias, shafts(stage), driven_at="theta_m", loaded_at="theta_l")
+    return _grounded(stage, inertias, shafts(stage), driven_at="theta_m", loaded_at="theta_l")
 
 
-def six_dof(stage: SpurStage) -> Structure:
+def six_dof(stage: GearStage) -> Structure:
     """Return pinion and gear alone, q = [x_1, y_1, θ_1, x_2, y_2, θ_2], with the torques applied to the gears.
 
     Source: standard literature (6-DOF spur gear model), see the module.
     """
-    return _spur_structure(stage, _gear_inertias(stage), (), driven_at="theta_1", loaded_at="theta_2")
+    return _grounded(stage, _gear_inertias(stage), (), driven_at="theta_1", loaded_at="theta_2")
 
 
-def _gear_inertias(stage: SpurStage) -> dict[str, float]:
+def _gear_inertias(stage: GearStage) -> dict[str, float]:
     pinion, gear = stage.pinion, stage.gear
     return {
         "x_1": pinion.mass_kg,
@@ -230,7 +170,7 @@ def _gear_inertias(stage: SpurStage) -> dict[str, float]:
     }
 
 
-def shafts(stage: SpurStage) -> tuple[Element, Element]:
+def shafts(stage: GearStage) -> tuple[Element, Element]:
     """Return the couplings between motor and pinion and between gear and load."""
     return (
         Element({"theta_m": 1.0, "theta_1": -1.0}, *_numbers(stage.input_coupling)),
@@ -256,17 +196,18 @@ _PLACES = {
 }
 
 
-def _supports(stage: SpurStage) -> dict[str, Element]:
+def _supports(stage: GearStage) -> dict[str, Element]:
     """Return place/axis -> the bearing element there."""
     numbers = {}
     for index, rotor in (("1", stage.pinion), ("2", stage.gear)):
         bearing = rotor.bearing
         numbers["x_" + index] = (bearing.stiffness_x_n_per_m, bearing.damping_x_n_s_per_m)
         numbers["y_" + index] = (bearing.stiffness_y_n_per_m, bearing.damping_y_n_s_per_m)
-    return {place: Element({name: 1.0}, *numbers[name]) for place, name in _PLACES.items()}
+    along = {place: Element({one.coordinate: 1.0}, *one[1:]) for place, one in axial_bearings(stage).items()}
+    return {place: Element({name: 1.0}, *numbers[name]) for place, name in _PLACES.items()} | along
 
 
-def _crossing(stage: SpurStage) -> list[Element]:
+def _crossing(stage: GearStage) -> list[Element]:
     """Return what ties x and y of a shaft: k (x y + y x) as springs along both diagonals, one of them negative."""
     found = []
     for index, rotor in (("1", stage.pinion), ("2", stage.gear)):
@@ -275,20 +216,24 @@ def _crossing(stage: SpurStage) -> list[Element]:
     return found
 
 
+_OTHERS = {"vertical": "horizontal", "horizontal": "vertical", "axial": "axial"}
+
+
 def _other(place: str) -> str:
     name, axis = place.split("/")
-    return f"{name}/{'horizontal' if axis == 'vertical' else 'vertical'}"
+    return f"{name}/{_OTHERS[axis]}"
 
 
-def _mixed(stage: SpurStage, place: str) -> float:
+def _mixed(stage: GearStage, place: str) -> float:
     rotor = stage.pinion if place.startswith("pinion") else stage.gear
-    return rotor.bearing.stiffness_xy_n_per_m
+    return 0.0 if place.endswith("axial") else rotor.bearing.stiffness_xy_n_per_m
 
 
-def _spur_structure(
-    stage: SpurStage, inertias: Mapping[str, float], couplings: Sequence[Element], *, driven_at: str, loaded_at: str
+def _grounded(
+    stage: GearStage, inertias: Mapping[str, float], couplings: Sequence[Element], *, driven_at: str, loaded_at: str
 ) -> Structure:
-    """Assemble grounded bearings, shafts and the gear mesh over the coordinates of `inertias`."""
+    """Assemble grounded bearings, shafts and the gear mesh over the coordinates of `inertias` and along the axes."""
+    inertias = {**inertias, **axial_inertias(stage)}
     coordinates = tuple(inertias)
     supports = _supports(stage)
     stiffness, damping = assemble(coordinates, (*supports.values(), *couplings, *_crossing(stage)))
@@ -303,7 +248,7 @@ def _spur_structure(
         stiffness=stiffness,
         meshes=(
             MeshVectors(
-                vector(coordinates, _line_of_action(stage)),
+                vector(coordinates, {**_line_of_action(stage), **axial_approach(stage)}),
                 sliding_vectors(coordinates, stage, _across_line_of_action(stage)),
                 stage.equivalent_mesh_mass_kg,
             ),
@@ -322,7 +267,7 @@ def _spur_structure(
     )
 
 
-def _line_of_action(stage: SpurStage) -> dict[str, float]:
+def _line_of_action(stage: GearStage) -> dict[str, float]:
     """Return p: both gears' motions along the line of action, which runs along (sin α, cos α) from pinion to gear."""
     sine, cosine = np.sin(stage.working_pressure_angle_rad), np.cos(stage.working_pressure_angle_rad)
     return {
@@ -335,13 +280,13 @@ def _line_of_action(stage: SpurStage) -> dict[str, float]:
     }
 
 
-def _across_line_of_action(stage: SpurStage) -> dict[str, float]:
+def _across_line_of_action(stage: GearStage) -> dict[str, float]:
     """Return the sliding of the pinion's flank against the gear's by motion of the gears, across the line of action."""
     sine, cosine = np.sin(stage.working_pressure_angle_rad), np.cos(stage.working_pressure_angle_rad)
     return {"x_1": -cosine, "y_1": sine, "x_2": cosine, "y_2": -sine}
 
 
-def sliding_vectors(coordinates: Sequence[str], stage: SpurStage, across: Mapping[str, float]) -> FloatArray:
+def sliding_vectors(coordinates: Sequence[str], stage: GearStage, across: Mapping[str, float]) -> FloatArray:
     """Return r_0, r_1 (2, n): arms s on the pinion, T - s on the gear; `across` is the translation of the gears."""
     still = vector(coordinates, {**across, "theta_2": -stage.line_of_action_m})
     result = np.array([still, vector(coordinates, {"theta_1": 1.0, "theta_2": 1.0})])

@@ -156,13 +156,18 @@ class PairMotion:
     def _standing(self, pitches: float) -> FloatArray:
         """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction."""
         equations = self.equations
-        moved = np.zeros_like(equations.static_deflection)
+        deviation = np.zeros_like(equations.static_deflection)
         for m, law in enumerate(self.laws):
             rate, begins = self.pair_equations.places[m]
             approach = static_approach_m(law, equations.static_force[m], pitches * rate + begins)
-            moved += equations.mesh_vector[m] * (self._stiffness[m] * (approach - equations.static_approach[m]))
-        deviation = static_solution(self.structure, self._loaded, moved)
+            deviation += self._given_way[m] * (approach - equations.static_approach[m])
         return np.concatenate([deviation, np.zeros_like(deviation)])
+
+    @cached_property
+    def _given_way(self) -> list[FloatArray]:
+        """Deflections (n,) by every mesh for a unit of its approach, about the static state [m/m, rad/m]."""
+        pushed = self.equations.mesh_vector * self._stiffness[:, np.newaxis]
+        return [static_solution(self.structure, self._loaded, row) for row in pushed]
 
     @property
     def _loaded(self) -> FloatArray:

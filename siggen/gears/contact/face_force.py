@@ -92,15 +92,31 @@ def face_force(
     tolerance : float
         Of the last Newton step over the largest load.
     """
+    keep_rigid_sinks(slices, room)
+    return solved_force(slices, approach_m, tilt_rad, loads_m, room, tolerance)
+
+
+@njit(cache=True)
+def keep_rigid_sinks(slices: FaceSlices, room: SolverRoom) -> None:
+    """Put the sinks of slices without load into the room: all solutions of one position need them."""
+    for i in range(room.rigid_m.size):
+        room.rigid_m[i] = slice_sink(slice_of(slices, i), 0.0).sink_m
+
+
+@njit(cache=True)
+def solved_force(
+    slices: FaceSlices, approach_m: float, tilt_rad: float, loads_m: FloatArray, room: SolverRoom, tolerance: float
+) -> FaceForce:
+    """Return what `face_force` does, in a room that has the rigid sinks of the slices."""
     room.losses[:] = 0
-    _first_guess(slices, approach_m, tilt_rad, loads_m)
+    _first_guess(slices, approach_m, tilt_rad, loads_m, room)
     damping = 0.0
     for passes in range(1, LARGEST_PASSES + 1):
         square = 0.0
         for i in range(loads_m.size):
             square += loads_m[i] * loads_m[i]
         if square == 0.0 and passes > 1:  # a guess far too large let go of every slice: begin anew
-            _first_guess(slices, approach_m, tilt_rad, loads_m)
+            _first_guess(slices, approach_m, tilt_rad, loads_m, room)
             for i in range(loads_m.size):
                 square += loads_m[i] * loads_m[i]
         if square == 0.0:
@@ -121,15 +137,14 @@ def face_force(
 
 
 @njit(cache=True)
-def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatArray) -> None:
+def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatArray, room: SolverRoom) -> None:
     """Put loads on the slices that the approach reaches if none carries yet."""
     for i in range(loads.size):
         if loads[i] > 0.0:
             return
     own = 4.0 + slices.teeth.sum + slices.compliance_m_per_n * slices.carrying_m / slices.kappa_per_pa
     for i in range(loads.size):
-        sunk = slice_sink(slice_of(slices, i), 0.0).sink_m
-        loads[i] = max(approach + tilt * slices.face_m[i] - slices.lead_m[i] - sunk, 0.0) / own
+        loads[i] = max(approach + tilt * slices.face_m[i] - slices.lead_m[i] - room.rigid_m[i], 0.0) / own
 
 
 @njit(cache=True)
@@ -171,17 +186,16 @@ def _assemble(
     radii = slices.radius_m, slices.rounding_m
     for i in range(loads.size):
         own = room.diagonal[i]
-        one = CoveredSlice((left[i], right[i], notch[i], floor[i]), (tips[i, 0], tips[i, 1]), covered[i], spread, radii)
-        gap = slice_sink(one, loads[i])
         wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
         if loads[i] == 0.0:
-            if wanted <= gap.sink_m:
+            if wanted <= room.rigid_m[i]:
                 continue
             settled = False
             # small beside the neighbours but not 0, where sinks are infinitely soft
-            loads[i] = min((wanted - gap.sink_m) / (own + 4.0), 0.05 * total / loads.size + 1e-15)
-            gap = slice_sink(one, loads[i])
+            loads[i] = min((wanted - room.rigid_m[i]) / (own + 4.0), 0.05 * total / loads.size + 1e-15)
             wanted -= own * loads[i]
+        one = CoveredSlice((left[i], right[i], notch[i], floor[i]), (tips[i, 0], tips[i, 1]), covered[i], spread, radii)
+        gap = slice_sink(one, loads[i])
         factor, slope = own_law(loads[i], laws.width)
         residual = wanted - (laws.beta + factor) * loads[i] - gap.sink_m
         room.rows[chosen] = i

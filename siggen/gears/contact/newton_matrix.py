@@ -16,8 +16,9 @@ class SolverRoom(NamedTuple):
     """Arrays that the solver reuses, made by `solver_room`.
 
     `rows` (n,): slices that carry; `losses` (n,): how often a slice lost touch; `product`, `growth` (n,): K u and
-    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 5): right sides residual, 1, u, v, y, then the solutions; `steps`,
-    `factors`: of `solve_rows`; `strength`, `strength_slope` (m,): of the kernel.
+    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 5): right sides residual, 1, u, v, y, then the step, and what loads
+    answer to the approach at 1 and to the tilt [m/rad] at 4; `rigid_m` (n,): sinks without load; `steps`, `factors`: of
+    `solve_rows`; `strength`, `strength_slope` (m,): of the kernel.
     """
 
     rows: IntArray
@@ -26,6 +27,7 @@ class SolverRoom(NamedTuple):
     diagonal: FloatArray
     right: FloatArray
     growth: FloatArray
+    rigid_m: FloatArray
     steps: FloatArray
     factors: FloatArray
     strength: FloatArray
@@ -41,6 +43,7 @@ def solver_room(slices: int) -> SolverRoom:
         diagonal=np.zeros(slices),
         right=np.zeros((slices, SIDES)),
         growth=np.zeros(slices),
+        rigid_m=np.zeros(slices),
         steps=np.zeros((slices, TERMS)),
         factors=np.zeros((slices, TERMS + 1)),
         strength=np.zeros(EXPONENTIALS),
@@ -107,8 +110,10 @@ def add_low_rank(
     largest = 0.0
     for n in range(chosen):
         i = room.rows[n]
-        change = weights[0, 0] * room.right[i, 1] + weights[1, 0] * room.right[i, 2] + weights[2, 0] * room.right[i, 3]
-        room.right[i, 0] -= change
+        even, own, grown = room.right[i, 1], room.right[i, 2], room.right[i, 3]
+        room.right[i, 0] -= weights[0, 0] * even + weights[1, 0] * own + weights[2, 0] * grown
+        room.right[i, 1] -= weights[0, 1] * even + weights[1, 1] * own + weights[2, 1] * grown
+        room.right[i, 4] -= weights[0, 2] * even + weights[1, 2] * own + weights[2, 2] * grown
         largest = max(largest, abs(room.right[i, 0]))
     turning = along[1] - weights[0, 1] * along[1] - weights[1, 1] * along[2] - weights[2, 1] * along[3]
     tilting = along[4] - weights[0, 2] * along[1] - weights[1, 2] * along[2] - weights[2, 2] * along[3]

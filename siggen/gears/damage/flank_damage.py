@@ -11,7 +11,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.gears.damage.covering import hidden_rows
 from siggen.gears.damage.part import Refusal
-from siggen.gears.damage.row_columns import COLUMNS
+from siggen.gears.damage.row_columns import COLUMNS, FACE
 from siggen.gears.damage.tooth_damage import Damage, DamageProblem, ToothDamage, damaged_teeth, pits_of
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from siggen.gears.geometry.gear_pair import GearPair
@@ -38,6 +38,7 @@ def _rows_of(pits: Damage) -> FloatArray:
             raise ValueError(str(problem))
     found = [row for pit in pits for row in pit.rows()]
     rows = np.unique(np.array(found, dtype=np.float64).reshape(-1, COLUMNS), axis=0)
+    rows = rows[np.argsort(rows[:, FACE], kind="stable")]  # across the face, as their intervals are sorted
     return rows[~hidden_rows(rows)] if len(rows) > 1 else rows
 
 

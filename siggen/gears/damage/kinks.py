@@ -8,6 +8,7 @@ D^2)^2 = 4 D^2 P_1, D = w_2 - w_1: a quartic. Points that a deeper damage hides 
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import sqrt
 from typing import NamedTuple
 
@@ -32,7 +33,7 @@ from siggen.gears.damage.row_columns import (
 )
 from siggen.gears.damage.straight_edges import Conic, corner_points, side_conic_points, side_side_points
 from siggen.gears.damage.union import square_depth
-from siggen.gears.damage.visible_points import edge_square, segment_shows, shows
+from siggen.gears.damage.visible_points import Strips, edge_square, segment_shows, shows, strips_of
 
 MERGED_M = 1e-16
 """Kinks nearer than this are one: rounding of a crossing, and 1e-13 of the height of a tooth."""
@@ -252,7 +253,7 @@ def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
 
 
 @njit(cache=True)
-def _row_kinks(i: int, pits: FloatArray, face_width: float, out: list[float]) -> None:
+def _row_kinks(i: int, pits: FloatArray, strips: Strips, face_width: float, out: list[float]) -> None:
     """Append the heights where row i by itself begins, ends or leaves the face."""
     row = pits[i]
     points = [(0.0, 0.0)]
@@ -266,28 +267,37 @@ def _row_kinks(i: int, pits: FloatArray, face_width: float, out: list[float]) ->
             (row[LOWEST], row[LEFT_LOW], row[RIGHT_LOW]),
             (row[HIGHEST], row[LEFT_HIGH], row[RIGHT_HIGH]),
         ):
-            if segment_shows(x, left, right, edge_square(x, left, pits, i), pits, i):
+            if segment_shows(x, left, right, edge_square(x, left, pits, i), pits, strips, i):
                 out.append(x)
         corner_points(row, face_width, points)
     for x, w in points:
-        if shows(x, w, edge_square(x, w, pits, i), pits, i, i):
+        if shows(x, w, edge_square(x, w, pits, i), pits, strips, i, i):
             out.append(x)
 
 
 def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
     """Return all heights where the section of a flank with `pits` (n, 14) changes its form, ascending (k,) [m]."""
-    return _merged(np.unique(_kinks(pits, face_width)))  # numba's own unique costs a second of compilation
+    return _known_kinks(pits.shape, pits.tobytes(), face_width)
+
+
+@lru_cache(maxsize=8)  # tables and labels ask five times for the same tooth
+def _known_kinks(shape: tuple[int, ...], rows: bytes, face_width: float) -> FloatArray:
+    pits = np.frombuffer(rows).reshape(shape).copy()
+    # numba's own unique costs a second of compilation
+    found = _merged(np.unique(_kinks(pits, strips_of(pits), face_width)))
+    found.setflags(write=False)
+    return found
 
 
 @njit(cache=True)
-def _kinks(pits: FloatArray, face_width: float) -> FloatArray:
+def _kinks(pits: FloatArray, strips: Strips, face_width: float) -> FloatArray:
     """Return all kinks in any order, some of them twice."""
     out = [0.0]
     out.pop()
     points = [(0.0, 0.0)]
     for i in range(pits.shape[0]):
         one = pits[i]
-        _row_kinks(i, pits, face_width, out)
+        _row_kinks(i, pits, strips, face_width, out)
         for j in range(i):
             two = pits[j]
             apart = (
@@ -299,13 +309,13 @@ def _kinks(pits: FloatArray, face_width: float) -> FloatArray:
             points.clear()
             _crossing_points(one, two, points)
             for x, w in points:
-                if shows(x, w, max(edge_square(x, w, pits, i), edge_square(x, w, pits, j)), pits, i, j):
+                if shows(x, w, max(edge_square(x, w, pits, i), edge_square(x, w, pits, j)), pits, strips, i, j):
                     out.append(x)
             if one[DISH] != 0.0 or two[DISH] != 0.0:
                 points.clear()
                 _equal_depth_points(one, two, face_width, points)
                 for x, w in points:
-                    if shows(x, w, square_depth(x, w, pits, i), pits, i, j):
+                    if shows(x, w, square_depth(x, w, pits, i), pits, strips, i, j):
                         out.append(x)
     return np.array(out)
 

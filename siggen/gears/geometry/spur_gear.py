@@ -192,7 +192,7 @@ class SpurGear:
             If a height is negative, not finite or above the height where the involute turns over.
         """
         x = np.asarray(height_m, dtype=np.float64)
-        top = float(self.height_m(0.5 * pi + self.base_half_angle_rad))
+        top = _turning_height_m(self)
         if not bool(np.all((x >= 0.0) & (x <= top))):
             raise ValueError(
                 f"height_m {_span(x)} m is off the involute; allowed: 0 to {top:.6g} m above the base circle"
@@ -219,6 +219,12 @@ class SpurGear:
 
 def _span(values: FloatArray) -> str:
     return f"{np.min(values):.6g} to {np.max(values):.6g}" if values.size else "(empty)"
+
+
+@lru_cache(maxsize=256)
+def _turning_height_m(gear: SpurGear) -> float:
+    """Return the height at which the involute turns over [m]."""
+    return float(gear.height_m(0.5 * pi + gear.base_half_angle_rad))
 
 
 @lru_cache(maxsize=256)

@@ -28,7 +28,7 @@ from siggen.gears.damage.union import (
     interval_room,
     stretch_room,
 )
-from siggen.gears.damage.visible_points import edge_square, shows
+from siggen.gears.damage.visible_points import edge_square, shows, strips_of
 from siggen.gears.geometry.involute import half_thickness, height
 from siggen.gears.geometry.quadrature import NODES_4, NODES_6, NODES_16, WEIGHTS_4, WEIGHTS_6, WEIGHTS_16
 
@@ -144,10 +144,10 @@ def _add_piece(tooth: PittedTooth, low: float, high: float, room: Room, count: i
 @njit(cache=True)
 def _lower_ends(pits: FloatArray) -> FloatArray:
     """Return the height of each row's lower end (n,) [m]; -inf where a deeper row hides it: it must change no bit."""
-    out = pits[:, HEIGHT] - pits[:, SEMI_HEIGHT]
+    out, strips = pits[:, HEIGHT] - pits[:, SEMI_HEIGHT], strips_of(pits)
     for i in range(pits.shape[0]):
         x, w = pits[i, LOWEST], pits[i, FACE]
-        if pits[i, TRAPEZOID] == 0.0 and not shows(x, w, edge_square(x, w, pits, i), pits, i, i):
+        if pits[i, TRAPEZOID] == 0.0 and not shows(x, w, edge_square(x, w, pits, i), pits, strips, i, i):
             out[i] = -np.inf
     return out
 

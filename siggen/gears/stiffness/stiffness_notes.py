@@ -98,7 +98,7 @@ def _helix(pair: GearPair) -> Iterator[str]:
         total = pair.contact_ratio + pair.overlap_ratio
         yield (
             f"pair: helical teeth of overlap ratio {pair.overlap_ratio:.3g}, total contact ratio {total:.3g}; the "
-            f"axial force, {abs(tan(pair.helix_rad)):.3g} of the tangential one on the pitch circle, moves no shaft"
+            f"axial force is {abs(tan(pair.helix_rad)):.3g} of the tangential one on the pitch circle"
         )
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -29,6 +27,7 @@ from diagnostics.training.other_set import check_other_set
 from diagnostics.training.training import OtherSet, train_models, training_metrics
 from diagnostics.training.training_sets import set_table
 from siggen.errors import UsageError
+from tests.command import command
 
 SPLITS = ("train",) * 5 + ("validation",) * 2 + ("test",) * 3
 OPTIONS = NetworkOptions(cnn=False, classes=FAULT)
@@ -70,16 +69,6 @@ def model(kinds: Any, make_dataset: Callable[..., Any], tmp_path_factory: pytest
     return folder
 
 
-def ran(command: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", "from diagnostics.cli.app import main; main()", command, *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=300,
-    )
-
-
 def test_another_fault_of_another_set_is_refused_by_that_word(kinds: Any) -> None:
     fault = pc.replace_substring(kinds.table.column("primary_fault"), "pitting", "crack")
     place = kinds.table.schema.get_field_index("primary_fault")
@@ -97,7 +86,7 @@ def test_predict_names_a_fault_and_says_so(
     assert table.column("state").to_pylist() == ["severe"]
     parquet.write_table(table.replace_schema_metadata({"siggen.identity": "0"}), tmp_path / "run.parquet")
     given = ("--fs", "12800", "--teeth", "18,47", "--speed-range", "20,50", "--out", str(tmp_path / "out"))
-    done = ran("predict", str(model), str(tmp_path / "run.parquet"), *given)
+    done = command("diagnostics", "predict", str(model), str(tmp_path / "run.parquet"), *given)
     assert done.returncode == 0, done.stderr
     assert "answer (fault):       pitting" in done.stdout
     found = json.loads((tmp_path / "out/prediction.json").read_text(encoding="utf-8"))
@@ -134,7 +123,7 @@ def test_scores_and_tables_and_loaders_agree_on_the_classes(kinds: Any, model: P
 
 
 def test_a_class_of_another_kind_is_refused_before_anything_is_read() -> None:
-    done = ran("report", "nowhere", "--classes", "severity")
+    done = command("diagnostics", "report", "nowhere", "--classes", "severity")
     assert done.returncode != 0
     assert "--classes: received 'severity'; allowed are state, fault" in done.stderr
     assert "Traceback" not in done.stderr

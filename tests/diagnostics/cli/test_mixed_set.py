@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +16,7 @@ from diagnostics.loader import StreamSettings, WindowDataset
 from diagnostics.loader.windows import OrderRecords, order_records
 from diagnostics.training.cnn import WideKernelNetwork, _normalise
 from siggen.errors import UsageError
+from tests.command import command
 
 MIXED = """
 extends: quickstart
@@ -33,9 +32,8 @@ sensors:
 """
 
 
-def ran(command: str, *options: str) -> str:
-    program = str(Path(sys.executable).with_name(command))
-    found = subprocess.run([program, *options], capture_output=True, text=True, timeout=600, check=False)
+def ran(package: str, *options: str) -> str:
+    found = command(package, *options)
     assert found.returncode == 0, found.stderr
     return found.stdout + found.stderr
 
@@ -89,9 +87,9 @@ def test_the_network_takes_every_channel_at_its_own_scale(mixed: Any) -> None:
 @pytest.mark.slow
 def test_indicators_explorer_and_audit_take_the_set_in_fresh_processes(folder: Path, mixed: Any) -> None:
     out = folder.parent
-    ran("siggen-diagnostics", "indicators", str(folder), "--out", str(out / "ranking"))
-    ran("siggen-diagnostics", "explore", str(folder), "--out", str(out / "explorer.html"))
-    ran("siggen-diagnostics", "audit", str(folder), "--out", str(out / "audit"))
+    ran("diagnostics", "indicators", str(folder), "--out", str(out / "ranking"))
+    ran("diagnostics", "explore", str(folder), "--out", str(out / "explorer.html"))
+    ran("diagnostics", "audit", str(folder), "--out", str(out / "audit"))
     table = pq.read_table(out / "ranking" / "indicators.parquet")
     speeds = [channel.name for channel in mixed.channels if channel.quantity == "angular speed"]
     assert len(speeds) == 2

@@ -10,6 +10,7 @@ import pytest
 from diagnostics.explore.detail import Detail
 from diagnostics.explore.flanks import flank_size, outlines
 from diagnostics.explore.record_views import OrderAxis, PageAxes, record_views
+from diagnostics.records.named_set import Words
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectrum import envelope_spectrum
 from siggen.config import parse
@@ -95,6 +96,19 @@ def test_an_elliptic_pit_keeps_its_axes() -> None:
     corners = np.array(outlines([row])[0]["corners"])
     assert np.ptp(corners, axis=0).tolist() == [3.0, 1.0]
     assert corners.mean(axis=0).tolist() == pytest.approx([8.0, 2.0], abs=1e-3)
+
+
+def test_indicators_of_a_machine_are_called_after_the_gears_of_their_mesh() -> None:
+    parsed = parse(mill()).config
+    assert parsed is not None
+    words = Words(parsed.names)
+    title = "Sideband power, pinion, mesh harmonics 1 to 5"
+    assert words.about("sideband_power_pinion", title) == title.replace("pinion", "ida")
+    assert (
+        words.about("sideband_power_pinion_slow", f"{title}, mesh slow")
+        == f"{title.replace('pinion', 'eva')}, mesh slow"
+    )
+    assert words.column("sideband_power_gear_slow__end_vertical") == "sideband_power_karl_slow__end_vertical"
 
 
 def test_flanks_of_a_machine_are_those_of_the_short_form() -> None:

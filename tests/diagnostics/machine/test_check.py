@@ -16,11 +16,17 @@ FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0
 
 
 def write_recording(
-    file: Path, seed: int, speed_hz: float = 25.0, gain: float = 1.0, seconds: float = SECONDS, knock: float = 0.0
+    file: Path,
+    seed: int,
+    speed_hz: float = 25.0,
+    gain: float = 1.0,
+    seconds: float = SECONDS,
+    knock: float = 0.0,
+    jitter: float = 1e-3,
 ) -> Path:
     """Mesh lines, weak sidebands, noise; one knock per turn where a tooth is damaged."""
     rng = np.random.default_rng(seed)
-    turn = speed_hz * (1.0 + 1e-3 * rng.normal()) * np.arange(round(seconds * FS_HZ)) / FS_HZ + rng.uniform()
+    turn = speed_hz * (1.0 + jitter * rng.normal()) * np.arange(round(seconds * FS_HZ)) / FS_HZ + rng.uniform()
     signal = sum(np.cos(2 * np.pi * TEETH * h * turn + h) / h for h in (1, 2, 3))
     signal = signal * (1.0 + 0.03 * np.cos(2 * np.pi * turn) + 0.01 * np.cos(2 * np.pi * turn * TEETH / 31))
     phase = turn % 1.0
@@ -121,4 +127,34 @@ def test_teeth_whose_mesh_lines_are_not_there_are_refused(tmp_path: Path) -> Non
         np.savez(file, **{k: v if k in {"t", "pulse"} else rng.standard_normal(v.size) for k, v in held.items()})
     facts = ["--fs", FS_HZ, "--teeth", "20,31", "--tacho", "pulse", "--channel", "lid=lid", "--out", tmp_path / "rig"]
     with pytest.raises(SiggenError, match="no mesh line of 20 teeth"):
+        run("baseline", *files, *facts)
+
+
+def loaded(file: Path, seed: int, load: float, **changed: float) -> Path:
+    """Levels follow the load, and an induction motor slips by 0.5 % from none to full."""
+    return write_recording(file, seed, 25.0 * (1.0 - 5e-5 * load), (load / 100.0) ** 0.8, jitter=0.0, **changed)
+
+
+@pytest.mark.parametrize("way", ["numbers", "slip"])
+def test_a_load_between_the_references_is_judged_and_one_outside_is_not(way: str, tmp_path: Path) -> None:
+    loads = (20.0, 35.0, 60.0, 80.0, 100.0)
+    files = [loaded(tmp_path / f"{k}.npz", k, load) for k, load in enumerate(loads)]
+    said = ",".join(str(load) for load in loads) if way == "numbers" else "slip"
+    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--load", said, "--out", tmp_path / "rig")
+    assert run("baseline", *files, *facts)[0] == 0
+
+    def verdict(seed: int, load: float, **changed: float) -> str:
+        new = loaded(tmp_path / "new.npz", seed, load, **changed)
+        given = ("--load", load) if way == "numbers" else ()
+        return run("check", tmp_path / "rig", new, *given, "--no-keep")[1].split(": ")[1]
+
+    assert verdict(20, 47.0) == "unchanged"
+    assert verdict(21, 47.0, knock=2.0) == "changed"
+    assert verdict(22, 140.0, knock=2.0) == "other load or speed"
+
+
+def test_speeds_that_do_not_differ_tell_no_load(tmp_path: Path) -> None:
+    files = [write_recording(tmp_path / f"{k}.npz", seed=k, speed_hz=25.0 + 2.0 * k) for k in range(3)]
+    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,35", "--load", "slip", "--out", tmp_path / "rig")
+    with pytest.raises(SiggenError, match="--load slip: speeds of the references differ by 14 %"):
         run("baseline", *files, *facts)

@@ -177,9 +177,19 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
     assert found["state"] == "severe"
     assert list(found["probabilities"]) == ["healthy_referenced"]
     assert found["distance"] != found["distance_without_reference"]
-    code, healthy = predict(monkeypatch, folder, f"{file}:3", tmp_path, "--reference", f"{file}:0")
-    assert code == 0
-    assert healthy["state"] == "healthy"
+
+
+@pytest.mark.usefixtures("other")
+def test_several_recordings_are_answered_each_in_its_first_line_and_folder(
+    trained: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, file = trained
+    predict(monkeypatch, folder, f"{file}:2,3", tmp_path, "--reference", f"{file}:0")
+    said = [line for line in capsys.readouterr().out.splitlines() if line.startswith(file.name)]
+    assert all(
+        f"{k}: " in line and state in line for k, state, line in zip("23", ("severe", "healthy"), said, strict=True)
+    )
+    assert {path.name for path in tmp_path.iterdir()} == {f"{file.name}_2", f"{file.name}_3"}
 
 
 def test_a_reference_is_judged_against_none_on_the_records_that_have_one(training: Training) -> None:
@@ -288,9 +298,8 @@ def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
     assert any(
         text.startswith("reference slow.npz: the sampling rate is 9600 Hz") for text in found["reasons_to_abstain"]
     )
-    np.savez(
-        tmp_path / "hurried.npz", **channels(other, 0, (5, 6)), tacho_s=5.0 / 6.0 * pulses(other, 0)
-    )  # read at the old rate: 6/5 of the speed
+    # read at the old rate: 6/5 of the speed
+    np.savez(tmp_path / "hurried.npz", **channels(other, 0, (5, 6)), tacho_s=5.0 / 6.0 * pulses(other, 0))
     found = predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", str(tmp_path / "hurried.npz"))[1]
     assert found["state"] == "abstains"
     assert any("reference hurried.npz: the pinion speed is 36" in text for text in found["reasons_to_abstain"])

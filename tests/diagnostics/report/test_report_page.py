@@ -15,6 +15,7 @@ from urllib.parse import parse_qs
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
+import pyarrow.csv
 import pytest
 
 from diagnostics.audit.audit import ALONE
@@ -22,17 +23,35 @@ from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.provenance import without_path
 from diagnostics.report.report import audit_beside, audit_sentence, write_report
+from diagnostics.report.your_scores import Beside
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.realism import meaning_of_scores
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, UsageError
 
 
 @pytest.fixture(scope="module")
 def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report")
-    write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False), explorer="explorer.html")
+    labels = dataset.labels("test", ["record_id", "damaged_area_mm2"])
+    mine = labels.rename_columns(["record_id", "damage"])
+    pyarrow.csv.write_csv(mine, out / "mine.csv")
+    beside = Beside("explorer.html", out / "mine.csv")
+    write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False), beside=beside)
     return out
+
+
+def test_the_users_predictions_have_a_row_beside_the_classifiers(dataset: Any, folder: Path, tmp_path: Path) -> None:
+    rows = json.loads((folder / "metrics.json").read_text())["yours"]
+    of_damage = {row["name"]: row for row in rows if row["records"] == "every damage"}
+    assert set(of_damage) == {"yours", "rms", "indicators", "boosting"}
+    assert of_damage["yours"]["score"] == 1.0
+    assert of_damage["rms"]["difference"] == pytest.approx(1.0 - of_damage["rms"]["score"])
+    section = (folder / "report.html").read_text().split('id="your-predictions"')[1].split("<h2")[0]
+    assert "<td>yours</td>" in section
+    (tmp_path / "wrong.csv").write_text("record_id,damage\n0,1\n")
+    with pytest.raises(UsageError, match="records missing"):
+        write_report(dataset, tmp_path / "out", seed=0, beside=Beside(predictions=tmp_path / "wrong.csv"))
 
 
 def test_the_answer_stands_first_and_says_that_error_free_gears_separate_trivially(folder: Path) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from diagnostics.statistics.change_score import attainable_rate, change_score
+from diagnostics.statistics.conditions import Condition
 from siggen.errors import UsageError
 
 FEATURES = 80
@@ -56,3 +57,37 @@ def test_an_indicator_that_one_recording_lacks_does_not_count() -> None:
 def test_two_references_are_too_few() -> None:
     with pytest.raises(UsageError, match="at least 3"):
         change_score(np.zeros((2, 4)), np.zeros(4))
+
+
+def recordings_under_load(rng: np.random.Generator, loads: np.ndarray) -> np.ndarray:
+    """Logarithms that follow the load, each by its own exponent from -1 to 2 and with a bend, and noise of 3 %."""
+    away = np.log(loads / loads.max())[:, None]
+    exponents, bends = np.random.default_rng(9).uniform([-1.0, -0.2], [2.0, 0.2], (FEATURES, 2)).T
+    return away * exponents + away**2 * bends + 0.03 * rng.normal(size=(loads.size, FEATURES))
+
+
+@pytest.mark.parametrize("count", [4, 6])
+def test_a_load_between_those_of_the_references_is_no_change_and_a_tenth_at_threefold_is(count: int) -> None:
+    """50 draws each, against the rates that are asked of a machine: 1 of 10 and 9 of 10."""
+    rng = np.random.default_rng(1)
+    alarms, hits = [], []
+    for _ in range(50):
+        loads = np.append(np.append(rng.uniform(12.0, 95.0, count - 2), [10.0, 100.0]), rng.uniform(20.0, 80.0))
+        bag = recordings_under_load(rng, loads)
+        load = Condition(np.log(loads), 1.0, 0.2, 0.5)
+        alarms.append(change_score(bag[:-1], bag[-1], 0.05, [load]).changed)
+        bag[-1, :8] += np.log(3.0)
+        hits.append(change_score(bag[:-1], bag[-1], 0.05, [load]).changed)
+    assert np.mean(alarms) <= 0.1
+    assert np.mean(hits) >= 0.9
+
+
+def test_where_conditions_are_equal_others_say_their_mean_and_far_from_them_little() -> None:
+    bag = healthy_recordings(np.random.default_rng(4), 7)
+    alike = Condition(np.zeros(7), 1.0, 0.2, 0.5)
+    assert change_score(bag[:-1], bag[-1], 0.05, [alike]).mean == pytest.approx(bag[:-1].mean(axis=0))
+    away = np.zeros(7)
+    away[-1] = 5.0
+    far = change_score(bag[:-1], bag[-1], 0.05, [Condition(away, 1.0, 0.2, 0.5)])
+    near = change_score(bag[:-1], bag[-1], 0.05, [alike])
+    assert far.score < 0.2 * near.score

@@ -16,7 +16,8 @@ from siggen.dynamics.drive.external_forces import (
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.varying_drive import VaryingDrive
 from siggen.dynamics.structure.casing_structure import torsional
-from siggen.dynamics.structure.structure import Bearing, SpurStage, Structure, eight_dof, vector
+from siggen.dynamics.structure.gear_stage import Bearing, GearStage
+from siggen.dynamics.structure.structure import Structure, eight_dof, vector
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.response import Response, SampleGrid, response_of
 from siggen.gears.stiffness.mesh_tables import MeshTables
@@ -27,7 +28,7 @@ FS, SPEED = 51200.0, 32.0
 MASS, STIFFNESS, DAMPING = 0.412, 0.412 * (2.0 * np.pi * 40.0) ** 2, 12.0
 
 
-def single_mass(stage: SpurStage) -> Structure:
+def single_mass(stage: GearStage) -> Structure:
     """Return a stage whose pinion shakes on soft bearings by itself: the mesh couples the rotations alone."""
     soft = replace(stage.pinion, bearing=Bearing(STIFFNESS, STIFFNESS, DAMPING, DAMPING))
     structure = eight_dof(replace(stage, pinion=soft))
@@ -52,7 +53,7 @@ def line(signal: np.ndarray, frequency_hz: float) -> complex:
 
 @pytest.mark.parametrize("speed_hz", [20.0, 40.0, 80.0], ids=["below", "at", "above"])
 def test_unbalance_shakes_a_rotor_on_springs_as_in_closed_form(
-    stage: SpurStage, constant_tables: MeshTables, speed_hz: float
+    stage: GearStage, constant_tables: MeshTables, speed_hz: float
 ) -> None:
     structure, moment, phase = single_mass(stage), 2e-5, 0.7
     source = Unbalance(shaft_directions(structure, "pinion_bearing"), moment, 1.0, phase)

@@ -11,8 +11,9 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.drivetrain import CommonShaft, NextStage, drivetrain
 from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.structure.gear_stage import Bearing, Coupling, Rotor
 from siggen.dynamics.structure.shaft_lines import rigid_rotation
-from siggen.dynamics.structure.structure import Bearing, Coupling, Rotor, Structure, eight_dof
+from siggen.dynamics.structure.structure import Structure, eight_dof
 from siggen.dynamics.time.equations import mesh_springs
 from siggen.dynamics.time.modes import natural_modes
 from tests.dynamics.casing_stage import bearing, make_stage

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dynamics.structure.structure import Element, SpurStage, Structure, assemble, eight_dof, six_dof, vector
+from siggen.dynamics.structure.gear_stage import GearStage
+from siggen.dynamics.structure.structure import Element, Structure, assemble, eight_dof, six_dof, vector
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 POSITIVE = st.floats(min_value=1e-3, max_value=1e3)
@@ -22,7 +23,7 @@ def rigid_rotation(structure: Structure) -> np.ndarray:
 
 
 @pytest.mark.parametrize("assembly", [eight_dof, six_dof])
-def test_rigid_rotation_deforms_nothing_and_torques_balance_on_it(assembly, stage: SpurStage) -> None:
+def test_rigid_rotation_deforms_nothing_and_torques_balance_on_it(assembly, stage: GearStage) -> None:
     structure = assembly(stage)
     rigid = rigid_rotation(structure)
     # A product of numbers of size 330 and 66 mm with rounded ratios: 1e-12 of the largest entry is rounding.
@@ -33,7 +34,7 @@ def test_rigid_rotation_deforms_nothing_and_torques_balance_on_it(assembly, stag
 
 
 @pytest.mark.parametrize(("assembly", "size"), [(eight_dof, 8), (six_dof, 6)])
-def test_exactly_one_natural_frequency_is_zero(assembly, size: int, stage: SpurStage) -> None:
+def test_exactly_one_natural_frequency_is_zero(assembly, size: int, stage: GearStage) -> None:
     frequencies = natural_frequencies_hz(assembly(stage), 3.36e8)
     assert frequencies.size == size
     # Rounding of a zero eigenvalue: sqrt(1e-16) of 7.8 kHz is below 1 mHz; the lowest elastic mode lies at tens of Hz.
@@ -47,7 +48,7 @@ def test_natural_frequencies_of_the_published_parameter_set(structure: Structure
     np.testing.assert_allclose(natural_frequencies_hz(structure, 3.3599e8), expected, atol=1.0)
 
 
-def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: SpurStage) -> None:
+def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: GearStage) -> None:
     structure = eight_dof(stage)
     p = dict(zip(structure.coordinates, structure.mesh.vector, strict=True))
     assert p["x_1"] == -p["x_2"] == pytest.approx(np.sin(stage.working_pressure_angle_rad))
@@ -55,7 +56,7 @@ def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: Spu
     assert (p["theta_1"], p["theta_2"]) == (stage.pinion.base_radius_m, -stage.gear.base_radius_m)
 
 
-def test_torsional_limit_frequency_follows_from_the_equivalent_mesh_mass(stage: SpurStage) -> None:
+def test_torsional_limit_frequency_follows_from_the_equivalent_mesh_mass(stage: GearStage) -> None:
     structure = six_dof(stage)
     rotations = [structure.coordinates.index(name) for name in ("theta_1", "theta_2")]
     p = structure.mesh.vector[rotations]

@@ -100,8 +100,8 @@ def test_the_exponential_steps_keep_the_orders_whatever_their_length():
     assert share_of_others(power(*run(2**15, kind=ExponentialMotion))) < 1e-4
 
 
-BEGUN = 0.05
-"""Of a turn: nearly four pitches of every mesh."""
+BEGUN = 1 / 16
+"""Of a turn: nearly five pitches of every mesh."""
 
 
 def approach_rate(kind, per_turn):
@@ -111,8 +111,11 @@ def approach_rate(kind, per_turn):
     return states[:: per_turn // 2**13, n:] @ motion.structure.meshes[0].vector
 
 
-def test_an_adaptive_solver_gives_the_motion_of_the_exponential_steps_which_short_ones_of_runge_kutta_tend_to():
-    """Loads of these tables jump where pairs enter: a step of Runge-Kutta that passes over it errs by its length."""
+def test_both_kinds_of_steps_tend_to_what_an_adaptive_solver_gives_of_loads_that_jump():
+    """Those of these tables do where pairs enter: a step that passes over it errs by its length, whatever its order.
+
+    Exponential steps are a tenth as long there. The solver agrees with itself to 2e-5.
+    """
     motion, _, states = run(2**13, turns=BEGUN - 1.0)
     n, p = len(motion.structure.coordinates), motion.structure.meshes[0].vector
     times = np.arange(len(states)) / (CARRIER_HZ * 2**13)
@@ -126,7 +129,7 @@ def test_an_adaptive_solver_gives_the_motion_of_the_exponential_steps_which_shor
     def apart(kind, per_turn):
         return np.sqrt(np.mean((approach_rate(kind, per_turn) - wanted) ** 2) / np.mean(wanted**2))
 
-    assert apart(ExponentialMotion, 2**17) < 1e-3
+    assert apart(ExponentialMotion, 2**19) < 1e-3
     long, short = (apart(PairMotion, per_turn) for per_turn in (2**15, 2**17))
-    assert short > 5e-3
     assert 0.15 * long < short < 0.5 * long  # a quarter, but for where steps meet the jumps
+    assert apart(ExponentialMotion, 2**17) < 0.2 * short

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.structure.structure import SpurStage, Structure, eight_dof, six_dof
+from siggen.dynamics.structure.gear_stage import GearStage
+from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof
 from siggen.dynamics.time.response import Response
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.conftest import BASE_PITCH, BASE_RADIUS_1, PRESSURE_ANGLE, make_tables
@@ -166,7 +167,7 @@ def test_same_bytes_every_time(integrator: str, structure: Structure, sharp_tabl
     assert runs[0].acceleration_m_s2[PINION].tobytes() == runs[1].acceleration_m_s2[PINION].tobytes()
 
 
-def test_six_degrees_of_freedom_follow_the_same_forcing(stage: SpurStage, sharp_tables: MeshTables) -> None:
+def test_six_degrees_of_freedom_follow_the_same_forcing(stage: GearStage, sharp_tables: MeshTables) -> None:
     six = respond(six_dof(stage), sharp_tables)
     eight = respond(eight_dof(stage), sharp_tables)
     # Shafts of 330 N m/rad hardly matter at 540 Hz and above: (76/540)² of the torsional motion.

@@ -7,7 +7,7 @@ import pytest
 
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import PairPlace, pair_spring
-from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
@@ -19,12 +19,13 @@ from siggen.gears.contact.tilt_rays import RAYS
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.geometry.missing_material import TipRelief, missing_material
 from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.contact import whole_face
 from tests.dynamics.pair_runs import RELIEF, gear_pair, law
 from tests.gears.contact.test_contact_table import pitch_height, through_the_face
+from tests.gears.geometry.test_helical import helical_pair
 
 TEETH, OPTIONS, POINTS = StiffnessOptions(), TableOptions(tilts=True), 513
 RATED_N = 2400.0
@@ -112,6 +113,35 @@ def test_force_and_moment_are_those_of_direct_solutions(damage: Damage, uneven: 
     # Where columns of a spall at one end are read between those that were solved on all rays.
     assert force.max() < 1e-2
     assert moment.max() < 3e-2
+
+
+@pytest.mark.parametrize("helix_deg", [-15.0, 25.0])
+def test_force_and_moment_of_helical_pairs_are_those_of_direct_solutions(helix_deg: float) -> None:
+    pair, points = helical_pair(helix_deg), np.array([30, 150, 256, 350, 490])
+    options = OPTIONS._replace(relief=TipRelief(6e-6, 0.25 * pair.base_pitch_m))
+    lead = np.zeros(face_slices(pair, options))
+    table = contact_table(pair, (), TEETH, options, POINTS, lead)
+    constants = MeshConstants(pair.line_of_action_m, 0.2, 80e-6)
+    chosen = pair_law(
+        whole_face(pair, (), TEETH, POINTS), missing_material(pair, None), constants, damping_ratio=0.0, contact=table
+    )
+    row, solver = kind_row(pair, TEETH, options, POINTS), table_solver(pair, TEETH, options, lead)
+    touch, faces = first_touch(pair, row, points, lead), row_faces(solver, row, points)
+    # Up to a tilt of 0.2 mrad, twice what shafts of quickstart give.
+    where = np.array([one for one in places(table.half_face_m) if abs(one[1]) <= 2e-4])
+    found, moments = [], []
+    for point, touched, face in zip(points.tolist(), touch, faces, strict=True):
+        exact = solved(face, float(touched), where)
+        found.append(np.abs(from_table(table, chosen, 0, point, where) - exact) / (1.0, table.half_face_m))
+        moments.append(exact[0, 1])
+    force, moment = np.moveaxis(np.array(found) / RATED_N, -1, 0)
+    assert np.median(force) < 5e-4
+    assert np.median(moment) < 5e-4
+    # Where a pair enters or leaves, an end carries alone: rays to the other end are flat, then bend.
+    assert force.max() < 1e-2
+    assert moment.max() < 2e-2
+    # A pair that enters carries at one end of the face, one that leaves at the other.
+    assert moments[0] * moments[-1] < 0.0
 
 
 def test_the_outermost_rays_are_those_on_which_a_corner_just_touches() -> None:

@@ -1,0 +1,120 @@
+"""Verdicts of `check` on machines whose load differs: `python docs/scripts/check_loads.py FOLDER --machines 10`.
+
+A machine is that of `hidden_machine.py`, driven by an induction motor: its speed falls by 0.5 % from no load to full.
+It is recorded twice healthy at each of ten loads from 0 to 100 %, once with a spall through the face and once with a
+broken tooth. Three to five references reach over the loads; the other healthy recordings and the damaged ones are
+judged with the load unknown, given, and read from slip. What is in FOLDER is not made again.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+from hidden_machine import CHANNELS, FS_HZ, HEALTHY, STATES, features, machine
+from hidden_machines import interval
+
+import siggen
+from diagnostics.machine.comparable import comparable, slip_loads
+from diagnostics.machine.machine import Machine
+from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.records.gear_train import Mesh
+from diagnostics.statistics.change_score import change_score
+
+FULL_NM, NO_LOAD_HZ, SLIP = 45.0, 35.0, 0.005
+LOADS = (0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0, 100.0)
+BROKEN = {"name": "broken", "severity": "severe", "damage": {"kind": "chip", "gear": "pinion", "height_mm": 6.0}}
+DAMAGED = ("through", "broken")
+DRAWS = 8
+WAYS = ("unknown", "given", "slip")
+
+
+def recorded(number: int, folder: Path) -> dict[str, np.ndarray]:
+    """Return features, states, loads [%] and speeds [Hz] of all records of a machine."""
+    kept = folder / f"loads_{number}.npz"
+    if not kept.exists():
+        raw = machine(number, folder)
+        points = [
+            {"speed_hz": NO_LOAD_HZ * (1.0 - SLIP * load / 100.0), "torque_nm": FULL_NM * load / 100.0}
+            for load in LOADS
+        ]
+        states = [{"name": HEALTHY}, {"name": "again"}, STATES[3], BROKEN]
+        config = siggen.load_config({**raw, "operating_points": points, "states": states, "specimens": 1})
+        count = len(states) * len(LOADS)
+        records = [one for one in siggen.simulate(config, range(count)) if hasattr(one, "channels")]
+        np.savez(
+            kept,
+            rows=np.array([features(one.channels, np.asarray(one.tacho_s)) for one in records]),
+            state=np.array([one.labels["state"] for one in records]),
+            load=np.array([100.0 * one.labels["torque_nm"] / FULL_NM for one in records]),
+            speed=np.array([one.labels["speed_hz"] for one in records]),
+        )
+    return dict(np.load(kept))
+
+
+def references(loads: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Return rows of the healthy recordings: at 10 or 20 % of the load, at 90 or 100 %, and others between."""
+    first = int(rng.choice(np.flatnonzero((loads > 9.0) & (loads < 21.0))))
+    last = int(rng.choice(np.flatnonzero(loads > 89.0)))
+    others = np.setdiff1d(np.flatnonzero(loads > 9.0), [first, last])
+    return np.append(rng.choice(others, count - 2, replace=False), [first, last])
+
+
+def as_machine(held: dict[str, np.ndarray], rows: np.ndarray, way: str) -> Machine:
+    """Return the machine that these references give."""
+    speed, load = held["speed"][rows], held["load"][rows]
+    load = {"unknown": np.full(rows.size, np.nan), "given": load, "slip": slip_loads(speed, speed.max(), speed.min())}[
+        way
+    ]
+    names = tuple(str(k) for k in range(held["rows"].shape[1]))
+    facts = RecordingFacts(fs_hz=FS_HZ)
+    called = tuple(str(row) for row in rows)
+    return Machine(
+        (Mesh("", (18, 47)),), CHANNELS, facts, None, FS_HZ, 1.5, 0.05, names, held["rows"][rows], called,
+        speed, load, way == "slip",
+    )  # fmt: skip
+
+
+def rates(held: dict[str, np.ndarray], count: int, way: str) -> list[float]:
+    """Return the shares [%] of healthy, spalled and broken recordings called changed, and of those not compared."""
+    rng = np.random.default_rng(0)
+    healthy = np.flatnonzero(np.isin(held["state"], (HEALTHY, "again")))
+    verdicts: dict[str, list[float]] = {"healthy": [], **{name: [] for name in DAMAGED}, "other": []}
+    for _ in range(DRAWS):
+        chosen = healthy[references(held["load"][healthy], count, rng)]
+        known = as_machine(held, chosen, way)
+        for row in np.setdiff1d(np.arange(len(held["rows"])), chosen):
+            load = None if way == "unknown" else float(held["load"][row])
+            beside = comparable(known, float(held["speed"][row]), load)
+            state = str(held["state"][row])
+            verdicts["other"].append(float(beside is None))
+            if beside is not None:
+                found = change_score(known.values[beside.used], held["rows"][row], 0.05, beside.conditions)
+                verdicts[state if state in DAMAGED else "healthy"].append(float(found.changed))
+    return [100.0 * float(np.mean(column)) for column in verdicts.values()]
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--machines", type=int, default=10)
+    arguments = parser.parse_args()
+    arguments.folder.mkdir(parents=True, exist_ok=True)
+    held = []
+    for number in range(1, arguments.machines + 1):  # the one of number 0 served to choose the rule
+        own = arguments.folder / f"machine_{number}"
+        own.mkdir(exist_ok=True)
+        held.append(recorded(number, own))
+    print("| references | load | false alarms, % | through, % | broken, % | not compared, % |")
+    print("|---|---|---|---|---|---|")
+    for count in (3, 4, 5):
+        for way in WAYS:
+            found = np.array([rates(one, count, way) for one in held])
+            shown = " | ".join(interval(column) for column in found.T)
+            print(f"| {count} | {way} | {shown} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,29 @@
+"""Windows as arrays are those of the loader, and answers to them become one row per record."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("torch")
+
+import diagnostics
+from diagnostics.loader import WindowDataset
+
+
+def test_windows_are_those_of_the_loader_and_their_mean_is_the_answer_of_a_record(dataset: Any) -> None:
+    found, loader = diagnostics.windows(dataset, "test", labels=("speed_hz",)), WindowDataset(dataset, "test")
+    assert found.values.shape == (len(loader), 2, 8 * 288)
+    assert np.array_equal(found.values[5], loader[5]["windows"].numpy())
+    assert set(found.labels) == {*loader[5], "speed_hz"} - {"windows"}
+    assert np.array_equal(found.groups, found.labels["specimen_id"])
+    right = np.eye(len(found.classes))[found.labels["class_id"]]
+    wavering = np.where(np.arange(len(right))[:, None] % 2, right, 1.0 / len(found.classes))
+    mine = found.predictions(wavering)
+    record = mine["record_id"][0]
+    own = found.labels["record_id"] == record
+    assert mine["p_severe"][0] == pytest.approx(wavering[own, found.classes.index("severe")].mean())
+    scores = {row.measure: row.score.value for row in diagnostics.score(dataset, mine).rows}
+    assert scores["balanced accuracy"] == 1.0

@@ -1,0 +1,183 @@
+"""Shafts that helical teeth push along their axes: equilibrium, mirror images, rigid motion, back flanks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from siggen.dynamics.structure.axial_motion import axial_bearings
+from siggen.dynamics.structure.back_flanks import on_back_flanks
+from siggen.dynamics.structure.body import Body, axis_vector, rigid_body
+from siggen.dynamics.structure.casing_structure import carried_structure, casing_structure
+from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof, vector
+from siggen.dynamics.structure.tilting_shaft import Shaft
+from tests.dynamics.casing_stage import BASE_RADIUS_1, MEAN_STIFFNESS, PRESSURE_ANGLE, make_casing, make_stage
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
+
+BASE_HELIX = np.radians(14.0)
+SLOPE = float(np.tan(BASE_HELIX))
+TORQUE_NM = 30.0
+FORCE_N = TORQUE_NM / BASE_RADIUS_1
+SHAFT = Shaft(0.1, 0.4, 0.03, 206e9, 0.3, 3e-4)
+SHAFTS = (SHAFT, replace(SHAFT, gear_share=0.55))
+
+
+def helical_stage(base_helix_rad: float = BASE_HELIX):
+    return replace(make_stage(), base_helix_rad=base_helix_rad)
+
+
+def tilting(base_helix_rad: float = BASE_HELIX, shafts: tuple[Shaft, Shaft] = SHAFTS) -> Structure:
+    return casing_structure(helical_stage(base_helix_rad), make_casing(), shafts)
+
+
+def kinds(base_helix_rad: float = BASE_HELIX, shafts: tuple[Shaft, Shaft] = SHAFTS) -> list[Structure]:
+    stage = helical_stage(base_helix_rad)
+    return [eight_dof(stage), six_dof(stage), casing_structure(stage, make_casing()), tilting(base_helix_rad, shafts)]
+
+
+def static(structure: Structure, torque_nm: float = TORQUE_NM) -> dict[str, float]:
+    """Return the displacement under a torque at the mean mesh stiffness, by coordinate."""
+    loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh.vector, structure.mesh.vector)
+    found = static_solution(structure, loaded, torque_nm * structure.torque_vector)
+    return dict(zip(structure.coordinates, found.tolist(), strict=True))
+
+
+def test_spur_teeth_have_no_axial_motion_and_a_small_helix_nearly_none() -> None:
+    for spur, near in zip(kinds(0.0), kinds(1e-12), strict=True):
+        assert not any(name.startswith("z_") for name in spur.coordinates)
+        one, other = static(spur), static(near)
+        assert max(abs(other[name] - one[name]) for name in one) < 1e-15
+        assert abs(other["z_1"]) < 1e-15
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_mean_axial_displacement_is_the_axial_force_over_the_stiffness(number: int) -> None:
+    structure, stage = kinds()[number], helical_stage()
+    q = static(structure)
+    axial_n = FORCE_N * SLOPE
+    for name, z, rotor, sign in (("pinion", "z_1", stage.pinion, 1.0), ("gear", "z_2", stage.gear, -1.0)):
+        stiffness, _ = rotor.bearing.along_axis
+        assert stiffness == pytest.approx(1e8)
+        assert q[z] == pytest.approx(sign * axial_n / stiffness, rel=1e-9)
+        pressed = structure.bearing_forces[f"{name}_bearing/axial"][0] @ np.array(list(q.values()))
+        assert pressed == pytest.approx(sign * axial_n, rel=1e-9)
+
+
+def test_a_right_handed_pinion_is_pushed_where_its_rotation_points() -> None:
+    """By hand: a screw that turns from x to y moves on along z = x × y, and its nut is pushed back.
+
+    `eight_dof` has the pinion turn that way, and flanks of a right-handed pinion are ahead at larger z there.
+    """
+    assert static(eight_dof(helical_stage()))["z_1"] > 0.0
+    assert static(eight_dof(helical_stage(-BASE_HELIX)))["z_1"] < 0.0
+
+
+def test_the_other_hand_is_the_mirror_image_across_the_shafts() -> None:
+    mirrored = tuple(replace(shaft, gear_share=1.0 - shaft.gear_share) for shaft in SHAFTS)
+    for right, left in zip(kinds(), kinds(-BASE_HELIX, mirrored), strict=True):
+        one, other = static(right), static(left)
+        turned = {name for name in one if name.startswith(("z_", "phi_")) and name != "phi_c"}
+        for name, value in one.items():
+            expected = -value if name in turned else value
+            assert other[name] == pytest.approx(expected, rel=1e-9, abs=1e-15), name
+
+
+def test_double_helical_teeth_push_no_shaft() -> None:
+    stage = helical_stage()
+    right, left = eight_dof(stage), eight_dof(helical_stage(-BASE_HELIX))
+    held = np.zeros_like(right.stiffness)
+    load = right.coordinates.index("theta_l")
+    held[load, load] = 1e3
+    halves = sum(0.5 * MEAN_STIFFNESS * np.outer(one.mesh.vector, one.mesh.vector) for one in (right, left))
+    q = np.linalg.solve(right.stiffness + held + halves, TORQUE_NM * right.torque_vector)
+    named = dict(zip(right.coordinates, q, strict=True))
+    assert abs(named["z_1"]) < 1e-9 * abs(named["y_1"])
+    # Along the line of action both halves are one spur mesh.
+    assert named["y_1"] == pytest.approx(static(eight_dof(make_stage()))["y_1"], rel=1e-6)
+
+
+def test_turning_or_shifting_both_gears_as_one_body_brings_no_flanks_nearer() -> None:
+    """A rotation about any axis in the plane of rotation through the pinion, written by hand."""
+    structure = tilting()
+    angle = PRESSURE_ANGLE
+    apart_m = (make_stage().pinion.base_radius_m + make_stage().gear.base_radius_m) / np.cos(angle)
+    to_gear = -apart_m * np.array(axis_vector("horizontal", angle))
+    for turn in (np.array([1e-4, 0.0]), np.array([0.0, 1e-4]), np.array([0.7e-4, -0.4e-4])):
+        tilts = {f"phi_{axis}_{i}": float(turn[k]) for i in "12" for k, axis in enumerate("xy")}
+        q = vector(structure.coordinates, {**tilts, "z_1": 0.0, "z_2": float(-turn @ to_gear)})
+        assert abs(structure.mesh.vector @ q) < 1e-16
+        assert abs(structure.mesh.tilt @ q) < 1e-16
+    moved = vector(structure.coordinates, {"z_1": 1.0, "z_2": 1.0})
+    assert abs(structure.mesh.vector @ moved) < 1e-15
+
+
+def test_moments_of_bearings_and_axial_force_balance_on_each_shaft() -> None:
+    """Both ends of a shaft, found from the gear's motion by hand, bear force and moment of the mesh."""
+    structure, stage = tilting(), helical_stage()
+    q = static(structure)
+    seats, u = body().seats, axis_vector("horizontal", PRESSURE_ANGLE)
+    gears = (("1", "pinion", stage.pinion, SHAFTS[0]), ("2", "gear", stage.gear, SHAFTS[1]))
+    for index, which, rotor, shaft in gears:
+        moment = 0.0
+        for lever in shaft.levers_m.values():
+            seat = sum(share * q[name] for name, share in seats[f"{which}_bearing/horizontal"].items())
+            moved = (q[f"{axis}_{index}"] + lever * q[f"phi_{axis}_{index}"] for axis in "xy")
+            across = sum(share * way for share, way in zip(u, moved, strict=True))
+            moment += lever * end_stiffness(shaft, lever) * (across - seat)
+        pitch_radius_m = rotor.base_radius_m / np.cos(PRESSURE_ANGLE)
+        assert moment == pytest.approx(SLOPE * FORCE_N * pitch_radius_m, rel=1e-9)
+
+
+def body() -> Body:
+    casing, stage = make_casing(), make_stage()
+    apart_m = (stage.pinion.base_radius_m + stage.gear.base_radius_m) / np.cos(PRESSURE_ANGLE)
+    gear_place = (casing.pinion_place_m[0] - apart_m, casing.pinion_place_m[1])
+    return rigid_body(casing, {"gear_bearing": gear_place}, PRESSURE_ANGLE)
+
+
+def end_stiffness(shaft: Shaft, lever_m: float) -> float:
+    """A bearing of 1e8 N/m in series with a cantilever, whose formula is written out again."""
+    area, inertia = np.pi * shaft.diameter_m**2 / 4.0, np.pi * shaft.diameter_m**4 / 64.0
+    shear = 206e9 / 2.6 * area * 6.0 * 1.3 / (7.0 + 1.8)
+    length = abs(lever_m)
+    return 1.0 / (1e-8 + length**3 / (3.0 * 206e9 * inertia) + length / shear)
+
+
+def test_seats_of_a_body_take_the_axial_force_and_give_way_along_it() -> None:
+    """A body with one more coordinate, along which both seats move: 2 masses on their bearings on a third."""
+    own = body()
+    along = {name: {"w_c": 1.0} for name in axial_bearings(helical_stage())}
+    carried = replace(own, inertias={**own.inertias, "w_c": 20.0}, seats={**own.seats, **along})
+    structure = carried_structure(helical_stage(), carried)
+    place = {name: structure.coordinates.index(name) for name in ("z_1", "z_2", "w_c")}
+    chosen = list(place.values())
+    expected = 1e8 * np.array([[1.0, 0.0, -1.0], [0.0, 1.0, -1.0], [-1.0, -1.0, 2.0]])
+    np.testing.assert_allclose(structure.stiffness[np.ix_(chosen, chosen)], expected, rtol=1e-12)
+
+
+def test_natural_frequencies_with_an_immovable_casing_are_those_on_the_ground() -> None:
+    heavy = make_casing(mass_kg=2e7, inertia_kg_m2=2.5e5)
+    stiff = replace(heavy.bolts, shear_stiffness_n_per_m=8e13, axial_stiffness_n_per_m=1.5e14)
+    grounded = natural_frequencies_hz(
+        casing_structure(helical_stage(), replace(heavy, bolts=stiff)), MEAN_STIFFNESS
+    )  # fmt: skip
+    for frequency in natural_frequencies_hz(eight_dof(helical_stage()), MEAN_STIFFNESS)[1:]:
+        assert np.abs(grounded / frequency - 1.0).min() < 1e-6
+
+
+def test_back_flanks_push_the_other_way_along_the_shafts() -> None:
+    """By hand: half a turn about the centre line maps teeth of one hand on themselves, drive flanks on back flanks."""
+    drive = tilting()
+    back = on_back_flanks(drive, helical_stage().line_of_action_m, 0.0)
+    row = dict(zip(back.coordinates, back.mesh.vector, strict=True))
+    one = dict(zip(drive.coordinates, drive.mesh.vector, strict=True))
+    h = np.array(axis_vector("horizontal", PRESSURE_ANGLE))
+    for i in "12":
+        for kind, turned in (("", 1.0), ("phi_", -1.0)):
+            own = np.array([one[f"{kind}{axis}_{i}"] for axis in "xy"])
+            expected = turned * (2.0 * h * (h @ own) - own)
+            np.testing.assert_allclose([row[f"{kind}{axis}_{i}"] for axis in "xy"], expected, atol=1e-15)
+        assert row[f"z_{i}"] == -one[f"z_{i}"]
