@@ -86,10 +86,12 @@ def audit(
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.page.wording import counted
     from diagnostics.records.named_set import open_set
+    from diagnostics.records.record_classes import refuse_lives
     from siggen.errors import VerificationError
 
     own = load_indicators(indicator)
     dataset = open_set(directory)
+    refuse_lives(dataset)
     folder = out or beside(dataset.path, "_audit")
     wanted = AuditOptions(
         seed=seed,

@@ -139,6 +139,7 @@ def _ranking_report(
     from diagnostics.indicators.settings import IndicatorSettings
     from diagnostics.indicators.table import record_table
     from diagnostics.records.named_set import open_set
+    from diagnostics.records.record_classes import refuse_lives
     from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
@@ -147,6 +148,7 @@ def _ranking_report(
     require_packages("the report of indicators", "matplotlib")
     own, states = load_indicators(computing.indicator), ranking.state or ()
     dataset = open_set(directory)
+    refuse_lives(dataset)
     check_states(dataset)
     chosen_states(dataset, states)
     settings = IndicatorSettings(speed_range_hz=span)

@@ -141,12 +141,12 @@ def ranking_table(
     labels |= _more_labels(dataset, labels["record_id"], table.channels)
     names = table.names()
     values = dict(zip(names, table.values(names)[rows].T.copy(), strict=True))
-    unusable = _unusable(table, rows)
+    unusable = unusable_records(table, rows)
     for channel in table.channels:
         for name in names:
             if name.endswith(f"__{channel}"):
                 values[name][unusable[channel]] = np.nan
-        values |= _histories(table, labels, rows, channel, unusable[channel])
+        values |= with_history(table, labels, rows, channel, unusable[channel])
     if not any(np.isfinite(column).any() for column in values.values()):
         raise DatasetError(
             f"{dataset.path}: not one of {rows.size} records can be used\n{problem_list(problems)}\n"
@@ -178,15 +178,16 @@ def _problems(table: RecordTable, rows: np.ndarray) -> list[RecordProblem]:
     return found
 
 
-def _unusable(table: RecordTable, rows: np.ndarray) -> dict[str, np.ndarray]:
+def unusable_records(table: RecordTable, rows: np.ndarray) -> dict[str, np.ndarray]:
     """Return by channel which of the chosen records cannot be used there."""
     lost = [{channel for channel, _ in pairs} for pairs in table.texts("problems")]
     return {c: np.array([bool({"", c} & lost[row]) for row in rows], dtype=bool) for c in table.channels}
 
 
-def _histories(
+def with_history(
     table: RecordTable, labels: dict[str, np.ndarray], rows: np.ndarray, channel: str, unusable: np.ndarray
 ) -> dict[str, np.ndarray]:
+    """Return the indicators with a history of a channel, (rows,) each by column."""
     found = {name: values[rows] for name, values in table.moments(channel).items()}
     moments = {name: np.where(unusable, np.nan, values) for name, values in found.items()}
     columns: dict[str, np.ndarray] = {}

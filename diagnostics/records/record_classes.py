@@ -105,9 +105,8 @@ def record_classes(labels: Mapping[str, np.ndarray], kind: str = STATE, healthy:
     return RecordClasses(kind, {state: name if name and state in merged else state for state in states}, name)
 
 
-def set_classes(dataset: Dataset, kind: str = STATE, healthy: str | None = None) -> RecordClasses:
-    """Return the classes of a set; parameters and errors as of `record_classes`, UsageError for lives."""
-    check_kind(kind)
+def refuse_lives(dataset: Dataset) -> None:
+    """Raise UsageError for a set of lives: its inspections are no states that gearboxes have in common."""
     if dataset.config.get("life"):
         raise UsageError(
             f"{dataset.path}: received a set of lives, which has no classes: an inspection is healthy in one gearbox "
@@ -115,6 +114,12 @@ def set_classes(dataset: Dataset, kind: str = STATE, healthy: str | None = None)
             "gearbox). Ages, phases and remaining lives of this one are in its folder life/; siggen-diagnostics "
             "report judges what tells them"
         )
+
+
+def set_classes(dataset: Dataset, kind: str = STATE, healthy: str | None = None) -> RecordClasses:
+    """Return the classes of a set; parameters and errors as of `record_classes`, UsageError for lives."""
+    check_kind(kind)
+    refuse_lives(dataset)
     primary = [PRIMARY] if kind == FAULT and PRIMARY in dataset.labels().column_names else []
     table = dataset.labels(columns=["state", "state_id", "fault", *primary])
     labels = {name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}

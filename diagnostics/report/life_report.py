@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.audit.life_leaks import Leak, life_leaks
 from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.page import html
@@ -42,19 +43,21 @@ def write_life_report(dataset: Dataset, folder: Path, seed: int, stage: Stage = 
     found = inspections(dataset, stage)
     with stage("baselines", 1) as advance:
         predicted = baseline_predictions(found, seed)
+        leaks = life_leaks(found, seed)
         advance()
     scores = {
         name: life_scores(found.rul_h, values, found.specimen, found.median_life_h, seed)
         for name, values in predicted.items()
     }
     folder.mkdir(parents=True, exist_ok=True)
-    metrics = {"seed": seed, **_facts(found), "baselines": {name: one.numbers() for name, one in scores.items()}}
+    baselines = {name: one.numbers() for name, one in scores.items()}
+    metrics = {"seed": seed, **_facts(found), "baselines": baselines, "leaks": [leak.numbers() for leak in leaks]}
     text = json.dumps(metrics, indent=1, allow_nan=False)
     (folder / "metrics.json").write_text(f"{text}\n", encoding="utf-8")
     identity = str(dataset.manifest["identity"])
     write_predictions([_predicted_rows(name, found, values) for name, values in predicted.items()], identity, folder)
     page = folder / PAGE
-    page.write_text(_page(dataset, found, scores, seed), encoding="utf-8")
+    page.write_text(_page(dataset, found, scores, leaks, seed), encoding="utf-8")
     return page
 
 
@@ -77,13 +80,16 @@ def _facts(found: Inspections) -> dict[str, object]:
     }
 
 
-def _page(dataset: Dataset, found: Inspections, scores: Mapping[str, LifeScores], seed: int) -> str:
+def _page(
+    dataset: Dataset, found: Inspections, scores: Mapping[str, LifeScores], leaks: Sequence[Leak], seed: int
+) -> str:
     title = f"Remaining life of {dataset.path.name}"
     parts = [
         html.heading(title, 1),
-        *html.summary([f"{origin_sentence(dataset)} {RESERVATION}", *_sentences(found)]),
+        *html.summary([f"{origin_sentence(dataset)} {RESERVATION}", *_sentences(found), _verdict(leaks)]),
         _errors(found, scores),
         _quantiles(scores),
+        _leaks(leaks),
         html.paragraph(provenance(dataset, seed), "caption"),
     ]
     return html.page(words_of(dataset)(title), [words_of(dataset)(part) for part in parts])
@@ -132,6 +138,35 @@ def _quantiles(scores: Mapping[str, LifeScores]) -> str:
     caption = (
         "Predicted quantiles. NASA score: mean over all inspections of exp(-d/13) - 1 for early and exp(d/10) - 1 for "
         "late predictions; d in units of median life / 200, and at most 60."
+    )
+    return html.table(head, rows, caption=caption)
+
+
+def _verdict(leaks: Sequence[Leak]) -> str:
+    """Return whether the set tells lives by what should tell nothing."""
+    found = [leak.clue for leak in leaks if leak.found]
+    if not found:
+        return (
+            "What should tell nothing (numbers, identities, hours between inspections, bytes) tells no more than age."
+        )
+    return f"A trap: beside age, {' and '.join(found)} tells the remaining life. Scores on this set mean little."
+
+
+def _leaks(leaks: Sequence[Leak]) -> str:
+    rows = [
+        [
+            Cell(leak.clue),
+            Cell(f"{leak.age_rmse_h - leak.gain_h:.1f}", value=leak.age_rmse_h - leak.gain_h),
+            Cell(f"{leak.gain_h:.1f}", f"at least {leak.least_gain_h:.1f}", leak.gain_h),
+            Cell("leaks" if leak.found else "tells nothing"),
+        ]
+        for leak in leaks
+    ]
+    head = ["Beside age", "RMSE [h]", f"Lower than by age alone ({leaks[0].age_rmse_h:.1f} h) by [h]", "Verdict"]
+    caption = (
+        "What should tell nothing, learned by the same trees as age alone. Where nothing leaks, one report of twenty "
+        "says that something does. Whole histories tell their length by their last inspection: cut them before you "
+        "test."
     )
     return html.table(head, rows, caption=caption)
 

@@ -7,12 +7,15 @@ import pyarrow as pa
 
 from diagnostics.base.progress import Stage
 from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.ranking_table import unusable_records, with_history
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.records.sample_bytes import BYTES
 from diagnostics.training.life_baselines import WORST_TEETH, Inspections
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 INDICATORS = ("rms", "kurtosis", "fm4", "m6a", "energy_ratio")
+HISTORY, SAMPLES = "history", "samples"
 OUTLOOK_COLUMNS = ("rul_q10_h", "rul_q50_h", "rul_q90_h")
 FEWEST_FAILED = 4
 
@@ -33,12 +36,11 @@ def inspections(dataset: Dataset, stage: Stage) -> Inspections:
             "failed. Generate more (specimens), or look at them for longer (life.most, life.interval_h)."
         )
     with stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
-        means = _means(record_table(dataset, advance=advance))
-    keys, rows, outlook = _in_order(dataset.life("inspections"), means), {}, {}
-    for row in dataset.life("inspections").to_pylist():
-        rows[row["specimen_id"], row["inspection"]] = row
-    for row in dataset.life("outlook").to_pylist():
-        outlook[row["specimen_id"], row["inspection"]] = [row[name] for name in OUTLOOK_COLUMNS]
+        table = record_table(dataset, advance=advance)
+    means = _means(table)
+    debris_mg = {key: row["debris_mg"] for key, row in _by_inspection(dataset, "debris").items()}
+    keys, rows = _in_order(dataset.life("inspections"), means), _by_inspection(dataset, "inspections")
+    outlook = _by_inspection(dataset, "outlook")
     shares = _worst_shares(dataset.life("teeth"))
     return Inspections(
         record_id=np.array([rows[key]["record_id"] for key in keys]),
@@ -48,8 +50,11 @@ def inspections(dataset: Dataset, stage: Stage) -> Inspections:
         rul_h=np.array([rows[key]["rul_h"] for key in keys], dtype=np.float64),
         observed_h=np.array([units[specimen]["observed_h"] for specimen, _ in keys]),
         indicators={name: np.stack([means[key][name] for key in keys]) for name in INDICATORS},
+        history=np.stack([means[key][HISTORY] for key in keys]),
+        sample_bytes=np.stack([means[key][SAMPLES] for key in keys]),
+        debris_mg=np.array([debris_mg[key] for key in keys]),
         worst_shares=np.array([shares.get(key, [0.0] * WORST_TEETH) for key in keys]),
-        outlook_h=np.array([outlook[key] for key in keys]),
+        outlook_h=np.array([[outlook[key][name] for name in OUTLOOK_COLUMNS] for key in keys]),
     )
 
 
@@ -62,6 +67,11 @@ def _in_order(table: pa.Table, means: dict[Key, dict[str, np.ndarray]]) -> list[
     return sorted(key for key in keys if key in means)
 
 
+def _by_inspection(dataset: Dataset, name: str) -> dict[Key, dict[str, object]]:
+    """Return the rows of a table of `life/` with one for each inspection."""
+    return {(row["specimen_id"], row["inspection"]): row for row in dataset.life(name).to_pylist()}
+
+
 def _means(table: RecordTable) -> dict[Key, dict[str, np.ndarray]]:
     """Return the mean of each column over the records of an inspection, by indicator; NaN where undefined."""
     labels = table.labels()
@@ -69,13 +79,34 @@ def _means(table: RecordTable) -> dict[Key, dict[str, np.ndarray]]:
     unique, index = np.unique(keys, axis=0, return_inverse=True)
     found: dict[Key, dict[str, np.ndarray]] = {(int(a), int(b)): {} for a, b in unique}
     counts = np.bincount(index.reshape(-1))
-    for name in INDICATORS:
-        values = table.values([column for column in table.names() if base_name(column) == name])
+    for name, values in _columns(table).items():
         sums = np.zeros((counts.size, values.shape[1]))
         np.add.at(sums, index.reshape(-1), values)
         for key, row in zip(found, sums / counts[:, None], strict=True):
             found[key][name] = row
     return found
+
+
+def _columns(table: RecordTable) -> dict[str, np.ndarray]:
+    """Return by indicator the columns of every record (records, columns), and those with a history, and of bytes."""
+    rows, labels = np.arange(table.rows), _in_time(table.labels())
+    unusable = unusable_records(table, rows)
+    with_own = [
+        values
+        for channel in table.channels
+        for name, values in with_history(table, labels, rows, channel, unusable[channel]).items()
+        if name.startswith(("na4_", "nb4_")) and not name.startswith("na4_star")  # which asks what is healthy
+    ]
+    five = {
+        name: table.values([column for column in table.names() if base_name(column) == name]) for name in INDICATORS
+    }
+    samples = [f"{name}.{channel}" for channel in table.channels for name in ("samples", *BYTES)]
+    return {**five, HISTORY: np.stack(with_own, axis=1), SAMPLES: table.values(samples)}
+
+
+def _in_time(labels: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return labels by whose order a history is that of inspections, whatever the damage."""
+    return {**labels, "damaged_area_mm2": np.zeros(len(labels["state_id"]))}
 
 
 def _worst_shares(table: pa.Table) -> dict[Key, list[float]]:

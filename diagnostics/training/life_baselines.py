@@ -6,7 +6,7 @@ runs. Everything else: gradient boosting of quantiles on the rows of failed gear
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -20,6 +20,7 @@ from diagnostics.statistics.life_scores import QUANTILES, unit_folds
 FOLDS = 5
 WORST_TEETH = 3
 CONSTANT, AGE, RMS, FIVE, FIVE_AGE = "constant", "age", "RMS", "five indicators", "five indicators, age"
+HISTORY, DEBRIS = "five indicators with their history, age", "oil debris, age"
 AREAS, OUTLOOK = "true areas of the three worst teeth, age", "the true state itself"
 
 
@@ -36,6 +37,12 @@ class Inspections:
         Age, remaining life (NaN where a gearbox was taken out), age at which its gearbox was last known to run.
     indicators : dict of str to (n, columns) float64
         The means over an inspection's records, by indicator: of every channel and gear.
+    history : (n, columns) float64
+        Likewise NA4 and NB4, which compare with the gearbox's own inspections so far.
+    sample_bytes : (n, columns) float64
+        Likewise what the samples look like as bytes.
+    debris_mg : (n,) float64
+        What a counter in the oil says.
     worst_shares : (n, 3) float64
         True areas of the worst teeth over that of a flank, 0 where none is pitted.
     outlook_h : (n, 3) float64
@@ -49,6 +56,9 @@ class Inspections:
     rul_h: np.ndarray
     observed_h: np.ndarray
     indicators: dict[str, np.ndarray]
+    history: np.ndarray
+    sample_bytes: np.ndarray
+    debris_mg: np.ndarray
     worst_shares: np.ndarray
     outlook_h: np.ndarray
 
@@ -62,29 +72,48 @@ class Inspections:
 @single_thread
 def baseline_predictions(found: Inspections, seed: int) -> dict[str, np.ndarray]:
     """Return what each baseline predicts, (n, 3) in hours at `QUANTILES`, always by the other gearboxes."""
-    folds = unit_folds(found.specimen, generator(seed, Purpose.FOLDS), FOLDS)
     age = found.age_h[:, None]
     five = np.concatenate(list(found.indicators.values()), axis=1)
     seen = {
         RMS: found.indicators["rms"],
         FIVE: five,
         FIVE_AGE: np.concatenate([five, age], axis=1),
+        HISTORY: np.concatenate([five, _changes(five, found.specimen), found.history, age], axis=1),
+        DEBRIS: np.stack([found.debris_mg, found.age_h], axis=1),
         AREAS: np.concatenate([found.worst_shares, age], axis=1),
     }
-
-    def by_folds(predict: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
-        predicted = np.empty((found.specimen.size, len(QUANTILES)))
-        for fold in folds:
-            predicted[fold] = predict(~fold, fold)
-        return predicted
-
-    predicted = {
-        CONSTANT: by_folds(partial(_constant, found)),
-        AGE: by_folds(partial(_by_age, found)),
+    return {
+        CONSTANT: _by_folds(found, seed, partial(_constant, found)),
+        AGE: _by_folds(found, seed, partial(_by_age, found)),
+        **{name: tree_predictions(values, found, seed) for name, values in seen.items()},
+        OUTLOOK: found.outlook_h,
     }
-    for name, values in seen.items():
-        predicted[name] = by_folds(partial(_trees, values, found.rul_h, seed))
-    return {**predicted, OUTLOOK: found.outlook_h}
+
+
+@single_thread
+def tree_predictions(
+    values: np.ndarray, found: Inspections, seed: int, quantiles: Sequence[float] = QUANTILES
+) -> np.ndarray:
+    """Return what trees predict that see some columns (n, k) alone, always by the other gearboxes.
+
+    That is (n, quantiles) in hours.
+    """
+    return _by_folds(found, seed, partial(_trees, (values, found.rul_h), seed, quantiles))
+
+
+def _by_folds(found: Inspections, seed: int, predict: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
+    folds = unit_folds(found.specimen, generator(seed, Purpose.FOLDS), FOLDS)
+    rows = np.concatenate([np.flatnonzero(fold) for fold in folds])
+    return np.concatenate([predict(~fold, fold) for fold in folds])[np.argsort(rows)]
+
+
+def _changes(values: np.ndarray, specimen: np.ndarray) -> np.ndarray:
+    """Return each value over that of the gearbox's first inspection, and over that of the one before (n, 2 columns)."""
+    start = np.diff(specimen, prepend=-1) != 0  # inspections stand in the order of gearbox and age
+    first = values[np.maximum.accumulate(np.where(start, np.arange(start.size), 0))]
+    before = np.where(start[:, None], values, np.roll(values, 1, axis=0))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.concatenate([values / first, values / before], axis=1)
 
 
 def _constant(found: Inspections, train: np.ndarray, test: np.ndarray) -> np.ndarray:
@@ -114,10 +143,13 @@ def remaining_of_age(age_h: np.ndarray, slope: float, scale_h: float) -> np.ndar
     return np.asarray(scale_h * (used - np.log1p(-np.asarray(QUANTILES))) ** (1.0 / slope) - age_h[:, None])
 
 
-def _trees(values: np.ndarray, rul_h: np.ndarray, seed: int, train: np.ndarray, test: np.ndarray) -> np.ndarray:
+def _trees(
+    known: tuple[np.ndarray, np.ndarray], seed: int, quantiles: Sequence[float], train: np.ndarray, test: np.ndarray
+) -> np.ndarray:
+    values, rul_h = known
     rows = train & np.isfinite(rul_h)
     defined = np.isfinite(values[rows]).any(axis=0)
-    fitted = [_model(q, seed).fit(values[rows][:, defined], rul_h[rows]) for q in QUANTILES]
+    fitted = [_model(q, seed).fit(values[rows][:, defined], rul_h[rows]) for q in quantiles]
     # three fits know nothing of each other: sorted, none crosses another
     return np.sort(np.stack([model.predict(values[test][:, defined]) for model in fitted], axis=1), axis=1)
 

@@ -37,11 +37,19 @@ def test_a_report_of_lives_judges_baselines_of_remaining_life(fleet: Path, tmp_p
     assert "five indicators, age" in (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
     assert metrics["gearboxes_judged"] == 5
     assert list(metrics["baselines"])[:2] == ["constant", "age"]
+    assert {"oil debris, age", "five indicators with their history, age"} < set(metrics["baselines"])
+    assert "hours since the inspections before" in [leak["clue"] for leak in metrics["leaks"]]
     rows = {row["record_id"]: row for row in siggen.open(fleet).life("inspections").to_pylist()}
     outlook = siggen.open(fleet).life("outlook").to_pylist()
     error_h = np.array([row["rul_q50_h"] - rows[row["record_id"]]["rul_h"] for row in outlook])
     known = metrics["baselines"]["the true state itself"]["rmse_h"][0]["value"]
     assert known == pytest.approx(np.sqrt(np.mean(error_h**2)), rel=1e-12)
+
+
+@pytest.mark.parametrize("command", ["audit", "indicators"])
+def test_what_compares_states_refuses_lives_and_says_what_judges_them(fleet: Path, command: str) -> None:
+    with pytest.raises(UsageError, match=r"received a set of lives, .* report judges what tells them"):
+        CliRunner().invoke(app, [command, str(fleet)], catch_exceptions=False)
 
 
 def test_options_of_sets_of_states_are_refused(fleet: Path) -> None:
