@@ -6,6 +6,7 @@ Undefined values are NaN. They stand in pipelines, searches and cross-validation
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any
 
@@ -58,8 +59,9 @@ class _Baseline(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # the ty
         self.model_ = self._fitted(FeatureMatrix(values, names, {"specimen_id": gearbox}), truth)
         return self
 
+    @abstractmethod
     def _fitted(self, matrix: FeatureMatrix, truth: np.ndarray) -> FeatureClassifier:
-        raise NotImplementedError
+        """Return what is fitted to places of classes (n,)."""
 
     def _classes(self) -> tuple[str, ...]:
         return tuple(str(name) for name in self.classes_)
