@@ -61,7 +61,7 @@ class _Baseline(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # the ty
 
     @abstractmethod
     def _fitted(self, matrix: FeatureMatrix, truth: np.ndarray) -> FeatureClassifier:
-        """Return what learns the classes `truth` (numbers) from a matrix."""
+        """Return what is fitted to places of classes (n,)."""
 
     def _classes(self) -> tuple[str, ...]:
         return tuple(str(name) for name in self.classes_)
