@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.manufacture_columns import manufacture_columns
-from siggen.config.planetary import RING
 from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ def manufacture_of_others(config: Config) -> Iterator[tuple[Column, str]]:
     for column in manufacture_columns(config):
         if "_gear" in column.name:
             meaning = column.meaning.replace("gear", "ring")
-            yield replace(column, name=column.name.replace("_gear", f"_{RING}"), meaning=meaning), column.name
+            yield replace(column, name=column.name.replace("_gear", "_ring"), meaning=meaning), column.name
     for column in manufacture_columns(config):
         if "_gear" in column.name and not pa.types.is_list(column.type):
             name, meaning = column.name.replace("_gear", EACH), column.meaning.replace("the gear", "each planet")

@@ -13,7 +13,7 @@ import yaml
 import siggen.sets.verification
 from siggen.config import parse
 from siggen.dataset.reading import open as open_set
-from siggen.errors import EngineError, UsageError
+from siggen.errors import DatasetError, UsageError
 from siggen.planning.plan import has_internals, planned_record, specimens_per_shard
 from siggen.sets.verification import EXACT, verify
 from tests.config.minimal import minimal
@@ -198,7 +198,7 @@ def simulate_without(config, record_ids):
 
 
 def test_a_quantity_that_the_simulation_forgets_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(EngineError, match="internal quantity mesh_force_n: missing"):
+    with pytest.raises(DatasetError, match="internal quantity mesh_force_n: missing"):
         write_fake_set(tmp_path, config(), simulation=simulate_without)
 
 

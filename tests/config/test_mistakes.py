@@ -144,7 +144,7 @@ MISTAKES = [
         {"housing": {"kind": "rigid"}, "sensors__0__axes": ["axial"]},
         "sensors.0.axes",
         "axial",
-        "axial needs housing.kind: plates or modal, or a path",
+        "axial needs housing.kind: plates or modal, a path, or helical",
     ),
     (
         {"sensors__0__place": "lid", "sensors__0__path": {"kind": "modal"}},
