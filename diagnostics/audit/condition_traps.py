@@ -5,7 +5,8 @@ of all layers reaches in every one of 99 permutations per damaged state, of the 
 happens in at most 1 of 100 sets, since a state exceeds all of n permutations with probability 1/(n + 1). Measured:
 docs/understand/audit.md. Source: maximum statistic and Bonferroni, standard literature.
 
-Attackers that do not look at the gears: labels of the conditions, order of the files, bytes of samples, noise.
+Attackers that do not look at the gears: labels of the conditions, texts among them, order of the files, bytes of
+samples, noise over and between channels, edges, offsets and lines of raw records.
 
 Each layer is a table with one row per record. Its best column and all its columns together are tried, as they are and
 as differences from a healthy record of the same gearbox.
@@ -23,10 +24,12 @@ from diagnostics.audit.column_attackers import all_columns, best_column
 from diagnostics.audit.finding import Finding, must_not_tell
 from diagnostics.audit.held_out import Attacker, HeldOut, dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
+from diagnostics.audit.raw_columns import EDGES, LINES, OFFSETS
+from diagnostics.audit.text_columns import text_columns
 from diagnostics.indicators.background_levels import NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
 
-METADATA, BYTE, ORDER, NOISE = "metadata", "bytes", "order", "noise"
+METADATA, TEXTS, BYTE, ORDER, NOISE, CHANNELS = "metadata", "texts", "bytes", "order", "noise", "channels"
 STEADY_NOISE = NOISE_LEVELS[4:]
 """Bands in which a stroke has rung off within half a turn: from 637 Hz on at 25.6 kHz.
 
@@ -47,6 +50,11 @@ MENDS = {
     ORDER: "Write the records of a gearbox together, whatever their state.",
     BYTE: "Send all states through the same converter, format and program.",
     NOISE: "Draw noise and path per gearbox by one law for all states.",
+    TEXTS: "Name and date all records by one law, or do not publish the column.",
+    CHANNELS: "Record every channel at one gain in all states of a gearbox.",
+    EDGES: "Cut all records out of longer ones, without fades.",
+    OFFSETS: "Send all states through one amplifier, and take means off all or none.",
+    LINES: "Record all states in one place, with the same machines and supplies near.",
 }
 """How each layer is mended."""
 
@@ -55,14 +63,37 @@ def condition_layers(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, tuple
     """Return the values (records, columns) of every layer with the names of its columns.
 
     The order is that of the records in the files of the set, as a share of all. Labels are those that do not say what
-    the damage is or follows from it. Bytes and noise are means over the channels.
+    the damage is or follows from it. Bytes and noise are means over the channels; `channels` holds the noise of each,
+    less the mean over all.
     """
+    noise = {name: measured.values[name] for name in STEADY_NOISE if name in measured.values}
     return {
         METADATA: _stacked(_metadata(measured)),
         ORDER: _stacked({"place in the files": np.arange(len(measured.healthy)) / max(len(measured.healthy), 1)}),
         BYTE: _stacked({name: _mean(measured.values[name]) for name in BYTES if name in measured.values}),
-        NOISE: _stacked({name: _mean(measured.values[name]) for name in STEADY_NOISE if name in measured.values}),
+        NOISE: _stacked({name: _mean(values) for name, values in noise.items()}),
+        CHANNELS: _stacked(_between_channels(noise, measured.channels)),
+        TEXTS: _stacked(_texts(measured)),
+        **{layer: _stacked(columns) for layer, columns in measured.raw.layers.items()},
     }
+
+
+def _between_channels(noise: dict[str, np.ndarray], channels: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Return the noise of every channel less the mean over those that are defined."""
+    found: dict[str, np.ndarray] = {}
+    for name, values in noise.items():
+        defined = np.isfinite(values)
+        mean = np.where(defined, values, 0.0).sum(axis=1) / np.maximum(defined.sum(axis=1), 1)
+        found |= {f"{name} of {channel}": values[:, k] - mean for k, channel in enumerate(channels)}
+    return found if len(channels) > 1 else {}
+
+
+def _texts(measured: MeasuredSet) -> dict[str, np.ndarray]:
+    found: dict[str, np.ndarray] = {}
+    for name, values in measured.labels.items():
+        if values.ndim == 1 and values.dtype.kind not in "biuf" and must_not_tell(measured.roles, name):
+            found |= text_columns(name, values)
+    return found
 
 
 def _metadata(measured: MeasuredSet) -> dict[str, np.ndarray]:

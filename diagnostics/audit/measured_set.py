@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.audit.raw_columns import RawColumns, raw_columns
 from diagnostics.indicators.classifier_table import check_table
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.line_levels import LEVELS
@@ -21,7 +22,7 @@ from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.table import PULSE_CONDITIONS, RecordTable, record_table
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.planetary_members import as_pair
-from diagnostics.records.recording import TACHO_NAME, gear_names
+from diagnostics.records.recording import TACHO_NAME, gear_names, recordings
 from diagnostics.records.sample_bytes import BYTES
 from diagnostics.records.state_classes import HEALTHY, ordered_states
 from siggen.dataset.reading import Dataset
@@ -109,6 +110,8 @@ class MeasuredSet:
         Channel name -> quantity, of the channels that hold no acceleration.
     roles, sections : dict of str
         Role of the label columns, and the section of the configuration that draws them; of others conditions.
+    raw : RawColumns
+        Numbers of the raw records.
     """
 
     labels: dict[str, np.ndarray]
@@ -123,6 +126,7 @@ class MeasuredSet:
     other_quantities: dict[str, str] = field(default_factory=dict)
     roles: dict[str, Role] = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
+    raw: RawColumns = field(default_factory=RawColumns)
 
     @property
     def accelerations(self) -> np.ndarray:
@@ -192,6 +196,7 @@ def measured_set(
         other_quantities={c.name: c.quantity for c in dataset.channels if c.quantity != RECORDED.word},
         roles=_of_labels(dataset, dataset.role),
         sections=_of_labels(dataset, dataset.section),
+        raw=raw_columns(recordings(dataset)),
     )
 
 

@@ -17,6 +17,7 @@ Trap: the same noise in several records, or in several channels of a record.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -69,6 +70,9 @@ LARGEST_BETWEEN_CHANNELS = 0.95
 
 COPIES_ALLOWED = 0.01
 """Records that share noise with another one; counted by record, since twins are a vanishing share of all pairs."""
+
+FEWEST_RUNS = 3
+"""Runs of 17 samples of 12 values and more; independent noise repeats none."""
 
 BLOCK = 512
 
@@ -189,7 +193,12 @@ def healthy_sidebands(measured: MeasuredSet) -> list[Finding]:
 
 def noise_copies(measured: MeasuredSet) -> list[Finding]:
     """Return findings for copied signals, for noise that records share and for noise that channels share."""
-    return [*copied_signals(measured), *shared_by_records(measured), *shared_by_channels(measured)]
+    return [
+        *copied_signals(measured),
+        *repeated_runs(measured),
+        *shared_by_records(measured),
+        *shared_by_channels(measured),
+    ]
 
 
 def copied_signals(measured: MeasuredSet) -> list[Finding]:
@@ -206,6 +215,34 @@ def copied_signals(measured: MeasuredSet) -> list[Finding]:
             "Give every record its own seeds and remove the copies.",
         )
     ]
+
+
+def repeated_runs(measured: MeasuredSet) -> list[Finding]:
+    """Return a finding if records hold runs of samples of each other, wherever they stand.
+
+    Copies of whole channels are told by `copied_signals`.
+    """
+    rows = np.flatnonzero(~_copied(measured.checksums).any(axis=1))
+    held = [measured.raw.marks[row] for row in rows.tolist()] if measured.raw.marks else []
+    times = Counter(mark for marks in held for mark in marks)
+    again = {mark for mark, count in times.items() if count > 1}
+    holding = sum(not again.isdisjoint(marks) for marks in held)
+    if len(again) < FEWEST_RUNS:
+        return []
+    return [
+        Finding(
+            "repeated_samples",
+            f"{holding} records share {len(again)} runs of samples with another record, bit by bit",
+            f"fewer than {FEWEST_RUNS} are allowed",
+            "Give every record its own seeds and fill gaps in no record from another one.",
+        )
+    ]
+
+
+def _copied(checksums: np.ndarray) -> np.ndarray:
+    """Return which channel-records are copies of others, (records, channels) bool."""
+    _, place, counts = np.unique(checksums, return_inverse=True, return_counts=True)
+    return np.asarray(counts[place.reshape(checksums.shape)] > 1)
 
 
 def shared_by_records(measured: MeasuredSet) -> list[Finding]:
@@ -262,9 +299,9 @@ def shared_by_channels(measured: MeasuredSet) -> list[Finding]:
 def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return every finding, in the order of the traps.
 
-    Attackers on conditions name no cause, so they speak only where nothing more exact was found.
+    One finding hides no other: attackers on conditions, which name no cause, speak last.
     """
-    named = [
+    return [
         *shared_specimens(measured),
         *healthy_sidebands(measured),
         *simple_thresholds(measured, seed),
@@ -273,8 +310,8 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
         *error_draws(measured),
         *noise_copies(measured),
         *damage_phase(measured),
+        *condition_traps(measured, seed),
     ]
-    return named or condition_traps(measured, seed)
 
 
 def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None) -> str:
