@@ -21,6 +21,7 @@ from diagnostics.audit.audit_page import audit_page, detectability_figure, reali
 from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.bank_detections import ChanceLimit, bank_detections, chance_limit, damaged_states
 from diagnostics.audit.best_indicator import best_indicators
+from diagnostics.audit.condition_traps import level_attackers
 from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
 from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
@@ -251,7 +252,11 @@ def _attacks(
     with stage("attacking", len(bank)) as advance:
         found = bank_detections(measured, bank, seed, advance)
     sides = {
-        side: [one for one in bank if is_referenced(one.name) == (side == BESIDE)] for side in (SEEN_ALONE, BESIDE)
+        side: [
+            *(one for one in bank if is_referenced(one.name) == (side == BESIDE)),
+            *level_attackers(measured, referenced=side == BESIDE),
+        ]
+        for side in (SEEN_ALONE, BESIDE)
     }
     with stage("permuted states", len(damaged_states(measured))) as advance:
         return found, chance_limit(measured, bank, seed, advance), shams_found(measured, sides, seed)

@@ -19,17 +19,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.bank_detections import bank_maxima, damaged_states, permuted
+from diagnostics.audit.channel_lags import LAGS, lag_columns, sample_lags
 from diagnostics.audit.column_attackers import all_columns, best_column
 from diagnostics.audit.finding import Finding, must_not_tell
 from diagnostics.audit.held_out import Attacker, HeldOut, dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 from diagnostics.audit.raw_columns import EDGES, LINES, OFFSETS
+from diagnostics.audit.residual_lines import line_array
 from diagnostics.audit.text_columns import text_columns
 from diagnostics.indicators.background_levels import NOISE_LEVELS
+from diagnostics.records.planetary_members import is_planetary
 from diagnostics.records.sample_bytes import BYTES
 
 METADATA, TEXTS, BYTE, ORDER, NOISE, CHANNELS = "metadata", "texts", "bytes", "order", "noise", "channels"
+STEADY_BYTES = BYTES[:2]
 STEADY_NOISE = NOISE_LEVELS[4:]
 """Bands in which a stroke has rung off within half a turn: from 637 Hz on at 25.6 kHz.
 
@@ -52,6 +57,7 @@ MENDS = {
     NOISE: "Draw noise and path per gearbox by one law for all states.",
     TEXTS: "Name and date all records by one law, or do not publish the column.",
     CHANNELS: "Record every channel at one gain in all states of a gearbox.",
+    LAGS: "Record all channels and the tacho by one clock in all states.",
     EDGES: "Cut all records out of longer ones, without fades.",
     OFFSETS: "Send all states through one amplifier, and take means off all or none.",
     LINES: "Record all states in one place, with the same machines and supplies near.",
@@ -70,12 +76,21 @@ def condition_layers(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, tuple
     return {
         METADATA: _stacked(_metadata(measured)),
         ORDER: _stacked({"place in the files": np.arange(len(measured.healthy)) / max(len(measured.healthy), 1)}),
-        BYTE: _stacked({name: _mean(measured.values[name]) for name in BYTES if name in measured.values}),
+        BYTE: _stacked(_bytes(measured)),
         NOISE: _stacked({name: _mean(values) for name, values in noise.items()}),
         CHANNELS: _stacked(_between_channels(noise, measured.channels)),
         TEXTS: _stacked(_texts(measured)),
         **{layer: _stacked(columns) for layer, columns in measured.raw.layers.items()},
     }
+
+
+def _bytes(measured: MeasuredSet) -> dict[str, np.ndarray]:
+    """Return means over the channels; step and odd mantissas of each channel besides, which no clipping moves."""
+    held = {name: measured.values[name] for name in BYTES if name in measured.values}
+    found = {name: _mean(values) for name, values in held.items()}
+    for name in [name for name in STEADY_BYTES if name in held] if len(measured.channels) > 1 else []:
+        found |= {f"{name} of {channel}": held[name][:, k] for k, channel in enumerate(measured.channels)}
+    return found
 
 
 def _between_channels(noise: dict[str, np.ndarray], channels: tuple[str, ...]) -> dict[str, np.ndarray]:
@@ -123,6 +138,31 @@ def condition_attackers(measured: MeasuredSet) -> dict[str, list[Attacker]]:
                 all_columns(f"change of all of {layer}", change),
             ]
         found[layer] = attackers
+    if (reference >= 0).any() and not is_planetary(measured.labels):
+        lags, names = _stacked(lag_columns(_lags(measured, reference), measured.channels))
+        found[LAGS] = [best_column(f"change of {LAGS}", lags, names)]
+    return found
+
+
+def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Attacker]:
+    """Return the attackers that see raw levels, or their change from a healthy record; damage moves them too."""
+    values, names = _stacked(measured.raw.levels)
+    if not names:
+        return []
+    if referenced:
+        reference = reference_records(measured)
+        values = np.where((reference >= 0)[:, None], values - values[reference], np.nan)
+    suffix = REFERENCED if referenced else ""
+    return [best_column(f"raw levels{suffix}", values, names), all_columns(f"all raw levels{suffix}", values)]
+
+
+def _lags(measured: MeasuredSet, reference: np.ndarray) -> np.ndarray:
+    """Return the lag of every channel behind the record's reference, (records, channels) [samples]."""
+    lines, teeth = line_array(measured.waveforms), measured.labels["teeth_pinion"]
+    per_turn = measured.raw.fs_hz / measured.values["pulses_per_s"][:, 0]
+    found = np.full(lines.shape[:2], np.nan)
+    for row in np.flatnonzero((reference >= 0) & np.isfinite(per_turn)).tolist():
+        found[row] = sample_lags(lines[row], lines[reference[row]], int(teeth[row]), float(per_turn[row]))
     return found
 
 

@@ -1,6 +1,7 @@
 """Numbers of raw records as a stranger would take them: edges, offsets, lines of fixed frequency, repeated samples.
 
-Only what damage cannot move is taken, since these columns accuse alone.
+Layers hold only what damage cannot move, since they accuse alone. Levels rise with damage: rms, peak and power in eight
+equal bands to the last bin below half the rate. They accuse where they tell a sham.
 
 * Edges: the rank of the first and last block among all blocks of the record, in level, mean and slope. Records start at
   a random angle, so every block has the same law, whatever the damage: the rank is uniform.
@@ -16,6 +17,7 @@ Source: derived.
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -37,6 +39,7 @@ MARKED_PARTS, MARK_REACH, FEWEST_VALUES = 32, 8, 12
 AROUND, POOLED, KEPT_LINES = 80, 8, 12
 """Bins whose median a bin is divided by, bins of which the highest is kept, and frequencies that are columns, twice."""
 
+EIGHTHS = 8
 NEAR_ORDER_BINS, REGION, STANDING = 2, 640, 1.5
 """Orders hide lines only in regions of so many bins where the median beside them is 1.5 times that of the others."""
 
@@ -51,18 +54,25 @@ class RawColumns:
     ----------
     layers : dict of str to dict of str to (records,) float64
         Columns by layer.
+    levels : dict of str to (records,) float64
+        Columns that damage moves too [dB].
     marks : list of frozenset of int
         Runs of samples of every record.
+    fs_hz : float
+        Sampling frequency [Hz].
     """
 
     layers: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)
+    levels: dict[str, np.ndarray] = field(default_factory=dict)
     marks: list[frozenset[int]] = field(default_factory=list)
+    fs_hz: float = math.nan
 
 
 def raw_columns(records: Iterable[Recording]) -> RawColumns:
     """Return the numbers of all records, in their order."""
-    edges, offsets, lines, marks = [], [], [], []
+    edges, offsets, lines, levels, marks, fs_hz = [], [], [], [], [], math.nan
     for record in records:
+        fs_hz = record.fs_hz
         held = {name: np.asarray(signal, dtype=np.float64) for name, signal in record.channels.items()}
         edges.append({f"{what} of {name}": rank for name, x in held.items() for what, rank in edge_ranks(x).items()})
         offsets.append(
@@ -70,9 +80,11 @@ def raw_columns(records: Iterable[Recording]) -> RawColumns:
         )
         lines.append({name: line_contrast(x, record.fs_hz, shaft_rates_hz(record)) for name, x in held.items()})
         marks.append(frozenset(mark for signal in record.channels.values() for mark in sample_marks(signal)))
+        levels.append({f"{what} of {name}": level for name, x in held.items() for what, level in raw_levels(x).items()})
     if not marks:
         return RawColumns()
-    return RawColumns({EDGES: _columns(edges), OFFSETS: _columns(offsets), LINES: line_columns(lines)}, marks)
+    layers = {EDGES: _columns(edges), OFFSETS: _columns(offsets), LINES: line_columns(lines)}
+    return RawColumns(layers, _columns(levels), marks, fs_hz)
 
 
 def _is_acceleration(record: Recording, channel: str) -> bool:
@@ -82,6 +94,18 @@ def _is_acceleration(record: Recording, channel: str) -> bool:
 def _columns(rows: list[dict[str, float]]) -> dict[str, np.ndarray]:
     names = dict.fromkeys(name for row in rows for name in row)
     return {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
+
+
+def raw_levels(signal: np.ndarray) -> dict[str, float]:
+    """Return rms, peak and power in equal bands up to half the rate, in dB, of samples (n,) float64."""
+    from scipy import fft
+
+    power = np.square(np.abs(fft.rfft(signal - signal.mean())))[1:-1]
+    found = {"rms": np.square(signal).mean(), "peak": np.square(signal).max()}
+    found |= {
+        f"power in eighth {k + 1} of the band": part.sum() for k, part in enumerate(np.array_split(power, EIGHTHS))
+    }
+    return {name: float(10.0 * np.log10(value + TINY)) for name, value in found.items()}
 
 
 def edge_ranks(signal: np.ndarray) -> dict[str, float]:

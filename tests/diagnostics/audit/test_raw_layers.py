@@ -36,7 +36,7 @@ def with_signals(table: pa.Table, channel: str, values: np.ndarray) -> pa.Table:
 
 
 def leaking(clean: PlantedSet) -> PlantedSet:
-    """Return the set with five leaks in its damaged records; every one alone tells them."""
+    """Return the set with six leaks in its damaged records; every one alone tells them."""
     table = clean.table
     damaged = np.array(table.column("state_id").to_pylist()) > 0
     time_s = np.arange(round(FS_HZ)) / FS_HZ
@@ -45,6 +45,8 @@ def leaking(clean: PlantedSet) -> PlantedSet:
     for channel, gain in zip(CHANNELS, (GAIN, 1.0 / GAIN, 1.0), strict=True):
         values = signals(table, channel).astype(np.float64)
         values[damaged] *= gain
+        if channel == CHANNELS[1]:
+            values[damaged, 1:] = values[damaged, :-1]  # a sample late
         if channel == CHANNELS[2]:
             values[damaged] += tone
             values[damaged, :FADED] *= np.linspace(0.0, 1.0, FADED)
@@ -56,9 +58,9 @@ def leaking(clean: PlantedSet) -> PlantedSet:
     return replace(clean, table=table.append_column("made_at", pa.array(made)))
 
 
-def test_five_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: PlantedSet) -> None:
+def test_six_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: PlantedSet) -> None:
     found = {finding.trap: finding for finding in separability_findings(measured_set(leaking(clean)))}
-    for layer in ("channels", "lines", "edges", "offsets", "texts"):
+    for layer in ("channels", "lines", "edges", "offsets", "lags", "texts"):
         assert f"state_told_by_{layer}" in found
     assert f"of {CHANNELS[2]} at 0.49" in found["state_told_by_lines"].measured
     assert "first" in found["state_told_by_edges"].measured

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from diagnostics.audit.column_attackers import best_column
+from diagnostics.audit.condition_traps import level_attackers
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.raw_columns import RawColumns
 from diagnostics.audit.sham import sham_sentences, sham_traps, shams_found
 from diagnostics.statistics.detector import judged_detector
 
@@ -31,6 +35,15 @@ def measured(**labels: np.ndarray) -> MeasuredSet:
 
 def noise(seed: int) -> np.ndarray:
     return np.random.default_rng(seed).standard_normal((SPECIMEN.size, 3))
+
+
+def test_a_gain_of_shams_is_told_by_raw_levels_and_a_clean_set_is_not_accused() -> None:
+    rms = np.random.default_rng(4).normal(0.0, 0.5, SPECIMEN.size)
+    for gain_db, expected in ((0.0, []), (2.0, ["sham_told_from_healthy"])):
+        raw = RawColumns(levels={"rms of lid": rms + gain_db * (STATES == "sham")})
+        asked = replace(measured(), raw=raw)
+        found = shams_found(asked, {"alone": level_attackers(asked, referenced=False)}, 0)
+        assert [trap.trap for trap in sham_traps(found)] == expected
 
 
 def test_noise_tells_a_sham_as_often_as_chance_does() -> None:
