@@ -1,0 +1,140 @@
+"""A copy of a set with a leak in its files, sealed as if siggen had written it."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from siggen.dataset.seal import sealed, unsealed
+from siggen.dataset.shard import FileFacts, TableFile
+from tests.dataset.resealed_set import reseal
+from tests.diagnostics.planted.leak import Leak, Signals
+
+
+def planted_copy(source: Path, folder: Path, leak: Leak) -> Path:
+    """Copy a set into a new folder, plant a leak, seal sidecars, checksums and manifest again; return the folder."""
+    shutil.copytree(source, folder)
+    steps = converter_steps(folder)
+    for file in sorted((folder / "data").glob("*.parquet")):
+        _rewrite(file, planted(pq.read_table(file), leak, steps, _fs_hz(folder)), leak)
+    for file in sorted((folder / "metadata").glob("*.parquet")):
+        rows = pq.read_table(file)
+        _rewrite(file, leak.labels(rows, damaged(rows)) if leak.labels else rows, Leak("", ""))
+    _list_columns(folder)
+    reseal(folder)
+    return folder
+
+
+def damaged(rows: pa.Table) -> np.ndarray:
+    """Return which rows show damage; a sham does not."""
+    return np.asarray(rows["fault"]) != "healthy"
+
+
+def planted(rows: pa.Table, leak: Leak, steps: dict[str, float], fs_hz: float) -> pa.Table:
+    """Return rows of signals and labels with a leak; `steps` as of `converter_steps`."""
+    if leak.channels or leak.tacho:
+        rows = _with_signals(rows, leak, steps, fs_hz)
+    return leak.labels(rows, damaged(rows)) if leak.labels else rows
+
+
+def _with_signals(rows: pa.Table, leak: Leak, steps: dict[str, float], fs_hz: float) -> pa.Table:
+    records = [_signals(rows, row, steps, fs_hz) for row in range(rows.num_rows)]
+    leaky = [record.is_damaged or leak.is_for_all for record in records]
+    if leak.channels:
+        made = [
+            _converted(leak.channels(record), record.steps) if is_leaky else record.channels
+            for record, is_leaky in zip(records, leaky, strict=True)
+        ]
+        for index, name in enumerate(steps):
+            rows = _with_lists(rows, name, [one[index] for one in made])
+    if leak.tacho:
+        made = [leak.tacho(r) if is_leaky else r.tacho_s for r, is_leaky in zip(records, leaky, strict=True)]
+        rows = _with_lists(rows, "tacho_s", made)
+    return rows
+
+
+def _signals(rows: pa.Table, row: int, steps: dict[str, float], fs_hz: float) -> Signals:
+    return Signals(
+        np.stack([_list(rows, name, row).astype(float) for name in steps]),
+        _list(rows, "tacho_s", row),
+        np.array(list(steps.values()))[:, None],
+        rows["record_id"][row].as_py(),
+        bool(damaged(rows)[row]),
+        fs_hz,
+        rows["mesh_hz"][row].as_py(),
+    )
+
+
+def _converted(channels: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    return np.round(channels / steps) * steps
+
+
+def _list(rows: pa.Table, name: str, row: int) -> np.ndarray:
+    return np.asarray(rows[name][row].values)
+
+
+def _with_lists(rows: pa.Table, name: str, lists: list[np.ndarray]) -> pa.Table:
+    index = rows.schema.get_field_index(name)
+    field = rows.schema.field(index)
+    values = [one.astype(field.type.value_type.to_pandas_dtype()) for one in lists]
+    return rows.set_column(index, field, pa.array(values, field.type))
+
+
+def converter_steps(folder: Path) -> dict[str, float]:
+    """Return the least power of two, in m/s^2, that all samples of a channel are multiples of."""
+    names = [channel["column"] for channel in _manifest(folder)["channels"]]
+    tables = [pq.read_table(file, columns=names) for file in sorted((folder / "data").glob("*.parquet"))]
+    return {name: min(_step(np.asarray(row.values)) for t in tables for row in t[name]) for name in names}
+
+
+def _step(samples: np.ndarray) -> float:
+    exponents = (e for e in range(20, -40, -1) if not np.any(np.ldexp(samples.astype(float), -e) % 1.0))
+    return float(2.0 ** next(exponents))
+
+
+def _rewrite(path: Path, rows: pa.Table, leak: Leak) -> None:
+    group_rows = pq.read_metadata(path).row_group(0).num_rows
+    if leak.cuts:
+        _write_groups(path, rows, leak.cuts(damaged(rows)))
+    else:
+        _write(path, rows, group_rows)
+
+
+def _write(path: Path, rows: pa.Table, group_rows: int) -> FileFacts:
+    """Write as siggen does."""
+    table = TableFile(path, path.name, rows.schema, group_rows)
+    for batch in rows.to_batches():
+        table.add(batch)
+    return table.finish()
+
+
+def _write_groups(path: Path, rows: pa.Table, starts: list[int]) -> None:
+    with pq.ParquetWriter(path, rows.schema, compression="zstd", compression_level=1) as writer:
+        for start, stop in zip(starts, [*starts[1:], rows.num_rows], strict=True):
+            writer.write_table(rows.slice(start, stop - start))
+
+
+def _list_columns(folder: Path) -> None:
+    """Give columns that are new their place among those of the manifest."""
+    manifest = _manifest(folder)
+    known = {column["name"] for column in manifest["columns"]}
+    schema = pq.read_schema(next(iter(sorted((folder / "metadata").glob("*.parquet")))))
+    for index, field in enumerate(schema):
+        if field.name not in known:
+            role = field.metadata[b"role"].decode()
+            manifest["columns"].insert(index, {"name": field.name, "role": role, "section": ""})
+    (folder / "manifest.json").write_bytes(sealed(manifest))
+
+
+def _manifest(folder: Path) -> dict[str, Any]:
+    return unsealed("manifest.json", (folder / "manifest.json").read_bytes())
+
+
+def _fs_hz(folder: Path) -> float:
+    schema = pq.read_schema(next((folder / "data").glob("*.parquet")))
+    return float(schema.metadata[b"fs_hz"])
