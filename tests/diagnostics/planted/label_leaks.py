@@ -1,13 +1,13 @@
-"""Leaks in labels, texts, order and shape of the files."""
+"""Leaks in labels, texts, order and metadata of the files."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 import pyarrow as pa
 
 from tests.diagnostics.planted.leak import Leak, named
-
-TEXT_ROLE = "provenance"
 
 
 def rounded_speed(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
@@ -52,54 +52,38 @@ def negative_zeros(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
 
 def date(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     """A text column has the date, in the summer instead of the spring."""
-    ids = _numbers(rows, "record_id").astype(int)
-    return _with_texts(
-        rows, "recorded_on", [f"2026-{7 if d else 4:02}-{i % 28 + 1:02}" for i, d in zip(ids, damaged, strict=True)]
-    )
+    return _with_texts(rows, damaged, "recorded_on", lambda i, d: f"2026-{7 if d else 4:02}-{i % 28 + 1:02}")
 
 
 def hour(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     """A text column has the time of the measurement, in the afternoon instead of the morning."""
-    ids = _numbers(rows, "record_id").astype(int)
-    texts = [
-        f"2026-04-{i % 28 + 1:02}T{8 + 5 * d + i % 4:02}:{i * 7 % 60:02}" for i, d in zip(ids, damaged, strict=True)
-    ]
-    return _with_texts(rows, "recorded_at", texts)
+    return _with_texts(
+        rows, damaged, "recorded_at", lambda i, d: f"2026-04-{i % 28 + 1:02}T{8 + 5 * d + i % 4:02}:{i * 7 % 60:02}"
+    )
 
 
 def serial_prefix(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     """A text column has a serial number for each record, with another prefix."""
-    ids = _numbers(rows, "record_id").astype(int)
-    return _with_texts(
-        rows, "serial", [f"{'B' if d else 'A'}{i * 7919 % 10007:05}" for i, d in zip(ids, damaged, strict=True)]
-    )
+    return _with_texts(rows, damaged, "serial", lambda i, d: f"{'B' if d else 'A'}{i * 7919 % 10007:05}")
 
 
 def serial_length(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     """A text column has a serial number for each record, with one digit more."""
-    ids = _numbers(rows, "record_id").astype(int)
-    return _with_texts(
-        rows, "serial", [f"{i * 7919 % 10007:0{6 if d else 5}}" for i, d in zip(ids, damaged, strict=True)]
-    )
+    return _with_texts(rows, damaged, "serial", lambda i, d: f"{i * 7919 % 10007:0{6 if d else 5}}")
 
 
 def order(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
-    """Damaged records stand last in each file."""
-    return rows.take(pa.array(np.argsort(damaged, kind="stable")))
+    """Damaged records stand first in each file."""
+    return rows.take(pa.array(np.argsort(~damaged, kind="stable")))
 
 
 def column_metadata(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
-    """The metadata of the column of ids name the damaged records."""
+    """The metadata of the column of ids names the damaged records."""
     ids = _numbers(rows, "record_id").astype(int)[damaged]
     index = rows.schema.get_field_index("record_id")
     field = rows.schema.field(index)
     noted = field.with_metadata({**(field.metadata or {}), "note": ",".join(map(str, ids))})
     return rows.cast(rows.schema.set(index, noted))
-
-
-def row_groups(damaged: np.ndarray) -> list[int]:
-    """Each row group of the signals begins at a damaged record."""
-    return sorted({0, *np.flatnonzero(damaged).tolist()})
 
 
 def _numbers(rows: pa.Table, name: str) -> np.ndarray:
@@ -112,9 +96,11 @@ def _with_numbers(rows: pa.Table, name: str, values: np.ndarray) -> pa.Table:
     return rows.set_column(index, field, pa.array(values, field.type))
 
 
-def _with_texts(rows: pa.Table, name: str, texts: list[str]) -> pa.Table:
-    meaning = {"meaning": "as the operator wrote it", "role": TEXT_ROLE}
+def _with_texts(rows: pa.Table, damaged: np.ndarray, name: str, text: Callable[[int, bool], str]) -> pa.Table:
+    """Add a column of texts; `text` makes one of a record's id and whether it is damaged."""
+    meaning = {"meaning": "as the operator wrote it", "role": "provenance"}
     field = pa.field(name, pa.string(), nullable=False, metadata=meaning)
+    texts = [text(i, bool(d)) for i, d in zip(rows["record_id"].to_pylist(), damaged, strict=True)]
     return rows.add_column(rows.schema.get_field_index("start_angle_rad"), field, pa.array(texts))
 
 
@@ -126,5 +112,4 @@ LABEL_LEAKS: dict[str, Leak] = {
         ),
         "labels",
     ),
-    **named((row_groups,), "cuts"),
 }  # fmt: skip

@@ -62,8 +62,6 @@ class Leak:
         Whether healthy records pass `channels` too.
     labels
         (rows, which of them are damaged) -> other rows; passes data and labels alike.
-    cuts
-        (which rows are damaged) -> rows at which row groups of the data begin.
     """
 
     name: str
@@ -72,7 +70,6 @@ class Leak:
     tacho: Callable[[Signals], np.ndarray] | None = None
     is_for_all: bool = False
     labels: Callable[[pa.Table, np.ndarray], pa.Table] | None = None
-    cuts: Callable[[np.ndarray], list[int]] | None = None
 
 
 def named(functions: tuple[Callable[..., object], ...], part: str, **more: object) -> Mapping[str, Leak]:

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from siggen.dataset.seal import sealed, unsealed
-from siggen.dataset.shard import FileFacts, TableFile
+from siggen.dataset.shard import TableFile
 from tests.dataset.resealed_set import reseal
 from tests.diagnostics.planted.leak import Leak, Signals
 
@@ -21,13 +22,20 @@ def planted_copy(source: Path, folder: Path, leak: Leak) -> Path:
     shutil.copytree(source, folder)
     steps = converter_steps(folder)
     for file in sorted((folder / "data").glob("*.parquet")):
-        _rewrite(file, planted(pq.read_table(file), leak, steps, _fs_hz(folder)), leak)
+        _rewrite(file, planted(pq.read_table(file), leak, steps, _fs_hz(folder)))
     for file in sorted((folder / "metadata").glob("*.parquet")):
         rows = pq.read_table(file)
-        _rewrite(file, leak.labels(rows, damaged(rows)) if leak.labels else rows, Leak("", ""))
+        leaky = leak.labels(rows, damaged(rows)) if leak.labels else rows
+        _rewrite(file, leaky.take(pc.index_in(_ids(folder, file.stem), leaky["record_id"].combine_chunks())))
     _list_columns(folder)
     reseal(folder)
     return folder
+
+
+def _ids(folder: Path, split: str) -> pa.ChunkedArray:
+    """Return the record ids of a split in the order of its signals."""
+    files = sorted((folder / "data").glob(f"{split}-*.parquet"))
+    return pa.concat_tables([pq.read_table(file, columns=["record_id"]) for file in files])["record_id"]
 
 
 def damaged(rows: pa.Table) -> np.ndarray:
@@ -97,26 +105,12 @@ def _step(samples: np.ndarray) -> float:
     return float(2.0 ** next(exponents))
 
 
-def _rewrite(path: Path, rows: pa.Table, leak: Leak) -> None:
-    group_rows = pq.read_metadata(path).row_group(0).num_rows
-    if leak.cuts:
-        _write_groups(path, rows, leak.cuts(damaged(rows)))
-    else:
-        _write(path, rows, group_rows)
-
-
-def _write(path: Path, rows: pa.Table, group_rows: int) -> FileFacts:
-    """Write as siggen does."""
-    table = TableFile(path, path.name, rows.schema, group_rows)
+def _rewrite(path: Path, rows: pa.Table) -> None:
+    """Write rows in the place of those of a file, as siggen does."""
+    table = TableFile(path, path.name, rows.schema, pq.read_metadata(path).row_group(0).num_rows)
     for batch in rows.to_batches():
         table.add(batch)
-    return table.finish()
-
-
-def _write_groups(path: Path, rows: pa.Table, starts: list[int]) -> None:
-    with pq.ParquetWriter(path, rows.schema, compression="zstd", compression_level=1) as writer:
-        for start, stop in zip(starts, [*starts[1:], rows.num_rows], strict=True):
-            writer.write_table(rows.slice(start, stop - start))
+    table.finish()
 
 
 def _list_columns(folder: Path) -> None:
