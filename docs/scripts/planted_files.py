@@ -1,8 +1,9 @@
-"""Leaks planted into the files of a set, and what the audit says: `planted_files.py SET FOLDER [--only KIND ...]`.
+"""Leaks planted into the files of a set, and what the audit says: `planted_files.py SET FOLDER [--only ...]`.
 
 Copies the set into FOLDER, plants one leak at a time, seals the copy again, and audits it in a fresh process. Prints
 Markdown: what was planted, what the audit found beyond the set as it is. The first row is that set. A copy is deleted
-after its audit; the reports stay in FOLDER, and a kind whose report is there already is not run again.
+after its audit; the reports stay in FOLDER, and a kind whose report is there already is not run again. With --paired
+the audit also judges the differences from a gearbox's own healthy record.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ AUDIT = "from diagnostics.cli.app import main; main()"
 LEAKS = {"nothing": Leak("nothing", "nothing"), **SIGNAL_LEAKS, **LABEL_LEAKS}
 
 
-def findings(source: Path, folder: Path, leak: Leak) -> list[str]:
+def findings(source: Path, folder: Path, leak: Leak, *options: str) -> list[str]:
     """Return the names of what the audit finds in a copy of a set with a leak."""
-    report = folder / f"{leak.name}_audit"
+    report = folder / "_".join([leak.name, "audit", *(option.strip("-") for option in options)])
     if not (report / "audit.json").is_file():
         copy = planted_copy(source, folder / leak.name, leak)
-        command = [sys.executable, "-c", AUDIT, "audit", str(copy), "--out", str(report)]
+        command = [sys.executable, "-c", AUDIT, "audit", str(copy), "--out", str(report), *options]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         shutil.rmtree(copy)
     return [finding["trap"] for finding in json.loads((report / "audit.json").read_text())["findings"]]
@@ -43,15 +44,16 @@ def main() -> None:
     parser.add_argument("set", type=Path)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--only", nargs="+", choices=sorted(LEAKS), default=list(LEAKS), metavar="KIND")
+    parser.add_argument("--paired", action="append_const", const="--paired", default=[])
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
-    clean = findings(given.set, given.folder, LEAKS["nothing"])
+    clean = findings(given.set, given.folder, LEAKS["nothing"], *given.paired)
     print("| kind | planted into damaged records | the audit names | result |\n|---|---|---|---|")
     print(f"| nothing | nothing | {', '.join(clean) or 'nothing'} | |", flush=True)
     kinds = [LEAKS[name] for name in given.only if name != "nothing"]
     found = 0
     for leak in kinds:
-        named = findings(given.set, given.folder, leak)
+        named = findings(given.set, given.folder, leak, *given.paired)
         is_found = not set(named) <= set(clean)
         found += is_found
         said = ", ".join(f"`{name}`" for name in named) or "nothing"

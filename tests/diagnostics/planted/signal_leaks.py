@@ -20,8 +20,8 @@ def opposite_gains(record: Signals) -> np.ndarray:
 
 
 def offset_of_steps(record: Signals) -> np.ndarray:
-    """An offset of four steps of the converter."""
-    return record.channels + 4 * record.steps
+    """An offset of 400 steps of the converter."""
+    return record.channels + 400 * record.steps
 
 
 def offset(record: Signals) -> np.ndarray:
