@@ -20,9 +20,9 @@ from tests.diagnostics.planted.leak import Leak, Signals
 def planted_copy(source: Path, folder: Path, leak: Leak) -> Path:
     """Copy a set into a new folder, plant a leak, seal sidecars, checksums and manifest again; return the folder."""
     shutil.copytree(source, folder)
-    steps = converter_steps(folder)
+    names = channel_columns(folder)
     for file in sorted((folder / "data").glob("*.parquet")):
-        _rewrite(file, planted(pq.read_table(file), leak, steps, _fs_hz(folder)))
+        _rewrite(file, planted(pq.read_table(file), leak, names, _fs_hz(folder)))
     for file in sorted((folder / "metadata").glob("*.parquet")):
         rows = pq.read_table(file)
         leaky = leak.labels(rows, damaged(rows)) if leak.labels else rows
@@ -43,22 +43,22 @@ def damaged(rows: pa.Table) -> np.ndarray:
     return np.asarray(rows["fault"]) != "healthy"
 
 
-def planted(rows: pa.Table, leak: Leak, steps: dict[str, float], fs_hz: float) -> pa.Table:
-    """Return rows of signals and labels with a leak; `steps` as of `converter_steps`."""
+def planted(rows: pa.Table, leak: Leak, names: list[str], fs_hz: float) -> pa.Table:
+    """Return rows of signals and labels with a leak; `names` as of `channel_columns`."""
     if leak.channels or leak.tacho:
-        rows = _with_signals(rows, leak, steps, fs_hz)
+        rows = _with_signals(rows, leak, names, fs_hz)
     return leak.labels(rows, damaged(rows)) if leak.labels else rows
 
 
-def _with_signals(rows: pa.Table, leak: Leak, steps: dict[str, float], fs_hz: float) -> pa.Table:
-    records = [_signals(rows, row, steps, fs_hz) for row in range(rows.num_rows)]
+def _with_signals(rows: pa.Table, leak: Leak, names: list[str], fs_hz: float) -> pa.Table:
+    records = [_signals(rows, row, names, fs_hz) for row in range(rows.num_rows)]
     leaky = [record.is_damaged or leak.is_for_all for record in records]
     if leak.channels:
         made = [
             _converted(leak.channels(record), record.steps) if is_leaky else record.channels
             for record, is_leaky in zip(records, leaky, strict=True)
         ]
-        for index, name in enumerate(steps):
+        for index, name in enumerate(names):
             rows = _with_lists(rows, name, [one[index] for one in made])
     if leak.tacho:
         made = [leak.tacho(r) if is_leaky else r.tacho_s for r, is_leaky in zip(records, leaky, strict=True)]
@@ -66,11 +66,12 @@ def _with_signals(rows: pa.Table, leak: Leak, steps: dict[str, float], fs_hz: fl
     return rows
 
 
-def _signals(rows: pa.Table, row: int, steps: dict[str, float], fs_hz: float) -> Signals:
+def _signals(rows: pa.Table, row: int, names: list[str], fs_hz: float) -> Signals:
+    channels = np.stack([_list(rows, name, row).astype(float) for name in names])
     return Signals(
-        np.stack([_list(rows, name, row).astype(float) for name in steps]),
+        channels,
         _list(rows, "tacho_s", row),
-        np.array(list(steps.values()))[:, None],
+        np.array([[converter_step(channel)] for channel in channels]),
         rows["record_id"][row].as_py(),
         bool(damaged(rows)[row]),
         fs_hz,
@@ -93,14 +94,13 @@ def _with_lists(rows: pa.Table, name: str, lists: list[np.ndarray]) -> pa.Table:
     return rows.set_column(index, field, pa.array(values, field.type))
 
 
-def converter_steps(folder: Path) -> dict[str, float]:
-    """Return the least power of two, in m/s^2, that all samples of a channel are multiples of."""
-    names = [channel["column"] for channel in _manifest(folder)["channels"]]
-    tables = [pq.read_table(file, columns=names) for file in sorted((folder / "data").glob("*.parquet"))]
-    return {name: min(_step(np.asarray(row.values)) for t in tables for row in t[name]) for name in names}
+def channel_columns(folder: Path) -> list[str]:
+    """Return the columns of the channels of a set."""
+    return [channel["column"] for channel in _manifest(folder)["channels"]]
 
 
-def _step(samples: np.ndarray) -> float:
+def converter_step(samples: np.ndarray) -> float:
+    """Return the largest power of two that all samples are multiples of."""
     exponents = (e for e in range(20, -40, -1) if not np.any(np.ldexp(samples.astype(float), -e) % 1.0))
     return float(2.0 ** next(exponents))
 

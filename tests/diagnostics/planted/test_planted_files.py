@@ -15,7 +15,7 @@ from tests.command import command
 from tests.dataset.fake_set import STEP_M_S2, file_bytes, write_fake_set
 from tests.diagnostics.planted.label_leaks import LABEL_LEAKS
 from tests.diagnostics.planted.leak import Leak
-from tests.diagnostics.planted.planted_copy import converter_steps, damaged, planted, planted_copy
+from tests.diagnostics.planted.planted_copy import channel_columns, converter_step, damaged, planted, planted_copy
 from tests.diagnostics.planted.signal_leaks import SIGNAL_LEAKS
 
 
@@ -59,16 +59,16 @@ def test_labels_keep_the_order_of_the_signals(source: Path, tmp_path: Path) -> N
 
 
 def test_every_leak_in_signals_stays_on_the_converters_grid_and_off_healthy_records(source: Path) -> None:
-    before, steps = rows(source, "data"), converter_steps(source)
-    assert set(steps.values()) == {STEP_M_S2}
+    before, names = rows(source, "data"), channel_columns(source)
+    assert {converter_step(np.asarray(row.values)) for name in names for row in before[name]} == {STEP_M_S2}
     for leak in SIGNAL_LEAKS.values():
-        after = planted(before, leak, steps, fs_hz=5120.0)
+        after = planted(before, leak, names, fs_hz=5120.0)
         expected = np.ones(before.num_rows, bool) if leak.is_for_all else damaged(before)
         changed = [
-            any(_differ(before, after, name, row) for name in (*steps, "tacho_s")) for row in range(len(expected))
+            any(_differ(before, after, name, row) for name in (*names, "tacho_s")) for row in range(len(expected))
         ]
         assert changed == expected.tolist(), leak.name
-        samples = [value for name in steps for value in after[name].combine_chunks().flatten().to_numpy()]
+        samples = [value for name in names for value in after[name].combine_chunks().flatten().to_numpy()]
         assert not np.any((np.array(samples, dtype=float) / STEP_M_S2) % 1.0), leak.name
 
 
@@ -79,7 +79,7 @@ def test_every_leak_in_labels_changes_labels_or_their_order_alone(source: Path) 
         before = before.set_column(index, before.schema.field(index), pc.add(before[name], 0.123456789))
     ids = before["record_id"].to_pylist()
     for leak in LABEL_LEAKS.values():
-        after = planted(before, leak, {}, fs_hz=5120.0)
+        after = planted(before, leak, [], fs_hz=5120.0)
         assert _text(after) != _text(before), leak.name
         assert sorted(after["record_id"].to_pylist()) == ids, leak.name
         assert after.sort_by("record_id")["tacho_s"] == before["tacho_s"], leak.name
