@@ -14,8 +14,8 @@ from math import pi
 import numpy as np
 
 from benchmarks.quadrature import mesh_stiffness_by_quad, pair_stiffness_by_quad
-from benchmarks.row import Row, cost_row
-from benchmarks.shipped import QUICKSTART, shipped
+from benchmarks.row import Row, cost_row, duration_text
+from benchmarks.shipped import QUICKSTART, ROOT, shipped
 from benchmarks.timing import Candidate, medians
 from siggen.config import Config
 from siggen.gears.damage.tooth_damage import Damage
@@ -23,15 +23,17 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, mesh_stiffness
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.planning.specimen import draw_specimen
+from siggen.record.specimen_state import specimen_state
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.made_gears import MadeGears
 
 OPTIONS = StiffnessOptions("rack_trochoid", "sainsot")
 POINTS = 1000
 TABLE_POINTS = 2049
 FEW = 10
 """Points that quad computes; its cost is scaled up to all of them."""
-HEALTHY_GOAL_S, PITTED_GOAL_S, TABLES_GOAL_S = 2e-3, 10e-3, 100e-3
+HEALTHY_GOAL_S, PITTED_GOAL_S, TABLES_GOAL_S, CROWDED_GOAL_S = 2e-3, 10e-3, 100e-3, 1.0
 PITTED_STATE = 3
 FIRST = 1
 """Number of the first measured call; call 0 compiles."""
@@ -44,6 +46,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
     yield _ross_row(rounds)
     yield _pitted_row(rounds)
     yield _tables_row(rounds)
+    yield _crowded_row(3 if quick else 5)
 
 
 def gear_pair_number(number: int) -> GearPair:
@@ -147,6 +150,27 @@ def _tables_row(rounds: int) -> Row:
     what = f"tables, 5 teeth of 100 random pits, {TABLE_POINTS} points"
     name = f"quad ({FEW} points, scaled; differs {difference:.0e})"
     return cost_row(what, cost["own"], name, cost["quad"] * TABLE_POINTS / FEW, TABLES_GOAL_S)
+
+
+def _crowded_row(rounds: int) -> Row:
+    """Return what tables and labels of a tooth with very many pits cost, across the face and with tilt."""
+    state = (
+        "{name: crowded, severity: severe, damage: {kind: clustered, teeth: 1, count: 1200, spread_profile_mm: 1.0, "
+    )
+    state += "semi_axis_face_mm: 0.3, semi_axis_profile_mm: 0.2, depth_mm: 0.1}}"
+    config = shipped(ROOT / "configs" / "quickstart.yaml", f"states=[{{name: healthy, severity: healthy}}, {state}]")
+    specimens = [draw_specimen(config, number) for number in range(FIRST + rounds)]
+    gears = [MadeGears(config, specimen) for specimen in specimens]
+    for specimen, made in zip(specimens, gears, strict=True):
+        specimen_state(config, specimen, 0, made)
+
+    def own(i: int) -> object:
+        return specimen_state(config, specimens[i], 1, gears[i])
+
+    own(0)
+    cost_s = medians({"own": Candidate(own)}, rounds, first=FIRST)["own"]
+    what = "tables and labels of a state with 1,200 pits on a tooth"
+    return Row(what, duration_text(cost_s), goal=f"<= {duration_text(CROWDED_GOAL_S)}", met=cost_s <= CROWDED_GOAL_S)
 
 
 def _difference(own: np.ndarray, other: np.ndarray) -> float:

@@ -57,8 +57,8 @@ def curve_along(
     """Return the answers to approaches (k,) [m] and tilts (k,) [rad] that lie on a straight way.
 
     `loads_m` (n,): guess at the first approach (zeros are allowed), the loads there afterwards. Every solution starts
-    from the parabola through the two before it with the slope of the last one. `nodes`: of `energy_nodes`; with an
-    empty (2, 0) no energy is computed (it costs up to as much as the rest where gaps carry) and `energy_j` is 0.
+    from the line through the two before it. `nodes`: of `energy_nodes`; with an empty (2, 0) no energy is computed (it
+    costs up to as much as the rest where gaps carry) and `energy_j` is 0.
 
     Raises
     ------
@@ -72,8 +72,12 @@ def curve_along(
     last = np.zeros(loads_m.size)
     loads = loads_m.copy()
     for j in range(count):
+        if j > 1:
+            ratio = _step_ratio(approach_m, tilt_rad, j)
+            for i in range(loads_m.size):
+                if loads[i] > 0.0 and before[i] > 0.0:
+                    loads[i] = max(loads[i] + ratio * (loads[i] - before[i]), 0.1 * loads[i])
         if j > 0:
-            _go_on(loads, before, room, (approach_m, tilt_rad), j)
             before[:] = last
         answer = solved_force(slices, approach_m[j], tilt_rad[j], loads, room, tolerance)
         if answer.passes < 0:
@@ -115,19 +119,6 @@ def write_curves(
             out[3, way, j], out[4, way, j] = found.stiffness_n_per_m[j], found.turning_n[j]
             out[5, way, j], out[6, way, j] = found.tilting_n_m[j], found.carrying_m[j]
             out[7, way, j] = found.on_damage[j]
-
-
-@njit(cache=True)
-def _go_on(loads: FloatArray, before: FloatArray, room: SolverRoom, way: tuple[FloatArray, FloatArray], j: int) -> None:
-    """Put a guess at place j into `loads`, those at the place before; `before` are those at the one before it."""
-    approach_m, tilt_rad = way
-    nearer, turned = approach_m[j] - approach_m[j - 1], tilt_rad[j] - tilt_rad[j - 1]
-    ratio = _step_ratio(approach_m, tilt_rad, j) if j > 1 else 0.0
-    for i in range(loads.size):
-        if loads[i] > 0.0:
-            rise = nearer * room.right[i, 1] + turned * room.right[i, 4]
-            bend = ratio * (rise - ratio * (loads[i] - before[i])) if before[i] > 0.0 else 0.0
-            loads[i] = max(loads[i] + rise + bend, 0.0)
 
 
 @njit(cache=True)

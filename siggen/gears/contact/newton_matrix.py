@@ -16,9 +16,8 @@ class SolverRoom(NamedTuple):
     """Arrays that the solver reuses, made by `solver_room`.
 
     `rows` (n,): slices that carry; `losses` (n,): how often a slice lost touch; `product`, `growth` (n,): K u and
-    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 5): right sides residual, 1, u, v, y, then the step, and what loads
-    answer to the approach at 1 and to the tilt [m/rad] at 4; `rigid_m` (n,): sinks without load; `steps`, `factors`: of
-    `solve_rows`; `strength`, `strength_slope` (m,): of the kernel.
+    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 5): right sides residual, 1, u, v, y, then the solutions; `rigid_m`
+    (n,): sinks without load; `steps`, `factors`: of `solve_rows`; `strength`, `strength_slope` (m,): of the kernel.
     """
 
     rows: IntArray
@@ -110,10 +109,8 @@ def add_low_rank(
     largest = 0.0
     for n in range(chosen):
         i = room.rows[n]
-        even, own, grown = room.right[i, 1], room.right[i, 2], room.right[i, 3]
-        room.right[i, 0] -= weights[0, 0] * even + weights[1, 0] * own + weights[2, 0] * grown
-        room.right[i, 1] -= weights[0, 1] * even + weights[1, 1] * own + weights[2, 1] * grown
-        room.right[i, 4] -= weights[0, 2] * even + weights[1, 2] * own + weights[2, 2] * grown
+        change = weights[0, 0] * room.right[i, 1] + weights[1, 0] * room.right[i, 2] + weights[2, 0] * room.right[i, 3]
+        room.right[i, 0] -= change
         largest = max(largest, abs(room.right[i, 0]))
     turning = along[1] - weights[0, 1] * along[1] - weights[1, 1] * along[2] - weights[2, 1] * along[3]
     tilting = along[4] - weights[0, 2] * along[1] - weights[1, 2] * along[2] - weights[2, 2] * along[3]
