@@ -125,7 +125,7 @@ class Names:
         return replace(problem, path=path, received=received, allowed=allowed)
 
     def _body(self, code: str) -> str:
-        return self.gears[int(code) - 1][1] if code.isdigit() else BODIES[code]
+        return self.gears[int(code) - 1][1].rpartition(".")[2] if code.isdigit() else BODIES[code]  # of an idler too
 
     def _mesh_at(self, path: str) -> str:
         found = re.match(r"stages\.(\d+)", path)
