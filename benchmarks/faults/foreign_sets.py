@@ -124,7 +124,7 @@ def _verify(folder: Path, _out: Path) -> None:
 
     found = verify(folder, 0)
     if found.mismatches:
-        raise VerificationError("; ".join(problem_lines(found.mismatches)))
+        raise VerificationError("; ".join(problem_lines(found)))
 
 
 def _publish(folder: Path, out: Path) -> None:

@@ -31,6 +31,7 @@ def findings(source: Path, folder: Path, leak: Leak, *options: str) -> list[str]
     """Return the names of what the audit finds in a copy of a set with a leak."""
     report = folder / "_".join([leak.name, "audit", *(option.strip("-") for option in options)])
     if not (report / "audit.json").is_file():
+        shutil.rmtree(folder / leak.name, ignore_errors=True)  # of a study that was stopped
         copy = planted_copy(source, folder / leak.name, leak)
         command = [sys.executable, "-c", AUDIT, "audit", str(copy), "--out", str(report), *options]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

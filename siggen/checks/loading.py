@@ -27,12 +27,16 @@ def emptied_pairs(raw: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def _beyond(told: Sequence[Problem], of_physics: Iterable[Problem]) -> Iterator[Problem]:
-    """Yield what physics finds at keys that nothing was said of, nor of their section; each key once."""
-    paths = {problem.path for problem in told}
+    """Yield what physics finds at keys that nothing was said of, nor of their section; the same of a key once."""
+    paths, found = {problem.path for problem in told}, list[Problem]()
     for problem in of_physics:
         parts = problem.path.split(".")
-        if paths.isdisjoint(".".join(parts[:end]) for end in range(1, len(parts) + 1)):
-            paths.add(problem.path)
+        sections = {".".join(parts[:end]) for end in range(1, len(parts))}
+        again = any(
+            one.path in sections or (one.path, one.received) == (problem.path, problem.received) for one in found
+        )
+        if paths.isdisjoint({*sections, problem.path}) and not again:
+            found.append(problem)
             yield problem
 
 

@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from siggen.columns.damage_columns import DAMAGE_COLUMNS
 from siggen.config.names import NO_NAMES, Names
 from siggen.dataset.reading import RowGroup
 from tests.diagnostics.column_roles import ListedRoles
@@ -87,7 +88,21 @@ class MemoryDataset(ListedRoles):
         damaged = [row for row in rows if row["fault"] != "healthy"]
         gears = ["gear" if row["specimen_id"] % 2 else "pinion" for row in damaged]
         teeth = [row["specimen_id"] % TEETH[0] for row in damaged]
-        return pa.table({"record_id": [row["record_id"] for row in damaged], "gear": gears, "tooth": teeth})
+        ellipse = {"face_mm": 10.0, "height_mm": 3.0, "semi_axis_face_mm": 1.0, "semi_axis_profile_mm": 0.5}
+        same = {
+            "kind": "spall",
+            "shape": "ellipse",
+            "depth_law": "flat",
+            "depth_mm": 0.2,
+            "polygon_face_mm": [],
+            "polygon_height_mm": [],
+            **ellipse,
+        }
+        rows = [
+            {"record_id": row["record_id"], "gear": gear, "tooth": tooth, **same}
+            for row, gear, tooth in zip(damaged, gears, teeth, strict=True)
+        ]
+        return pa.Table.from_pylist(rows, pa.schema([(column.name, column.type) for column in DAMAGE_COLUMNS]))
 
     def records(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None

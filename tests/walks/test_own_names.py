@@ -104,7 +104,7 @@ def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: 
 
 def test_a_flank_is_asked_for_by_the_name_of_its_gear(made: Path) -> None:
     config = load_config(made / "mill.yaml")
-    with pytest.raises(UsageError, match="--gear pinion; allowed: ida or otto"):
+    with pytest.raises(UsageError, match="--gear pinion; allowed: ida, otto, eva, karl"):
         face_pressure(config, 1, "pinion")
     assert face_pressure(config, 1, "otto", 0).view.gear == "otto"
 

@@ -115,7 +115,7 @@ def test_scores_and_tables_and_loaders_agree_on_the_classes(kinds: Any, model: P
         diagnostics.score(kinds, file)
     scored = diagnostics.score(kinds, file, classes="fault")
     assert "classes are faults" in str(scored)
-    assert {row.records for row in scored.rows} == {"every damage", "all"}
+    assert {row.records for row in scored.rows} == {"every damage", "all", "damaged"}
     matrix = diagnostics.table(kinds, classes="fault")
     assert matrix.classes == load_model(model).facts.classes == ("healthy", "pitting")
     index = window_index(kinds, "train", StreamSettings(classes="fault"))

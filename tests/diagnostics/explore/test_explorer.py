@@ -190,7 +190,6 @@ def test_a_set_without_healthy_records_says_so(tmp_path: Path) -> None:
     text = write_explorer(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
     assert "No healthy records" in text
     assert "Neither transmission error nor mesh force" in text
-    assert "no flank is drawn" in text
     assert json.loads(Read(text).data)["overlay"] == [None, None]
 
 
