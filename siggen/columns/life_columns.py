@@ -79,18 +79,18 @@ OUTLOOK_COLUMNS = (
     Column("rul_q50_h", F64, HOURS, "its median"),
     Column("rul_q90_h", F64, HOURS, "its 90 % quantile"),
 )
-DEBRIS_COLUMNS = (
+OF_INSPECTION = (
     Column("record_id", pa.int64(), "", "first record of the inspection"),
     SPECIMEN,
     SPLIT,
     Column("inspection", I32, "", "number of the inspection"),
+)
+DEBRIS_COLUMNS = (
+    *OF_INSPECTION,
     Column("debris_mg", F64, "mg", "metal that a counter in the oil has counted since age 0, with its errors"),
 )
 PICTURE_COLUMNS = (
-    Column("record_id", pa.int64(), "", "first record of the inspection"),
-    SPECIMEN,
-    SPLIT,
-    Column("inspection", I32, "", "number of the inspection"),
+    *OF_INSPECTION,
     GEAR,
     TOOTH,
     Column("png", pa.binary(), "", "grey picture, 0.05 mm per pixel: face across, tip above"),

@@ -193,6 +193,13 @@ def test_a_set_without_healthy_records_says_so(tmp_path: Path) -> None:
     assert json.loads(Read(text).data)["overlay"] == [None, None]
 
 
+def test_a_set_without_damaged_records_says_that_no_flank_is_drawn(tmp_path: Path) -> None:
+    dataset = memory_dataset(("train",))
+    dataset.table = dataset.table.filter(pc.equal(dataset.table.column("fault"), "healthy"))
+    text = write_explorer(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "no flank is drawn" in text
+
+
 class WithInternals(MemoryDataset):
     """Stores the transmission error of records 0 and 2: a ramp of as many metres as the record's number."""
 
