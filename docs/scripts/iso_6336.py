@@ -131,8 +131,7 @@ def helical() -> None:
     """Print the table of helical pairs, by calibrated teeth."""
     print(
         "\n| z1/z2 | β | transverse ε | cγα of c'th cos β | calibrated | the same, bodies still along the axis "
-        "| calibrated, weber_banaschek |\n" + "|---" * 7
-        + "|"
+        "| calibrated, weber_banaschek |\n" + "|---" * 7 + "|"
     )
     for first, second in HELICAL_PAIRS:
         for helix_deg in HELICES_DEG:
