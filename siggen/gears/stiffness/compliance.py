@@ -9,6 +9,9 @@ roll-angle form. With alpha_1 = psi_c - alpha_2 (signed: negative near the base 
 The calibrated tooth scales all four parts of the healthy rack-cut tooth by the finite-element factor of
 `siggen.gears.stiffness.calibration`; what pits add to the beam is not scaled, since the factor was made on healthy
 teeth.
+
+Of helical teeth the beam bends in its normal section. The body beneath is none of that section: it takes the force of
+the transverse plane as the body of a spur gear does, and the axial force, tan β_b of it, as a plate (`axial_body`).
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos
+from math import cos, tan
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,9 +33,10 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import normal_pair, normal_rolls
 from siggen.gears.geometry.internal_pair import RingGear
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.axial_body import axial_compliance
 from siggen.gears.stiffness.beams import beam_integrals, first_roll
 from siggen.gears.stiffness.calibration import calibration_factor
-from siggen.gears.stiffness.foundation import foundation_compliance
+from siggen.gears.stiffness.foundation import foundation_compliance, root_half_angle
 from siggen.gears.stiffness.pitted_beams import pit_integrals, pit_sums
 from siggen.gears.stiffness.ring_tooth import SHEAR_FACTOR, ring_tooth_parts
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -111,15 +115,30 @@ def _of_ring(pair: GearPair, ring: RingGear, roll: FloatArray, options: Stiffnes
 def _in_normal_section(
     pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
 ) -> list[ToothCompliance]:
-    """Return the compliances of helical teeth in the transverse plane from those of their normal section."""
+    """Return the compliances of helical teeth in the transverse plane: beams of the normal section on their bodies."""
     normal, share = normal_pair(pair), cos(pair.base_helix_rad) ** 2
-    first = first_roll(normal.member(which), options.shape)
-    rolls = np.maximum(normal_rolls(pair, which, np.atleast_1d(np.asarray(roll, dtype=np.float64))), first)
+    section, across = normal.member(which), np.atleast_1d(np.asarray(roll, dtype=np.float64))
+    rolls = np.maximum(normal_rolls(pair, which, across), first_roll(section, options.shape))
     found = tooth_compliances(normal, which, rolls, options, teeth)
+    factor = calibration_factor(section, rolls) if options.beam == "calibrated" else 1.0
+    alone = factor * _foundation(normal, section, rolls, options)
+    body = factor * _foundation(pair, pair.member(which), across, options) + axial_part(pair, which, across, options)
     return [
-        ToothCompliance(one.bending / share, one.shear / share, one.axial / share, one.foundation / share)
+        ToothCompliance(
+            one.bending / share, one.shear / share, one.axial / share, (one.foundation - alone) / share + body
+        )
         for one in found
     ]
+
+
+def axial_part(pair: GearPair, which: str, roll_rad: FloatArray, options: StiffnessOptions) -> FloatArray:
+    """Return what a gear's body adds to a helical tooth's compliance by giving way along the axis (k,) [m/N]."""
+    gear = pair.member(which)
+    if options.foundation == "none":
+        return np.zeros(roll_rad.size)
+    angle = root_half_angle(gear, options.root_reading)
+    bends = axial_compliance(gear, pair.face_width_m, pair.poisson_ratio, angle, roll_rad)
+    return np.asarray(tan(pair.base_helix_rad) ** 2 * bends / (pair.youngs_modulus_pa * pair.face_width_m))
 
 
 def _healthy(
@@ -127,16 +146,17 @@ def _healthy(
 ) -> tuple[FloatArray, FloatArray]:
     """Return bending, shear and axial compliance (3, k) and foundation (k,) [m/N]."""
     beam = _beam_compliances(pair, arms, beam_integrals(gear, options.shape, angles, pair.face_width_m))
-    if options.foundation == "none":
-        foundation = np.zeros(angles.size)
-    else:
-        foundation = foundation_compliance(
-            gear, angles, options.root_reading, pair.youngs_modulus_pa, pair.face_width_m
-        )
+    foundation = _foundation(pair, gear, angles, options)
     if options.beam == "calibrated":
         factor = calibration_factor(gear, angles)
         beam, foundation = factor * beam, factor * foundation
     return beam, foundation
+
+
+def _foundation(pair: GearPair, gear: SpurGear, angles: FloatArray, options: StiffnessOptions) -> FloatArray:
+    if options.foundation == "none":
+        return np.zeros(angles.size)
+    return foundation_compliance(gear, angles, options.root_reading, pair.youngs_modulus_pa, pair.face_width_m)
 
 
 def _damaged(
