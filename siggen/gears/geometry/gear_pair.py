@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import acos, atan, cos, isfinite, pi, radians, tan
+from math import acos, atan, cos, inf, isfinite, pi, radians, tan
 
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -117,9 +117,9 @@ class GearPair:
         return self.face_travel_m / self.base_pitch_m
 
     @property
-    def tips_meet_flanks(self) -> bool:
-        """Whether the corner of a tip meets the mate beside the path of contact."""
-        return True
+    def corner_room_pitches(self) -> float:
+        """How far before and after the path of contact corners may be followed [base pitches]."""
+        return inf
 
     @property
     def engagement_start_m(self) -> float:

@@ -66,7 +66,7 @@ def missing_material(
     Of a helical pair positions are those of the middle of the face, and only what all slices miss is in the tables.
 
     Without corner contact the tables end with the path of contact: a pair that enters is loaded at once. With it they
-    reach `reach_pitches` base pitches further at both ends.
+    reach `reach_pitches` base pitches further at both ends, or as far as the pair has room for.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def missing_material(
     if relief is not None and not (relief.amount_m >= 0.0 and 0.0 < relief.length_m <= pair.base_pitch_m):
         allowed = f"allowed are amounts from 0 and lengths above 0 up to a base pitch, {pair.base_pitch_m:.6g} m"
         raise ValueError(f"tip relief: received {relief.amount_m} m over {relief.length_m} m; {allowed}")
-    reach_m = reach_pitches * pair.base_pitch_m if corner_contact and pair.tips_meet_flanks else 0.0
+    reach_m = min(reach_pitches, pair.corner_room_pitches) * pair.base_pitch_m if corner_contact else 0.0
     start_m, end_m = pair.engagement_start_m - reach_m, pair.engagement_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)
     if pair.helix_rad != 0.0:
