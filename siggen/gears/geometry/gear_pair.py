@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import acos, atan, cos, inf, isfinite, pi, radians, tan
+from math import acos, atan, cos, isfinite, pi, radians, tan
 
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -115,11 +115,6 @@ class GearPair:
     def overlap_ratio(self) -> float:
         """Overlap ratio, the part of the total contact ratio that the helix adds."""
         return self.face_travel_m / self.base_pitch_m
-
-    @property
-    def corner_room_pitches(self) -> float:
-        """How far before and after the path of contact corners may be followed [base pitches]."""
-        return inf
 
     @property
     def engagement_start_m(self) -> float:

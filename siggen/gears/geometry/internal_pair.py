@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import acos, ceil, cos, pi, sin, sqrt, tan
+from math import acos, cos, pi, sin, sqrt, tan
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,6 @@ from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.geometry.spur_gear import SpurGear
 
-WITHIN = 0.99
 LEAST_APART = 10
 """Teeth that a ring has more than a planet, so that tips do not meet beside the path (standard literature)."""
 
@@ -126,14 +125,6 @@ class InternalPair(GearPair):
     def working_centre_distance_m(self) -> float:
         """Centre distance (R_br - R_bp)/cos(alpha_w) [m]."""
         return abs(self.line_of_action_m) / sin(self.working_pressure_angle_rad)
-
-    @property
-    def corner_room_pitches(self) -> float:
-        """Half of what is left to the next whole number of pairs, so that corners bring no further pair into reach.
-
-        Corners in a ring part slowly, 2 to 10 um within this room; a pair more would cost several times as much.
-        """
-        return WITHIN * 0.5 * (ceil(self.contact_ratio) - self.contact_ratio)
 
     def ring_radius_m(self, position_m: FloatArray) -> FloatArray:
         """Return the radius on the ring of contacts at positions (k,) [m]."""
