@@ -122,11 +122,6 @@ class GearPair:
         return (self.engagement_end_m - self.engagement_start_m) / self.base_pitch_m
 
     @property
-    def tips_meet_flanks(self) -> bool:
-        """Whether the corner of a tip meets the mate beside the path of contact."""
-        return True
-
-    @property
     def engagement_start_m(self) -> float:
         """Position of the middle of the face where the first end of the face enters contact; s_A of spur gears [m]."""
         return self.contact_start_m - 0.5 * self.face_travel_m

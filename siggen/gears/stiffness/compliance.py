@@ -16,7 +16,7 @@ the transverse plane as the body of a spur gear does, and the axial force, tan Î
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import cos, tan
@@ -97,19 +97,31 @@ def tooth_compliances(
     gear = pair.member(which)
     damages = [tuple(pits) for pits in teeth]
     if isinstance(gear, RingGear):
-        return [_of_ring(pair, gear, np.atleast_1d(np.asarray(roll, dtype=np.float64)), options)] * len(damages)
+        return _of_ring(pair, gear, np.atleast_1d(np.asarray(roll, dtype=np.float64)), options, damages)
     angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
     arms = _arms(gear, angles)
     healthy = _healthy(pair, gear, angles, arms, options)
     return [_damaged(pair, gear, angles, arms, options, pits, healthy) for pits in damages]
 
 
-def _of_ring(pair: GearPair, ring: RingGear, roll: FloatArray, options: StiffnessOptions) -> ToothCompliance:
-    """Return the compliance of a tooth of a ring, whatever its damage."""
+def _of_ring(
+    pair: GearPair, ring: RingGear, roll: FloatArray, options: StiffnessOptions, teeth: Sequence[Damage]
+) -> list[ToothCompliance]:
+    """Return the compliances of teeth of a ring: notches take of the sections between the contact and the root."""
     beam, foot = ring_tooth_parts(pair, ring, roll)
     if options.foundation == "none":
         foot = np.zeros_like(foot)
-    return ToothCompliance(beam[0], beam[1], beam[2], foot)
+    found = []
+    for pits in teeth:
+        notches = tuple(one for one in pits if not goes_through(one))
+        own = beam
+        if pit_rows(notches).size:
+            ends = ring.tip_roll_rad, ring.root_roll_rad
+            below, whole = (_pit_gain(pair, ring, ends, at, notches) for at in (roll, np.array(ends[1:])))
+            own = beam + _beam_compliances(pair, _arms(ring, roll, towards_root=1.0), whole - below)
+        own.setflags(write=False)
+        found.append(ToothCompliance(own[0], own[1], own[2], foot))
+    return found
 
 
 def _in_normal_section(
@@ -171,7 +183,8 @@ def _damaged(
     beam, foundation = healthy
     notches = tuple(one for one in pits if not goes_through(one))
     if pit_rows(notches).size:
-        beam = beam + _beam_compliances(pair, arms, _pit_gain(pair, gear, options.shape, angles, notches))
+        ends = first_roll(gear, options.shape), gear.tip_roll_rad
+        beam = beam + _beam_compliances(pair, arms, _pit_gain(pair, gear, ends, angles, notches))
     sound = healthy[0].sum(axis=0) + healthy[1]
     for one in pits:
         foundation = foundation + one.tooth_compliance_m_per_n(pair, angles, sound)
@@ -191,8 +204,9 @@ def _on_flank(gear: SpurGear, beam: str, roll: FloatArray, which: str) -> FloatA
     return np.clip(roll, first, last)
 
 
-def _pit_gain(pair: GearPair, gear: SpurGear, beam: str, roll: FloatArray, pits: Damage) -> FloatArray:
-    breaks, cuts, sums = _pit_pieces(gear, beam, pits, pair.face_width_m)
+def _pit_gain(pair: GearPair, gear: SpurGear, ends: tuple[float, float], roll: FloatArray, pits: Damage) -> FloatArray:
+    """Return what pits add to the integrals (4, k) from the first end of a beam to rolls (k,)."""
+    breaks, cuts, sums = _pit_pieces(gear, ends, pits, pair.face_width_m)
     flank = (pit_rows(pits), gear.base_radius_m, gear.base_half_angle_rad, pair.face_width_m)
     gain = pit_integrals(roll, breaks, cuts, sums, *flank)
     if not np.all(np.isfinite(gain)):
@@ -204,26 +218,31 @@ def _pit_gain(pair: GearPair, gear: SpurGear, beam: str, roll: FloatArray, pits:
 
 @lru_cache(maxsize=64)  # tables and labels ask at many positions
 def _pit_pieces(
-    gear: SpurGear, beam: str, pits: Damage, face_width_m: float
+    gear: SpurGear, ends: tuple[float, float], pits: Damage, face_width_m: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return breaks, cuts and sums of `pit_sums`."""
     rows = pit_rows(pits)
-    breaks = section_breaks(gear, rows, face_width_m, first_roll(gear, beam))
+    breaks = section_breaks(gear, rows, face_width_m, ends)
     return breaks, *pit_sums(breaks, rows, gear.base_radius_m, gear.base_half_angle_rad, face_width_m)
 
 
-def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, start: float) -> FloatArray:
-    """Return the ascending rolls from `start` to the tip that split integrals over pit rows (n, 14), (k,) [rad]."""
+def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, ends: tuple[float, float]) -> FloatArray:
+    """Return the ascending rolls between the ends of a beam that split integrals over pit rows (n, 14), (k,) [rad]."""
+    start, end = ends
     kinks = involute.rolls_at_heights(section_kinks(rows, face_width_m), gear.base_radius_m, gear.base_half_angle_rad)
-    inside = kinks[(kinks > start) & (kinks < gear.tip_roll_rad)]
-    return np.unique(np.concatenate([np.arange(start, gear.tip_roll_rad, PIECE_RAD), inside]))
+    inside = kinks[(kinks > start) & (kinks < end)]
+    return np.unique(np.concatenate([np.arange(start, end, PIECE_RAD), inside]))
 
 
-def _arms(gear: SpurGear, roll: FloatArray) -> FloatArray:
-    """Return the lever of a unit load about the base-circle point [m], and its parts along and across the tooth."""
+def _arms(gear: SpurGear, roll: FloatArray, towards_root: float = -1.0) -> FloatArray:
+    """Return the lever of a unit load about the base-circle point [m], and its parts along and across the tooth.
+
+    Heights of a ring grow towards the root, where its load leans.
+    """
     slant = roll - gear.base_half_angle_rad
     along, across = np.sin(slant), np.cos(slant)
-    return np.stack([across * gear.height_m(roll) - along * gear.half_thickness_m(roll), along, across])
+    lever = across * gear.height_m(roll) + towards_root * along * gear.half_thickness_m(roll)
+    return np.stack([lever, along, across])
 
 
 def _beam_compliances(pair: GearPair, arms: FloatArray, integrals: FloatArray) -> FloatArray:
