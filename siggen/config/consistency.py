@@ -22,7 +22,7 @@ from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
-from siggen.sensors.places import MODAL, PLANETARY, PLATES, Places
+from siggen.sensors.places import MODAL, PLATES, Places
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -101,9 +101,10 @@ def _places(sections: Mapping[str, Any]) -> Places | None:
     """Return what there is for sensors; None where sections that say so are wrong themselves."""
     if not {"dynamics", "stages"} <= sections.keys():
         return None
-    if sections.get("planetary") is not None:
-        return Places(PLANETARY)
     model, stages = sections["dynamics"].model, tuple(stage.name for stage in sections["stages"])
+    if sections.get("planetary") is not None:
+        given = model == "casing" and isinstance(sections.get("housing"), ModalHousing)
+        return Places(MODAL if given else model, planetary=True)
     if stages:  # other models and housings are refused
         return Places("casing" if model == "casing" else "8dof", stages)
     helical = "gears" in sections and bounds(sections["gears"].helix_deg) != (0.0, 0.0)

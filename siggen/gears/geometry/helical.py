@@ -90,20 +90,6 @@ def carrying_middle_m(pair: GearPair, position_m: FloatArray) -> FloatArray:
     return 0.5 * (np.clip(position_m - half, low, high) + np.clip(position_m + half, low, high))
 
 
-def mean_over_face(pair: GearPair, rows: FloatArray) -> FloatArray:
-    """Return means over the face of what slices have on their path, 0 outside: rows (r, points) from s_A to s_E.
-
-    The result (r, points) goes from the first to the last position of the middle of the face.
-    """
-    points, travel = rows.shape[1], pair.face_travel_m
-    along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
-    middle = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
-    area = np.cumsum(0.5 * (rows[:, 1:] + rows[:, :-1]), axis=1) * (along[1] - along[0])
-    area = np.hstack([np.zeros((len(rows), 1)), area])
-    ends = (middle + 0.5 * travel, middle - 0.5 * travel)
-    return np.stack([(np.interp(ends[0], along, row) - np.interp(ends[1], along, row)) / travel for row in area])
-
-
 def contact_length_m(pair: GearPair, pitches: FloatArray, slices: int) -> FloatArray:
     """Return the length of all contact lines (k,) [m] of rigid flanks, by slices.
 

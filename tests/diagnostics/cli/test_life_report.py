@@ -32,12 +32,17 @@ def report(*arguments: str) -> str:
     return CliRunner().invoke(app, ["report", *arguments], catch_exceptions=False).output
 
 
-def test_a_report_of_lives_judges_baselines_of_remaining_life(fleet: Path, tmp_path: Path) -> None:
+def test_a_report_of_lives_judges_baselines_of_remaining_life(
+    fleet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("diagnostics.training.life_network.STEPS", 20)
     metrics = json.loads(report(str(fleet), "--json", "--out", str(tmp_path / "report")))
     assert "five indicators, age" in (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
     assert metrics["gearboxes_judged"] == 5
     assert list(metrics["baselines"])[:2] == ["constant", "age"]
     assert {"oil debris, age", "five indicators with their history, age"} < set(metrics["baselines"])
+    assert "sequence network on averages, age" in metrics["baselines"]
+    assert metrics["first_detection"]["pictures"]["detected"] == 5
     assert "hours since the inspections before" in [leak["clue"] for leak in metrics["leaks"]]
     rows = {row["record_id"]: row for row in siggen.open(fleet).life("inspections").to_pylist()}
     outlook = siggen.open(fleet).life("outlook").to_pylist()
