@@ -173,7 +173,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
 def _notes(config: Config) -> dict[str, Any]:
     """Return how exact its tables are, how it varies, and what a user should know about it, in words."""
     from siggen.checks.contact_notes import contact_notes
-    from siggen.checks.damage_notes import damage_notes, section_notes, state_notes, torque_notes
+    from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
@@ -185,7 +185,7 @@ def _notes(config: Config) -> dict[str, Any]:
         "variation": variation_notes(config),
         "lubrication_notes": contact_notes(config),
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
-        "damage_notes": [*_of_every_pair(config, damage_notes), *section_notes(config)],
+        "damage_notes": [*_of_every_pair(config, damage_notes)],
         "state_notes": state_notes(config),
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }
