@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
+from siggen.config.planetary import pitches_per_turn
+from siggen.dynamics.structure.planetary import RING_TURNING
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -44,10 +46,8 @@ class PathCurves:
         for channel in self.channels:
             for name, curve in zip(channel.forces, _rows(channel), strict=True):
                 stem = f"{channel.name}_from_{name.replace('/', '_')}"
-                columns |= {
-                    f"{stem}_real_m_s2_per_n": curve.real[::step],
-                    f"{stem}_imag_m_s2_per_n": curve.imag[::step],
-                }
+                unit = "m_s2_per_nm" if name == RING_TURNING else "m_s2_per_n"
+                columns |= {f"{stem}_real_{unit}": curve.real[::step], f"{stem}_imag_{unit}": curve.imag[::step]}
         return pa.table(columns)
 
     @property
@@ -59,7 +59,8 @@ class PathCurves:
 
     def peak(self, channel: ChannelInstrument) -> tuple[float, float]:
         """Return the largest accelerance [m/s²/N] from any bearing force, and its frequency [Hz]."""
-        largest = np.abs(_rows(channel)).max(axis=0)
+        forces = [name != RING_TURNING for name in channel.forces]  # the ring's moment is none
+        largest = np.abs(_rows(channel)[forces]).max(axis=0)
         place = int(largest.argmax())
         return float(largest[place]), float(self.frequency_hz[place])
 
@@ -82,12 +83,15 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
         )
     housing = specimen_housing(config, specimen)
     points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
+    teeth: float = specimen.gears.pinion.teeth
+    if config.planetary is not None:
+        teeth = pitches_per_turn(specimen.gears.pinion.teeth, config.planetary.ring_teeth)
     return PathCurves(
         specimen_id=specimen_id,
         frequency_hz=frequencies(instrument.length, config.fs_hz),
         channels=channels,
         housing=housing if any(c.path_modes for c in channels) else None,
-        mesh_hz=tuple(point.speed_hz * specimen.gears.pinion.teeth for point in points),
+        mesh_hz=tuple(point.speed_hz * teeth for point in points),
         mesh_harmonics=config.mesh_harmonics,
         memory_s=settle_s(config, specimen),
     )
