@@ -80,7 +80,7 @@ def face_of(
         rounding_m=0.0,
         kappa_per_pa=KAPPA,
         compliance_m_per_n=REST_M_PER_N - teeth.compliance_m_per_n,
-        carrying_m=carrying_length(gaps, none, cell, RADIUS_M, KAPPA * 60e3),
+        carrying_m=float(carrying_length(gaps, none, cell, np.array(RADIUS_M), KAPPA * 60e3)),
     )
 
 
