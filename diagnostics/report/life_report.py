@@ -48,7 +48,8 @@ def write_life_report(
     require_packages("the report", "sklearn", "matplotlib")
     found = inspections(dataset, stage)
     with stage("baselines", 1) as advance:
-        predicted = baseline_predictions(found, seed, network=network and not missing_packages("torch"))
+        left_out = _left_out(found, wanted=network)
+        predicted = baseline_predictions(found, seed, network=not left_out)
         leaks = life_leaks(found, seed)
         advance()
     seen = watches(found)
@@ -71,8 +72,18 @@ def write_life_report(
         *(_errors(found, scores), _quantiles(scores), html.heading("First detection"), detection_table(detected)),
         *(html.figure_grid([life_block(one) for one in lives]), html.heading("Leaks"), _leaks(leaks)),
     ]
+    parts = [*html.notes([left_out] if left_out else []), *parts]
     page.write_text(_page(dataset, found, leaks, seed, parts), encoding="utf-8")
     return page
+
+
+def _left_out(found: Inspections, *, wanted: bool) -> str:
+    """Return why no network is trained, or an empty text."""
+    if not wanted:
+        return "No sequence network: --no-cnn."
+    if missing_packages("torch"):
+        return "No sequence network: PyTorch is not installed (pip install 'siggen[cnn]')."
+    return "" if found.averages else "No sequence network: records hold fewer than two whole pinion revolutions."
 
 
 def _predicted_rows(name: str, found: Inspections, predicted_h: np.ndarray) -> pa.Table:

@@ -96,7 +96,7 @@ def _unit_life(
     unit = int(str(row["specimen_id"]))
     own = np.flatnonzero(found.specimen == unit)
     at = {name: found.age_h[one.detected[unit]] if unit in one.detected else np.nan for name, one in seen.items()}
-    ends = {"first pit": "first_pit_h", "4 % or 1 %": "rated_h"}
+    ends = {"first pit": "first_pit_h", "rated": "rated_h"}
     marks = {name: float(str(row[column])) for name, column in ends.items()}
     ended = "failed" if row["event"] == "failed" else "taken out"
     observed_h = float(str(row["observed_h"]))

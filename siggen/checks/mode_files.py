@@ -13,7 +13,7 @@ from siggen.errors import Problem
 from siggen.keys.problems import nearest
 from siggen.sensing.inputs import MOTION
 from siggen.sensors.sensor import Sensor
-from siggen.specimen.mode_table import BASE, DRIVE, SEATS, ModesRefusal, ModeTable, mode_table, shape_column
+from siggen.specimen.mode_table import BASE, DRIVE, ModesRefusal, ModeTable, mode_table, seats_of, shape_column
 
 KEY = "housing.modes"
 
@@ -61,7 +61,8 @@ def mode_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
         return
     present = (*map(shape_column, table.shapes), *table.base)
     sensors = tuple(sections.get("sensors", {}).values())
-    seats = SEATS if sections.get("planetary") is None else SEATS_OF_SET
+    stages = (stage.name for stage in sections.get("stages", ()))
+    seats = seats_of(stages) if sections.get("planetary") is None else SEATS_OF_SET
     for column, use in {**_needed(sensors, seats), **_needed_behind(sections.get("background"))}.items():
         if column not in present:
             allowed = f"allowed: a column of this name, for {use}"

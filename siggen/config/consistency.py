@@ -102,18 +102,15 @@ def _places(sections: Mapping[str, Any]) -> Places | None:
     if not {"dynamics", "stages"} <= sections.keys():
         return None
     model, stages = sections["dynamics"].model, tuple(stage.name for stage in sections["stages"])
-    if sections.get("planetary") is not None:
-        given = model == "casing" and isinstance(sections.get("housing"), ModalHousing)
-        return Places(MODAL if given else model, planetary=True)
-    if stages:  # other models and housings are refused
-        return Places("casing" if model == "casing" else "8dof", stages)
+    housing, planetary = sections.get("housing"), sections.get("planetary") is not None
+    if model == "casing" and isinstance(housing, ModalHousing):
+        model = MODAL
+    if planetary or stages:  # other models and housings are refused
+        return Places(model if model in {MODAL, "casing"} else "8dof", stages, planetary=planetary)
     helical = "gears" in sections and bounds(sections["gears"].helix_deg) != (0.0, 0.0)
-    if model != "casing":
-        return Places(model, helical=helical)
-    housing = sections.get("housing")
-    if isinstance(housing, PlateHousing):
+    if model == "casing" and isinstance(housing, PlateHousing):
         return Places(PLATES, helical=helical)
-    return None if housing is None else Places(MODAL if isinstance(housing, ModalHousing) else model, helical=helical)
+    return None if model == "casing" and housing is None else Places(model, helical=helical)
 
 
 def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

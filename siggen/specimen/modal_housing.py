@@ -14,7 +14,7 @@ from siggen.dynamics.housing.motion import Motion
 from siggen.dynamics.structure.planetary import SEATS_OF_SET
 from siggen.planning.specimen import Specimen
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.mode_table import BASE, DRIVE, SEATS, ModeTable, mode_table
+from siggen.specimen.mode_table import BASE, DRIVE, ModeTable, mode_table, seats_of
 from siggen.specimen.specimen_housing import BoltMotions, SpecimenHousing, second_stage
 
 
@@ -32,7 +32,8 @@ def modal_housing(specimen: Specimen, section: ModalHousing) -> SpecimenHousing:
     """Return the housing of a specimen whose modes were given."""
     table = given_modes(section)
     places = {place: table_motion(shape) for place, shape in table.shapes.items()}
-    seats = {place: places[place] for place in (SEATS if specimen.planetary is None else SEATS_OF_SET)}
+    names = SEATS_OF_SET if specimen.planetary is not None else seats_of(stage.name for stage in specimen.stages)
+    seats = {place: places[place] for place in names}
     still = table_motion(np.zeros_like(table.frequency_hz))
     drive = {place: places.get(place, still) for place in DRIVE}
     stage = still  # a planetary set has no second one

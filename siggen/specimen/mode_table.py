@@ -13,7 +13,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -77,6 +77,11 @@ class ModeTable:
         """Mass that each seat feels of the six lowest modes, which are those of a body on its feet."""
         seats = [seat for seat in (*SEATS, *SEATS_OF_SET[:-1]) if seat in self.shapes]
         return [1.0 / max(float((self.shapes[seat][:6] ** 2).sum()), 1e-12) for seat in seats]
+
+
+def seats_of(stages: Iterable[str]) -> tuple[str, ...]:
+    """Return place/axis of the bearings of all shafts, those behind further stages included."""
+    return (*SEATS, *(f"{stage}_bearing/{axis}" for stage in stages for axis in ("vertical", "horizontal")))
 
 
 def shape_column(place: str) -> str:

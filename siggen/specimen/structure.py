@@ -40,13 +40,15 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     A planetary set stands on the ground: its frame turns in its housing (`planetary_housing`).
     """
     dynamics, pair, stage = specimen.dynamics, gear_pair(specimen.gears), supported_stage(specimen)
-    if specimen.stages:
-        return staged_structure(stage, specimen)
     if specimen.planetary is not None:
         return planetary_structure(planetary_numbers(specimen))
-    if dynamics.model != "casing":
+    body = specimen_body(config, specimen) if dynamics.model == "casing" else None
+    if specimen.stages:
+        found = staged_structure(stage, specimen, body)
+    elif body is None:
         return ASSEMBLIES[dynamics.model](stage)
-    found = carried_structure(stage, specimen_body(config, specimen), _shafts(dynamics, stage, pair))
+    else:
+        found = carried_structure(stage, body, _shafts(dynamics, stage, pair))
     if specimen_housing(config, specimen) is None:
         return found
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
@@ -91,15 +93,14 @@ def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
 
 def specimen_body(config: Config, specimen: Specimen) -> Body:
     """Return the body that carries the bearings of a specimen, sensors and entries on it included."""
-    pair, staged = gear_pair(specimen.gears), staged_casing(specimen) if specimen.stages else None
-    if staged is not None:
-        return staged
-    housing = specimen_housing(config, specimen)
+    pair, housing = gear_pair(specimen.gears), specimen_housing(config, specimen)
     if housing is not None:
-        angle = 0.0 if specimen.planetary is not None else pair.working_pressure_angle_rad
-        return modal_body(coupled_modes(housing), angle)
+        upright = specimen.stages or specimen.planetary is not None  # coordinates of others follow their line of action
+        return modal_body(coupled_modes(housing), 0.0 if upright else pair.working_pressure_angle_rad)
     if specimen.planetary is not None:
         return rigid_housing_of_set(specimen)
+    if specimen.stages:
+        return staged_casing(specimen)
     assert isinstance(specimen.housing, RigidHousing)
     casing = casing_numbers(specimen.housing, pair.working_centre_distance_m, specimen.sensors)
     body = casing_body(gear_stage(specimen.dynamics, pair), casing)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,9 +13,8 @@ from siggen.columns.record import Record
 from siggen.config import Config
 from siggen.record import simulation
 from tests.config.planets import planets
-from tests.specimen.test_two_stages import two_stages
+from tests.specimen.test_two_stages import WITHOUT_FRICTION, two_stages
 
-ROOT = Path(__file__).resolve().parents[2]
 EARLIER_S = 0.3
 SHORT = "duration_s=0.1"
 
@@ -37,12 +36,15 @@ def signals(config: Config) -> dict[str, Any]:
     return dict(record.channels)
 
 
-@pytest.mark.parametrize("raw", [planetary, two_stages])
-def test_a_motion_that_starts_earlier_gives_the_same_record(raw: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    config = load_config(raw(), [SHORT, "sensors.0.bits=null", "sensors.0.noise=null"])
+# A tenth of what steps may err by. Without friction couplings alone ring on; with it the load, held at 1 Hz, finds the
+# mean of the friction at 6/s: 2e-4 of the strongly rubbing test gearbox of two stages in its first 0.1 s.
+@pytest.mark.parametrize(("raw", "more", "bound"), [(planetary, (), 1e-4), (two_stages, WITHOUT_FRICTION, 1e-5)])
+def test_a_motion_that_starts_earlier_gives_the_same_record(
+    raw: Callable[[], dict[str, Any]], more: Sequence[str], bound: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config = load_config(raw(), [SHORT, "sensors.0.bits=null", "sensors.0.noise=null", *more])
     found, settle_s = signals(config), simulation._settle_s
     monkeypatch.setattr(simulation, "_settle_s", lambda *given: settle_s(*given) + EARLIER_S)
     for name, expected in signals(config).items():
         apart = found[name].astype(float) - expected
-        # a tenth of what the steps may err by; the couplings alone leave e^-8 of what they start with
-        assert np.sqrt((apart**2).mean()) < 1e-4 * expected.astype(float).std(), name
+        assert np.sqrt((apart**2).mean()) < bound * expected.astype(float).std(), name

@@ -44,6 +44,7 @@ def pair_faces(
     rest: PairRest,
     options: FaceOptions,
     lead_m: FloatArray | None = None,
+    radii_m: FloatArray | None = None,
 ) -> list[FaceSlices]:
     """Return the slices at positions s (k,) [m].
 
@@ -58,6 +59,8 @@ def pair_faces(
     options : FaceOptions
     lead_m : (n,), (k, n) or None
         Missing material across the face, of any sign; None: none.
+    radii_m : (k, n) or None
+        Relative radii of curvature of the slices [m]; None: as in the middle.
 
     Raises
     ------
@@ -103,6 +106,7 @@ def pair_faces(
             kernel=kernels[i],
             teeth=_teeth(unit, rest, i, pair.face_width_m, kappa),
             radius_m=float(radius[i]),
+            radii_m=np.full(count, radius[i]) if radii_m is None else np.ascontiguousarray(radii_m[i]),
             rounding_m=options.edge_radius_m,
             kappa_per_pa=kappa,
             compliance_m_per_n=float(rest.rigid_m_per_n[i]),

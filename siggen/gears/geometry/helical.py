@@ -81,6 +81,17 @@ def slice_shifts_m(pair: GearPair, slices: int) -> FloatArray:
     return place * pair.face_width_m * tan(pair.base_helix_rad)
 
 
+def slice_radii_m(pair: GearPair, position_m: FloatArray, slices: int) -> FloatArray:
+    """Return relative radii of curvature of slices of pairs at positions (k,): (k, slices), of spur pairs (k, 1) [m].
+
+    A slice beside the path of contact counts as at its end.
+    """
+    place, line = position_m[:, np.newaxis], pair.line_of_action_m
+    if pair.helix_rad != 0.0:
+        place = np.clip(place + slice_shifts_m(pair, slices), pair.contact_start_m, pair.contact_end_m)
+    return np.asarray(place * (line - place) / line)
+
+
 def carrying_middle_m(pair: GearPair, position_m: FloatArray) -> FloatArray:
     """Return the middle of those places of the face that are on the path of contact, of pairs at positions (k,) [m]."""
     if pair.helix_rad == 0.0:
