@@ -175,15 +175,15 @@ def not_identified(found: Calibration) -> tuple[str, ...]:
     """Return what the recordings of a calibration do not tell, a sentence each."""
     left = found.rig.left_out
     others = (f"sensors that are no accelerometers: {', '.join(left)}; the new configuration has none",) if left else ()
-    if len(found.rig.drive.meshes) > 1:
-        return (*ALWAYS_OPEN, *others, *SEVERAL_MESHES)
-    return (*ALWAYS_OPEN, *others, NO_STAGE if found.stage is None else WEAK_STAGE_LINES)
+    several = SEVERAL_MESHES if len(found.rig.drive.meshes) > 1 else ()
+    stage = NO_STAGE if found.stage is None else WEAK_STAGE_LINES
+    return (*ALWAYS_OPEN, *others, *several, stage if found.rig.shows_other_stages else NOT_SOUGHT)
 
 
 def stage_sentence(found: Calibration) -> str:
     """Return what was found of a second stage."""
     drive = found.rig.drive
-    if len(drive.meshes) > 1:
+    if not found.rig.shows_other_stages:
         return f"Simulated: {', '.join(mesh.words for mesh in drive.meshes)}. Other stages were not looked for."
     if found.stage is None:
         return "No second stage was found."
@@ -202,8 +202,8 @@ NO_STAGE = (
 SEVERAL_MESHES = (
     "paths of the meshes apart: one path carries the lines of all, in a direction under which all of them fit",
     "noise that further shafts than the first two modulate: it is steady",
-    "stages that the configuration does not list: they are not looked for, their lines count as errors of the teeth",
 )
+NOT_SOUGHT = "stages that the configuration does not list: not looked for, their lines count as errors of the teeth"
 WEAK_STAGE_LINES = (
     "lines of the second stage at the gears' own mesh lines, two shaft orders beside them, or less than 6 dB above the "
     "errors of the teeth: they count as these errors"

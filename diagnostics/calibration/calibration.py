@@ -132,7 +132,7 @@ def calibrated(
     records = {name: _records(name, blocks, drive) for name in blocks.channels}
     check_meshes(rig, records)
     multiples = machine_multiples(records, drive)
-    stage = second_stage(multiples, drive)
+    stage = second_stage(multiples, drive) if rig.shows_other_stages else None
     foreign = {name: _foreign(name, multiples, stage, drive) for name in records}
     orders = tuple(dict.fromkeys(order for one in foreign.values() for order in one.orders))
     top = HIGHEST_SHARE * blocks.fs_hz / max(block.speed_hz for block in blocks.blocks)

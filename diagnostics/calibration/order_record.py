@@ -7,6 +7,7 @@ groups of lines derived.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -124,7 +125,7 @@ def line_places(power: np.ndarray, bins: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, slots=True)
 class LineGroup:
-    """Orders of lines whose mean energy is taken together: a mesh line, or its sidebands of one shaft.
+    """Orders of lines whose mean energy is taken together: a mesh line, its sidebands of one shaft, low shaft orders.
 
     `mesh` is the number of the mesh, from 0; `is_line` says whether it is the line itself.
     """
@@ -139,9 +140,10 @@ class LineGroup:
 def line_groups(drive: Drivetrain, top_order: float, foreign: tuple[float, ...] = ()) -> tuple[LineGroup, ...]:
     """Return the groups below an order: of every mesh harmonic the line, sidebands of its driving and its driven shaft.
 
-    Sidebands at `foreign` orders are left out: lines of another stage are there. Two meshes of one idler have one line.
+    Below all of them errors of the teeth have lines at orders of the shafts. Lines at `foreign` orders are left out:
+    they are of another stage. Two meshes of one idler have one line.
     """
-    found: dict[tuple[float, ...], LineGroup] = {}
+    found = {group.orders: group for group in _low_groups(drive, foreign)}
     for number, mesh in enumerate(drive.meshes):
         for h in range(1, MOST_MESH_LINES + 1):
             if h * mesh.order + max(PINION_SIDEBANDS) * mesh.shafts[0].step + 1.0 > top_order:
@@ -158,6 +160,18 @@ def _groups(mesh: MeshOrder, number: int, h: int, foreign: tuple[float, ...]) ->
     for shaft, sidebands in zip(mesh.shafts, (PINION_SIDEBANDS, GEAR_SIDEBANDS), strict=True):
         orders = _own([centre + k * shaft.step for k in sidebands], foreign)
         yield LineGroup(f"{shaft.name} sidebands of {called}", centre, orders, number)
+
+
+def _low_groups(drive: Drivetrain, foreign: tuple[float, ...]) -> Iterator[LineGroup]:
+    """Yield the multiples of the first two shafts from order 1 to the first sidebands, by quarters of an octave."""
+    top = min(mesh.order - max(GEAR_SIDEBANDS) * mesh.shafts[0].step for mesh in drive.meshes)
+    multiples = {k * shaft.step for shaft in drive.shafts[:2] for k in range(1, math.ceil(max(top, 1.0) / shaft.step))}
+    orders = np.array(sorted(multiples))
+    edges = 2.0 ** (0.25 * np.arange(math.floor(4.0 * math.log2(max(top, 1.0))) + 1))
+    for low, high in itertools.pairwise(edges.tolist()):
+        inside = orders[(orders >= low - SAME_ORDER) & (orders < high - SAME_ORDER)].tolist()
+        if inside:
+            yield LineGroup(f"orders {low:.3g} to {high:.3g}", math.sqrt(low * high), _own(inside, foreign))
 
 
 def _own(orders: list[float], foreign: tuple[float, ...]) -> tuple[float, ...]:

@@ -59,6 +59,14 @@ class Rig:
         return ("driver_depth", "driven_depth") if self.config.get("machine") else ("pinion_depth", "gear_depth")
 
     @property
+    def shows_other_stages(self) -> bool:
+        """Whether a comb of lines tells a stage that it does not list: tried on single spur pairs alone.
+
+        A narrow resonance over multiples of a slow shaft passes for a comb, and so do errors beside weak helical lines.
+        """
+        return len(self.drive.meshes) == 1 and not any(force.endswith("/axial") for force in self.forces)
+
+    @property
     def left_out(self) -> tuple[str, ...]:
         """Names of the other sensors."""
         return tuple(one["name"] for one in self.config["sensors"] if one["kind"] != "accelerometer")
@@ -149,7 +157,7 @@ def check_speeds(rig: Rig, blocks: Iterable[Block]) -> None:
 def check_meshes(rig: Rig, channels: Mapping[str, Sequence[OrderRecord]]) -> None:
     """Refuse a machine of several meshes of which recordings show one not: its teeth may be others.
 
-    A mesh shows where its lines stand out of the shaft's multiples around them. Of other teeth, chance lets one in nine.
+    A mesh shows where its lines stand out of the shaft's multiples around them. Of other teeth one in nine does.
 
     Raises
     ------
@@ -160,10 +168,11 @@ def check_meshes(rig: Rig, channels: Mapping[str, Sequence[OrderRecord]]) -> Non
     for mesh in meshes if len(meshes) > 1 else ():
         shown = [one for records in channels.values() for record in records for one in _standing_out(record, mesh)]
         if sum(shown) <= LEAST_SHOWN * len(shown):
+            first = rig.drive.shafts[0].words
             raise UsageError(
                 f"{rig.file}: recordings do not show {mesh.words}: {sum(shown)} of {len(shown)} of its lines, at order "
-                f"{mesh.order:.4g} of {rig.drive.shafts[0].words} and its multiples, stand out of those around them. Are "
-                "these the teeth of the machine? If they are, recordings tell nothing of this mesh: leave it out"
+                f"{mesh.order:.4g} of {first} and its multiples, stand out of those around them. Are these the teeth "
+                "of the machine? If they are, recordings tell nothing of this mesh: leave it out"
             )
 
 

@@ -217,12 +217,7 @@ def machine_multiples(channels: Mapping[str, Sequence[OrderRecord]], drive: Driv
 
 
 def second_stage(multiples: Multiples, drive: Drivetrain) -> SecondStage | None:
-    """Return the stage that recordings of one pair show; None where no comb stands out clearly.
-
-    Machines of several meshes list their stages. On their slow shafts, a narrow resonance passes for a comb.
-    """
-    if len(drive.meshes) > 1:
-        return None
+    """Return the stage that recordings show; None where no comb stands out clearly."""
     steps = {shaft.name: shaft.step for shaft in drive.shafts}
     found = [
         SecondStage(shaft, count, steps[shaft], score)

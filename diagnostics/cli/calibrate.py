@@ -63,7 +63,10 @@ class InjectionOptions:
 @grouped
 def calibrate(
     rig: Annotated[
-        Path, typer.Argument(metavar="RIG", help="Configuration of the machine, as `siggen init` writes it; several meshes too.")
+        Path,
+        typer.Argument(
+            metavar="RIG", help="Configuration of the machine, as `siggen init` writes it; several meshes too."
+        ),
     ],
     healthy: Annotated[
         list[str],
@@ -150,7 +153,7 @@ def _tell(found: Calibration) -> None:
         )
     if len(found.blocks.blocks) < FEWEST_RECORDINGS:
         typer.echo(f"recordings: {len(found.blocks.blocks)}; {TOO_FEW}", err=True)
-    if found.stage is not None or len(found.rig.drive.meshes) > 1:
+    if found.stage is not None or not found.rig.shows_other_stages:
         typer.echo(stage_sentence(found))
     for text in not_identified(found):
         typer.echo(f"not identified: {text}", err=True)
