@@ -36,7 +36,8 @@ from siggen.record.simulation import simulate_specimen
 begin = time.process_time()
 config = siggen.load_config(sys.argv[1], ["specimens=1", "duration_s=0.05"])
 if sys.argv[2] == "record":
-    list(simulate_specimen(config, [config.records_per_specimen - 1]))
+    severest = max(i for i, state in enumerate(config.states) if state.damaged)
+    list(simulate_specimen(config, [severest * config.records_per_specimen // config.state_count]))
 elif sys.argv[2] != "check":
     run_part(CompilationPart(config, sys.argv[2]))
 print(json.dumps([time.process_time() - begin, compiled.functions]))

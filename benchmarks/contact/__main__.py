@@ -125,6 +125,19 @@ def tilt_table() -> Iterator[str]:
         )
 
 
+def helical_table() -> Iterator[str]:
+    """Lines of load along sloping contact lines under tilts of the shafts; about a minute."""
+    from benchmarks.contact.helical_line import helical_lines
+
+    yield "| helix | F [N] | tilt [µrad] | moment [N m] | three dimensions | largest error of any 1 mm / mean |"
+    yield "|---|---|---|---|---|---|"
+    for e in helical_lines():
+        yield (
+            f"| {e.helix_deg:.0f}° | {e.force_n:.0f} | {1e6 * e.tilt_rad:.0f} | {e.moment_nm:.3f} "
+            f"| {e.solver_moment_nm:.3f} | {e.largest:.1%} |"
+        )
+
+
 def face_table() -> Iterator[str]:
     """Lines of the table that the time loop reads, on the gearbox and damages of bench; the first state compiles."""
     from benchmarks.contact.case import bench_damages
@@ -195,6 +208,7 @@ TABLES = {
     "loop": loop_table,
     "tilt": tilt_table,
     "table": face_table,
+    "helical": helical_table,
     "delivered": delivered_table,
     "time": time_table,
     "notch": notch_table,

@@ -76,10 +76,11 @@ def face_of(
         kernel=line_kernel(kernel_family(count, cell, DEPTH_M), DEPTH_M, POISSON),
         teeth=tooth_kernel(unit_tooth(count, FACE_M, teeth.length_m), teeth.compliance_m_per_n, FACE_M, KAPPA),
         radius_m=RADIUS_M,
+        radii_m=np.full(count, RADIUS_M),
         rounding_m=0.0,
         kappa_per_pa=KAPPA,
         compliance_m_per_n=REST_M_PER_N - teeth.compliance_m_per_n,
-        carrying_m=carrying_length(gaps, none, cell, RADIUS_M, KAPPA * 60e3),
+        carrying_m=float(carrying_length(gaps, none, cell, np.array(RADIUS_M), KAPPA * 60e3)),
     )
 
 

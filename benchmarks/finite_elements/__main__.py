@@ -13,6 +13,7 @@ from benchmarks.finite_elements import (
     helical_tooth,
     neighbour_face,
     part_crack_comparison,
+    ring_bending,
     single_pair,
 )
 
@@ -34,6 +35,8 @@ TABLES = {
     "face": face_kernel.kernel_table,
     "face_losses": face_losses.loss_table,
     "helical": helical_tooth.helical_table,
+    "helical_neighbours": helical_tooth.helical_neighbour_table,
+    "ring_bending": ring_bending.ring_bending_table,
     "misalignment": face_losses.misalignment_table,
     "neighbour_face": neighbour_face.neighbour_face_table,
     "single_pair": single_pair.single_pair_table,

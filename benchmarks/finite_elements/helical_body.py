@@ -22,21 +22,16 @@ from benchmarks.finite_elements.tooth_mesh import ToothMesh
 
 
 class HelicalBody(ExtrudedBody):
-    """A helical tooth on its ring; `twist` is τ in 1/module, lengths in modules, E = 1.
+    """A helical tooth on its ring; `twist` is τ in 1/module, lengths in modules, E = 1."""
 
-    What is nearer to the axis than `still_radius` does not move along it.
-    """
-
-    def __init__(self, mesh: ToothMesh, line: FaceLine, twist: float, still_radius: float = 0.0) -> None:
-        self._twist, self._still_radius = twist, still_radius
+    def __init__(self, mesh: ToothMesh, line: FaceLine, twist: float) -> None:
+        self._twist = twist
         super().__init__(mesh, line)
 
     def _assemble(self, plane: sparse.csr_matrix, lame: float, shear: float) -> None:
         from skfem import BilinearForm
         from skfem.helpers import div, dot, grad
 
-        radius = np.hypot(*self.axial.doflocs[:, self.free_axial])
-        self.free_axial = self.free_axial[radius >= self._still_radius]
         super()._assemble(plane, lame, shear)
         p, w = self.free, self.free_axial
 

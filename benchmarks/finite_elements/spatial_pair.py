@@ -44,7 +44,14 @@ class _TeethOperator(_Operator):
         return super().__call__(load) + (self.teeth @ load.sum(axis=0))[None, :]
 
 
-def spatial_pair(case: FaceCase, teeth: np.ndarray, land: np.ndarray, lead: np.ndarray, force_n: float) -> SpatialPair:
+def spatial_pair(
+    case: FaceCase,
+    teeth: np.ndarray,
+    land: np.ndarray,
+    lead: np.ndarray,
+    force_n: float,
+    radius_m: np.ndarray | None = None,
+) -> SpatialPair:
     """Return the pair of which the cells `land` (k,) carry and lack `lead` (k,) [m] of material.
 
     Parameters
@@ -56,9 +63,11 @@ def spatial_pair(case: FaceCase, teeth: np.ndarray, land: np.ndarray, lead: np.n
     land : (k,) bool array
         Cells across the face that carry.
     lead : (k,) array
-        Missing material, at least 0 [m].
+        Missing material [m].
     force_n : float
         Normal force of the pair.
+    radius_m : (k,) array, optional
+        Relative radii of curvature of the cells instead of the case's one [m].
 
     Raises
     ------
@@ -69,7 +78,7 @@ def spatial_pair(case: FaceCase, teeth: np.ndarray, land: np.ndarray, lead: np.n
     dx = width / case.cells_per_width
     count = 2 * int(REACH * case.cells_per_width) + 1
     x = (np.arange(count) - count // 2) * dx
-    gap = (x * x / (2.0 * case.radius_m))[:, None] + lead[None, :]
+    gap = (x * x)[:, None] / (2.0 * (case.radius_m if radius_m is None else radius_m)) + lead[None, :]
     operator = _TeethOperator(case, dx, count, teeth)
     load = _gradients(operator, gap, np.broadcast_to(land[None, :], gap.shape), force_n)
     if load[0].any() or load[-1].any():

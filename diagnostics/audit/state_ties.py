@@ -225,22 +225,24 @@ def strongest_tie(
 
 
 def _tie(name: str, code: np.ndarray, state: np.ndarray, permuted: np.ndarray) -> Tie:
-    chance = np.array([told_share(code, row) for row in permuted])
-    return Tie(name, told_share(code, state), float(chance.mean()), float(chance.std()))
+    told = told_shares(code, np.concatenate([state[None], permuted]))
+    return Tie(name, float(told[0]), float(told[1:].mean()), float(told[1:].std()))
 
 
-def told_share(code: np.ndarray, state: np.ndarray) -> float:
-    """Return mutual information of two codes over the entropy of the state, 0 to 1."""
-    states = int(state.max()) + 1
-    joint = np.bincount(code * states + state, minlength=(int(code.max()) + 1) * states).astype(np.float64)
-    joint = joint.reshape(-1, states) / state.size
-    entropy = [_entropy(part) for part in (joint.sum(axis=0), joint.sum(axis=1), joint.ravel())]
-    return (entropy[0] + entropy[1] - entropy[2]) / entropy[0] if entropy[0] > 0 else 0.0
+def told_shares(code: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """Return mutual information of a code (records,) and states (turns, records) over the entropy of these, (turns,).
 
+    0 to 1; 0 where a turn has one state alone.
+    """
+    from scipy.special import entr
 
-def _entropy(share: np.ndarray) -> float:
-    used = share[share > 0]
-    return -float(np.sum(used * np.log(used)))
+    turns, records = states.shape
+    shape = (turns, int(code.max()) + 1, int(states.max()) + 1)
+    place = (np.arange(turns)[:, None] * shape[1] + code) * shape[2] + states
+    joint = np.bincount(place.ravel(), minlength=math.prod(shape)).reshape(shape) / records
+    of_state, of_code = (entr(joint.sum(axis=axis)).sum(axis=1) for axis in (1, 2))
+    told = of_state + of_code - entr(joint).sum(axis=(1, 2))
+    return np.asarray(np.divide(told, of_state, out=np.zeros(turns), where=of_state > 0.0))
 
 
 def _codes(values: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ class Purpose(IntEnum):
     CALIBRATION = 9
     AVERAGES = 10
     PATHS = 11
+    LIFE_NETWORK = 12
 
 
 def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:

@@ -83,9 +83,9 @@ def read_rig(file: Path) -> Rig:
     config = siggen.load_config(file)
     if config.planetary is not None:
         raise UsageError(
-            f"{file}: planetary: received a planetary set; its bodies stand on the ground without a housing, so there "
-            "are no bearing forces that a path to a sensor could begin at. Allowed: pairs and machines of several "
-            f"meshes. `siggen-diagnostics baseline --config {file}` watches such machines by their recordings"
+            f"{file}: planetary: received a planetary set; forces of its planets turn with the carrier, so no path "
+            "from bearings at rest carries its lines. Allowed: pairs and machines of several meshes. "
+            f"`siggen-diagnostics baseline --config {file}` watches such machines by their recordings"
         )
     if config.gears.pairs:
         raise UsageError(f"{file}: gears differ within the set; a calibration is of one machine of known teeth")

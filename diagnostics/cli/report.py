@@ -80,7 +80,8 @@ def report(
         of_states = {"--models-only": models_only, "--test": second, "--studies": training.studies}
         of_pages = {"--explore": pages.explore, "--predictions": pages.predictions}
         _refuse({**of_states, "--indicator": own, **of_pages}, "for sets of states; this one has lives")
-        path = write_life_report(dataset, out or beside(dataset.path, "_report"), seed, terminal_stage)
+        folder = out or beside(dataset.path, "_report")
+        path = write_life_report(dataset, folder, seed, terminal_stage, network=training.cnn)
     else:
         folder = out or beside(dataset.path, "_models" if models_only else "_report")
         if models_only:

@@ -16,6 +16,7 @@ import numpy as np
 from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.chosen_records import chosen_records, missing_parts
+from diagnostics.explore.lives import LIFE_COLUMNS, life_pictures, of_records
 from diagnostics.explore.payload import page_payload, set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
@@ -24,6 +25,7 @@ from diagnostics.page.wording import counted
 from diagnostics.prediction.released_model import load_model
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import HEALTHY
+from diagnostics.scoring.truth import is_lives
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
@@ -35,7 +37,7 @@ LIMIT = 100
 PAGE = Path(__file__).with_name("page")
 SCRIPTS = (
     *("vendored/uPlot.LICENSE", "vendored/uPlot.iife.min.js", "unpack.js", "charts.js", "waveform.js"),
-    *("spectra.js", "averages.js", "internals.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
+    *("spectra.js", "averages.js", "internals.js", "flank.js", "life.js", "indicators.js", "records.js", "explorer.js"),
 )
 STYLES = ("vendored/uPlot.min.css", "explorer.css")
 Columns = tuple[tuple[str, str], ...]
@@ -190,9 +192,21 @@ def explorer_of(dataset: Dataset, options: ExplorerOptions, stage: Stage) -> tup
     payload = page_payload(set_source(dataset, table, rows), stage, full=options.full)
     for place, record in enumerate(payload["records"]):
         record.update({name: str(values[rows[place]]) for name, values in said.items()})
+    if is_lives(dataset):
+        with stage("lives", 1) as advance:
+            _add_lives(payload, dataset, table)
+            advance()
     payload["served"] = options.served
     page = explorer_page(_facts(dataset, payload, labels.num_rows, options), payload)
     return page, np.asarray(labels.column("record_id"))[rows]
+
+
+def _add_lives(payload: dict[str, Any], dataset: Dataset, table: RecordTable) -> None:
+    """Give records their age and remaining life, and the page its gearboxes over their lives."""
+    records = payload["records"]
+    for record, life in zip(records, of_records(dataset, [row["record_id"] for row in records]), strict=True):
+        record.update(life)
+    payload["lives"] = life_pictures(dataset, table, sorted({row["specimen_id"] for row in records}))
 
 
 def _identity(dataset: Dataset) -> str:
@@ -213,7 +227,7 @@ def _facts(dataset: Dataset, payload: dict[str, Any], records: int, options: Exp
             labels, payload["overlay"], bool(payload["damage"]), internals, named=options.model is not None
         ),
         "served": options.served,
-        "columns": _columns(SET_COLUMNS, NAMED_COLUMNS if options.model else ()),
+        "columns": _columns(SET_COLUMNS, NAMED_COLUMNS if options.model else LIFE_COLUMNS if is_lives(dataset) else ()),
         "filters": [*SET_FILTERS, *(NAMED_FILTERS if options.model else ())],
     }
 

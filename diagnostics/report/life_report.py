@@ -10,14 +10,16 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.audit.life_leaks import Leak, life_leaks
-from diagnostics.base.extras import require_packages
+from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.wording import counted
 from diagnostics.records.named_set import words_of
+from diagnostics.report.life_detection import detection_table, life_block, shown_gearboxes
 from diagnostics.report.life_rows import INDICATORS, inspections
+from diagnostics.report.unit_lives import detections, unit_lives, watches
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.statistics.evaluation import Interval
@@ -29,8 +31,12 @@ PAGE = "report.html"
 RESERVATION = "All lives are simulated, by a law whose parameters were published for one test bench."
 
 
-def write_life_report(dataset: Dataset, folder: Path, seed: int, stage: Stage = silent_stage) -> Path:
+def write_life_report(
+    dataset: Dataset, folder: Path, seed: int, stage: Stage = silent_stage, *, network: bool = True
+) -> Path:
     """Write `report.html`, `metrics.json` and `predictions.parquet`; return the page's path.
+
+    The network is trained where it is wanted and PyTorch is installed.
 
     Raises
     ------
@@ -39,12 +45,14 @@ def write_life_report(dataset: Dataset, folder: Path, seed: int, stage: Stage = 
     DatasetError
         If fewer than four gearboxes failed.
     """
-    require_packages("the report", "sklearn")
+    require_packages("the report", "sklearn", "matplotlib")
     found = inspections(dataset, stage)
     with stage("baselines", 1) as advance:
-        predicted = baseline_predictions(found, seed)
+        left_out = _left_out(found, wanted=network)
+        predicted = baseline_predictions(found, seed, network=not left_out)
         leaks = life_leaks(found, seed)
         advance()
+    seen = watches(found)
     scores = {
         name: life_scores(found.rul_h, values, found.specimen, found.median_life_h, seed)
         for name, values in predicted.items()
@@ -52,13 +60,30 @@ def write_life_report(dataset: Dataset, folder: Path, seed: int, stage: Stage = 
     folder.mkdir(parents=True, exist_ok=True)
     baselines = {name: one.numbers() for name, one in scores.items()}
     metrics = {"seed": seed, **_facts(found), "baselines": baselines, "leaks": [leak.numbers() for leak in leaks]}
+    detected = detections(found, seen)
+    metrics["first_detection"] = {name: one.numbers() for name, one in detected.items()}
     text = json.dumps(metrics, indent=1, allow_nan=False)
     (folder / "metrics.json").write_text(f"{text}\n", encoding="utf-8")
     identity = str(dataset.manifest["identity"])
     write_predictions([_predicted_rows(name, found, values) for name, values in predicted.items()], identity, folder)
     page = folder / PAGE
-    page.write_text(_page(dataset, found, scores, leaks, seed), encoding="utf-8")
+    lives = unit_lives(dataset, found, seen, predicted, shown_gearboxes(found)).values()
+    parts = [
+        *(_errors(found, scores), _quantiles(scores), html.heading("First detection"), detection_table(detected)),
+        *(html.figure_grid([life_block(one) for one in lives]), html.heading("Leaks"), _leaks(leaks)),
+    ]
+    parts = [*html.notes([left_out] if left_out else []), *parts]
+    page.write_text(_page(dataset, found, leaks, seed, parts), encoding="utf-8")
     return page
+
+
+def _left_out(found: Inspections, *, wanted: bool) -> str:
+    """Return why no network is trained, or an empty text."""
+    if not wanted:
+        return "No sequence network: --no-cnn."
+    if missing_packages("torch"):
+        return "No sequence network: PyTorch is not installed (pip install 'siggen[cnn]')."
+    return "" if found.averages else "No sequence network: records hold fewer than two whole pinion revolutions."
 
 
 def _predicted_rows(name: str, found: Inspections, predicted_h: np.ndarray) -> pa.Table:
@@ -80,19 +105,15 @@ def _facts(found: Inspections) -> dict[str, object]:
     }
 
 
-def _page(
-    dataset: Dataset, found: Inspections, scores: Mapping[str, LifeScores], leaks: Sequence[Leak], seed: int
-) -> str:
+def _page(dataset: Dataset, found: Inspections, leaks: Sequence[Leak], seed: int, parts: Sequence[str]) -> str:
     title = f"Remaining life of {dataset.path.name}"
-    parts = [
+    whole = [
         html.heading(title, 1),
         *html.summary([f"{origin_sentence(dataset)} {RESERVATION}", *_sentences(found), _verdict(leaks)]),
-        _errors(found, scores),
-        _quantiles(scores),
-        _leaks(leaks),
+        *parts,
         html.paragraph(provenance(dataset, seed), "caption"),
     ]
-    return html.page(words_of(dataset)(title), [words_of(dataset)(part) for part in parts])
+    return html.page(words_of(dataset)(title), [words_of(dataset)(part) for part in whole])
 
 
 def _sentences(found: Inspections) -> list[str]:

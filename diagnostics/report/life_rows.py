@@ -10,6 +10,7 @@ from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.ranking_table import unusable_records, with_history
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.records.sample_bytes import BYTES
+from diagnostics.training.average_rows import AveragedRecords, averaged_records
 from diagnostics.training.life_baselines import WORST_TEETH, Inspections
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
@@ -21,22 +22,32 @@ FEWEST_FAILED = 4
 
 
 def inspections(dataset: Dataset, stage: Stage) -> Inspections:
-    """Return the inspections of a set that have a record, in the order of gearbox and age.
+    """Return the inspections of a set that have a record; order and errors as of `inspections_of`."""
+    _check_failed(dataset)
+    with stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
+        table = record_table(dataset, advance=advance)
+    return inspections_of(dataset, table)
+
+
+def _check_failed(dataset: Dataset) -> None:
+    events = dataset.life("units").column("event").to_pylist()
+    if (failed := events.count("failed")) < FEWEST_FAILED:
+        raise DatasetError(
+            f"{dataset.path}: received {failed} failed of {len(events)} gearboxes; allowed: at least {FEWEST_FAILED} "
+            "failed. Generate more (specimens), or look at them for longer (life.most, life.interval_h)."
+        )
+
+
+def inspections_of(dataset: Dataset, table: RecordTable) -> Inspections:
+    """Return the inspections of a set of which its table has a record, in the order of gearbox and age.
 
     Raises
     ------
     DatasetError
         If fewer than four gearboxes failed: nothing could be judged on gearboxes that were not trained on.
     """
+    _check_failed(dataset)
     units = {row["specimen_id"]: row for row in dataset.life("units").to_pylist()}
-    failed = sum(row["event"] == "failed" for row in units.values())
-    if failed < FEWEST_FAILED:
-        raise DatasetError(
-            f"{dataset.path}: received {failed} failed of {len(units)} gearboxes; allowed: at least {FEWEST_FAILED} "
-            "failed. Generate more (specimens), or look at them for longer (life.most, life.interval_h)."
-        )
-    with stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
-        table = record_table(dataset, advance=advance)
     means = _means(table)
     debris_mg = {key: row["debris_mg"] for key, row in _by_inspection(dataset, "debris").items()}
     keys, rows = _in_order(dataset.life("inspections"), means), _by_inspection(dataset, "inspections")
@@ -55,6 +66,7 @@ def inspections(dataset: Dataset, stage: Stage) -> Inspections:
         debris_mg=np.array([debris_mg[key] for key in keys]),
         worst_shares=np.array([shares.get(key, [0.0] * WORST_TEETH) for key in keys]),
         outlook_h=np.array([[outlook[key][name] for name in OUTLOOK_COLUMNS] for key in keys]),
+        averages=_averages(table, keys),
     )
 
 
@@ -107,6 +119,22 @@ def _columns(table: RecordTable) -> dict[str, np.ndarray]:
 def _in_time(labels: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return labels by whose order a history is that of inspections, whatever the damage."""
     return {**labels, "damaged_area_mm2": np.zeros(len(labels["state_id"]))}
+
+
+def _averages(table: RecordTable, keys: list[Key]) -> AveragedRecords | None:
+    """Return the averages of inspections, each of its records at the first operating point; None of short records."""
+    try:
+        every = averaged_records(table)
+    except DatasetError:
+        return None
+    labels = table.labels()
+    rows: dict[Key, list[int]] = {key: [] for key in keys}
+    for row in np.flatnonzero(labels["operating_point_id"] == 0).tolist():
+        rows[int(labels["specimen_id"][row]), int(labels["state_id"][row])].append(row)
+    if not all(rows.values()):
+        return None
+    lines = np.stack([every.lines[own].mean(axis=0) for own in rows.values()])
+    return AveragedRecords(lines, every.teeth[[own[0] for own in rows.values()]], every.channels)
 
 
 def _worst_shares(table: pa.Table) -> dict[Key, list[float]]:

@@ -1,7 +1,8 @@
 """Baselines of remaining life: what age, indicators and true areas tell of gearboxes that were not trained on.
 
 Age: Weibull law of all lives, those of gearboxes that were taken out as at least as long, given that the gearbox still
-runs. Everything else: gradient boosting of quantiles on the rows of failed gearboxes. Source: standard literature.
+runs. A network on averages: `life_network`. Everything else: gradient boosting of quantiles on the rows of failed
+gearboxes. Source: standard literature.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,10 +18,14 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
 from diagnostics.statistics.life_scores import QUANTILES, unit_folds
 
+if TYPE_CHECKING:
+    from diagnostics.training.average_rows import AveragedRecords
+
 FOLDS = 5
 WORST_TEETH = 3
 CONSTANT, AGE, RMS, FIVE, FIVE_AGE = "constant", "age", "RMS", "five indicators", "five indicators, age"
 HISTORY, DEBRIS = "five indicators with their history, age", "oil debris, age"
+NETWORK = "sequence network on averages, age"
 AREAS, OUTLOOK = "true areas of the three worst teeth, age", "the true state itself"
 
 
@@ -47,6 +52,8 @@ class Inspections:
         True areas of the worst teeth over that of a flank, 0 where none is pitted.
     outlook_h : (n, 3) float64
         Quantiles of the remaining life over continuations of the true state.
+    averages : AveragedRecords, optional
+        Averages of one pinion revolution, means over an inspection's records; None where records are too short.
     """
 
     record_id: np.ndarray
@@ -61,6 +68,7 @@ class Inspections:
     debris_mg: np.ndarray
     worst_shares: np.ndarray
     outlook_h: np.ndarray
+    averages: AveragedRecords | None = None
 
     @property
     def median_life_h(self) -> float:
@@ -70,24 +78,41 @@ class Inspections:
 
 
 @single_thread
-def baseline_predictions(found: Inspections, seed: int) -> dict[str, np.ndarray]:
-    """Return what each baseline predicts, (n, 3) in hours at `QUANTILES`, always by the other gearboxes."""
-    age = found.age_h[:, None]
-    five = np.concatenate(list(found.indicators.values()), axis=1)
+def baseline_predictions(found: Inspections, seed: int, *, network: bool) -> dict[str, np.ndarray]:
+    """Return what each baseline predicts, (n, 3) in hours at `QUANTILES`, always by the other gearboxes.
+
+    The network is left out where it is not wanted or there are no averages.
+    """
+    age, five = found.age_h[:, None], _five(found)
     seen = {
         RMS: found.indicators["rms"],
         FIVE: five,
         FIVE_AGE: np.concatenate([five, age], axis=1),
-        HISTORY: np.concatenate([five, _changes(five, found.specimen), found.history, age], axis=1),
+        HISTORY: _with_history(found),
         DEBRIS: np.stack([found.debris_mg, found.age_h], axis=1),
-        AREAS: np.concatenate([found.worst_shares, age], axis=1),
     }
     return {
         CONSTANT: _by_folds(found, seed, partial(_constant, found)),
         AGE: _by_folds(found, seed, partial(_by_age, found)),
         **{name: tree_predictions(values, found, seed) for name, values in seen.items()},
+        **(_by_network(found, found.averages, seed) if network and found.averages else {}),
+        AREAS: tree_predictions(np.concatenate([found.worst_shares, age], axis=1), found, seed),
         OUTLOOK: found.outlook_h,
     }
+
+
+def history_predictions(found: Inspections, seed: int) -> np.ndarray:
+    """Return what `HISTORY` predicts alone, as of `baseline_predictions`."""
+    return tree_predictions(_with_history(found), found, seed)
+
+
+def _five(found: Inspections) -> np.ndarray:
+    return np.concatenate(list(found.indicators.values()), axis=1)
+
+
+def _with_history(found: Inspections) -> np.ndarray:
+    five = _five(found)
+    return np.concatenate([five, _changes(five, found.specimen), found.history, found.age_h[:, None]], axis=1)
 
 
 @single_thread
@@ -122,11 +147,30 @@ def _constant(found: Inspections, train: np.ndarray, test: np.ndarray) -> np.nda
 
 
 def _by_age(found: Inspections, train: np.ndarray, test: np.ndarray) -> np.ndarray:
+    return remaining_of_age(found.age_h[test], *_law_of_age(found, train))
+
+
+def _by_network(found: Inspections, averages: AveragedRecords, seed: int) -> dict[str, np.ndarray]:
+    """Return what the network predicts, under its name."""
+    from diagnostics.training.average_rows import average_rows
+    from diagnostics.training.life_network import LifeSequences, network_quantiles
+
+    rows = average_rows(averages)
+
+    def predict(train: np.ndarray, test: np.ndarray) -> np.ndarray:
+        of_age_h = remaining_of_age(found.age_h, *_law_of_age(found, train))
+        known = LifeSequences(rows, found.specimen, found.age_h, found.rul_h, of_age_h)
+        return network_quantiles(known, seed, train, test)
+
+    return {NETWORK: _by_folds(found, seed, predict)}
+
+
+def _law_of_age(found: Inspections, train: np.ndarray) -> tuple[float, float]:
+    """Return slope and scale of the Weibull law of the training gearboxes."""
     _, first = np.unique(found.specimen[train], return_index=True)
     life_h = (found.age_h + found.rul_h)[train][first]
     failed = np.isfinite(life_h)
-    slope, scale_h = weibull_lives(life_h[failed], found.observed_h[train][first][~failed])
-    return remaining_of_age(found.age_h[test], slope, scale_h)
+    return weibull_lives(life_h[failed], found.observed_h[train][first][~failed])
 
 
 def weibull_lives(failed_h: np.ndarray, taken_out_h: np.ndarray) -> tuple[float, float]:

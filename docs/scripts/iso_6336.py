@@ -6,7 +6,8 @@ import numpy as np
 
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.geometry.helical import transverse_gear
-from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
+from siggen.gears.stiffness.compliance import axial_part
+from siggen.gears.stiffness.mesh_stiffness import pair_stiffness, rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 MODULE_M, FACE_WIDTH_M, RADIUS_RATIO = 3e-3, 20e-3, 3.0
@@ -75,11 +76,18 @@ def body_twist(pair: GearPair) -> float:
     return total / (4 * np.pi * shear_modulus) * 1e9
 
 
-def ours(pair: GearPair, options: StiffnessOptions) -> tuple[float, float]:
-    """Return largest single-pair stiffness and mean stiffness over a pitch, each over the face width [N/(mm um)]."""
+def ours(pair: GearPair, options: StiffnessOptions, *, still: bool = False) -> tuple[float, float]:
+    """Return largest single-pair stiffness and mean stiffness over a pitch, each over the face width [N/(mm um)].
+
+    `still`: as if bodies of helical gears did not bend along their axes; of the mean alone.
+    """
     start, end = pair.contact_start_m, pair.contact_end_m
     nodes, weights = np.polynomial.legendre.leggauss(60)
-    stiffness = pair_stiffness(pair, start + 0.5 * (end - start) * (1 + nodes), options)
+    position = start + 0.5 * (end - start) * (1 + nodes)
+    stiffness = pair_stiffness(pair, position, options)
+    if still:
+        rolls = zip(("pinion", "gear"), rolls_at(pair, position), strict=True)
+        stiffness = 1 / (1 / stiffness - sum(axial_part(pair, which, roll, options) for which, roll in rolls))
     # Every pair passes each position once per pitch: the mean is the integral over the whole path by the pitch.
     mean = 0.5 * (end - start) * float(weights @ stiffness) / pair.base_pitch_m
     along = pair_stiffness(pair, np.linspace(start, end, 801), options)
@@ -122,15 +130,16 @@ def main() -> None:
 def helical() -> None:
     """Print the table of helical pairs, by calibrated teeth."""
     print(
-        "\n| z1/z2 | β | transverse ε | cγα of c'th cos β | calibrated | calibrated, weber_banaschek |\n"
-        + "|---" * 6
-        + "|"
+        "\n| z1/z2 | β | transverse ε | cγα of c'th cos β | calibrated | the same, bodies still along the axis "
+        "| calibrated, weber_banaschek |\n" + "|---" * 7 + "|"
     )
     for first, second in HELICAL_PAIRS:
         for helix_deg in HELICES_DEG:
             pair = gear_pair(first, second, helix_deg)
             theory = iso_single(pair)[0] * (0.75 * pair.contact_ratio + 0.25)
-            means = [ours(pair, MODELS[name])[1] for name in ("calibrated", "calibrated, weber_banaschek")]
+            plain = MODELS["calibrated"]
+            means = [ours(pair, plain)[1], ours(pair, plain, still=True)[1]]
+            means.append(ours(pair, MODELS["calibrated, weber_banaschek"])[1])
             cells = " | ".join(f"{mean:.1f} ({mean / theory:.2f})" for mean in means)
             print(f"| {first}/{second} | {helix_deg}° | {pair.contact_ratio:.2f} | {theory:.1f} | {cells} |")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from siggen.config import Config
-from siggen.config.planetary import RING
 from siggen.config.states import KNOWN_CHANGES
 from siggen.faults.registry import FAULT_WORDS
 from siggen.keys.number import bounds
@@ -16,17 +15,6 @@ from siggen.specimen.contact import solves_across_the_face
 def torque_notes(config: Config) -> tuple[str, ...]:
     """Return what torques of 0 and below mean for the records of a set."""
     return tuple(_on_torques(config))
-
-
-def section_notes(config: Config) -> tuple[str, ...]:
-    """Return where `dynamics.mesh.damage: all` does less than it says: in the ring of a planetary set."""
-    damages = [one for state in config.states if state.damaged for one in state.damages]
-    if config.dynamics.mesh.damage != "all" or not any(getattr(one, "gear", "") == RING for one in damages):
-        return ()
-    return (
-        "damage of the ring takes no material from its teeth's sections, as with dynamics.mesh.damage: geometry; that "
-        "of sun and planets does (dynamics.mesh.damage: all)",
-    )
 
 
 def _on_torques(config: Config) -> Iterator[str]:

@@ -8,11 +8,12 @@ from typing import Any
 
 from siggen.config import Background, ModalHousing
 from siggen.config.data_file import data_file_bytes, shortened_path
+from siggen.dynamics.structure.planetary import SEATS_OF_SET
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 from siggen.sensing.inputs import MOTION
 from siggen.sensors.sensor import Sensor
-from siggen.specimen.mode_table import BASE, DRIVE, SEATS, ModesRefusal, ModeTable, mode_table, shape_column
+from siggen.specimen.mode_table import BASE, DRIVE, ModesRefusal, ModeTable, mode_table, seats_of, shape_column
 
 KEY = "housing.modes"
 
@@ -60,15 +61,17 @@ def mode_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
         return
     present = (*map(shape_column, table.shapes), *table.base)
     sensors = tuple(sections.get("sensors", {}).values())
-    for column, use in {**_needed(sensors), **_needed_behind(sections.get("background"))}.items():
+    stages = (stage.name for stage in sections.get("stages", ()))
+    seats = seats_of(stages) if sections.get("planetary") is None else SEATS_OF_SET
+    for column, use in {**_needed(sensors, seats), **_needed_behind(sections.get("background"))}.items():
         if column not in present:
             allowed = f"allowed: a column of this name, for {use}"
             yield Problem(KEY, f"no column {column}", f"{allowed}{nearest(column, present)}")
 
 
-def _needed(sensors: tuple[Sensor, ...]) -> dict[str, str]:
+def _needed(sensors: tuple[Sensor, ...], seats: tuple[str, ...]) -> dict[str, str]:
     """Return the columns of seats and sensors, and what they are for."""
-    found = dict.fromkeys(map(shape_column, SEATS), "the bearing forces")
+    found = dict.fromkeys(map(shape_column, seats), "the bearing forces")
     for sensor in sensors:
         places = (one.name.removeprefix("casing_") for one in sensor.shown_inputs if one.kind == MOTION)
         found |= {shape_column(place): f"the sensor {sensor.name}" for place in sorted(places)}

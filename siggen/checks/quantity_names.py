@@ -93,7 +93,9 @@ def acceleration_name(place: str) -> str:
 
 
 def bearing_force_name(place: str) -> str:
-    """Return the name of a bearing force."""
+    """Return the name of a bearing force, or of the moment that keeps a ring from turning."""
+    if place.endswith("/turning"):
+        return f"support_moment_{place.rpartition('/')[0]}_nm"
     return f"bearing_force_{place.replace('/', '_')}_n"
 
 

@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rich.table import Table
 
     from siggen.config import Config
+    from siggen.planning.lived import Lived
+    from siggen.sets.record_cost import LifeCost
 
 QUANTILES = (0.05, 0.5, 0.95)
 MOST_LIVES = 200
@@ -36,9 +40,17 @@ def life_summary(config: Config) -> dict[str, Any] | None:
         "slope": {name: _slope(ages) for name, ages in ends.items()},
         "pitted_teeth_at_end": spread([len(one.course.teeth(one.course.ends.functional)) for one in lives]),
         "inspections": spread([len(one.ages_h) for one in lives]),
+        "pitted_inspections": _pitted(lives) / max(sum(len(one.ages_h) for one in lives), 1),
+        "history_h": lives[0].clock.round_h if config.life.history else None,
+        "schedule_h": config.life.interval_h * (config.life.most - 1),
         "failed": sum(one.event == "failed" for one in lives),
         "pitted_in_schedule": sum(one.observed_h > age for one, age in zip(lives, ends["first_pit"], strict=True)),
     }
+
+
+def _pitted(lives: Sequence[Lived]) -> int:
+    """Return how many inspections see a pitted tooth."""
+    return sum(one.clock.time(age_h) >= one.course.ends.first_pit for one in lives for age_h in one.ages_h)
 
 
 def life_doubts(summary: dict[str, Any] | None) -> list[str]:
@@ -73,3 +85,31 @@ def life_table(summary: dict[str, Any]) -> Table:
     table.add_row("pitted teeth at the end", *(f"{n:g}" for n in summary["pitted_teeth_at_end"]), "")
     table.add_row("inspections", *(f"{n:g}" for n in summary["inspections"]), "")
     return table
+
+
+def history_text(summary: dict[str, Any]) -> str:
+    """Return how long the history of load is beside the schedule; nothing without one."""
+    history_h, schedule_h = summary["history_h"], summary["schedule_h"]
+    if history_h is None:
+        return ""
+    said = f"{history_h:.4g} h beside a schedule of {schedule_h:.4g} h"
+    return f"{said}: it begins again {int(schedule_h // history_h)} times" if history_h <= schedule_h else said
+
+
+def cost_summary(cost: LifeCost, summary: dict[str, Any], config: Config) -> dict[str, Any]:
+    """Return the CPU hours of a set, and what they were worked out from."""
+    from dataclasses import asdict
+
+    records = summary["records"]
+    pitted = round(records * summary["life"]["pitted_inspections"])
+    hours = cost.hours(config.specimens, records, pitted, config.duration_s)
+    return {"cpu_hours": hours, **asdict(cost)}
+
+
+def cost_text(found: dict[str, Any]) -> str:
+    """Return the CPU hours in words, with how they were estimated."""
+    of_each = f"{found['signal_s']:.2g} s per second of signal, {found['damage_s']:.2g} s more per inspection with pits"
+    return (
+        f"about {found['cpu_hours']:.2g} h of this processor (estimated from four records: {of_each}, "
+        f"{found['gearbox_s']:.2g} s per gearbox)"
+    )

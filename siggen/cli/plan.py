@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from siggen.cli.json_output import AsJson, echo_json
-from siggen.cli.life_table import life_doubts, life_summary, life_table
+from siggen.cli.life_table import cost_summary, cost_text, history_text, life_doubts, life_summary, life_table
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -61,6 +61,7 @@ def plan(
     with working("checking the configuration"):
         loaded = load_config(config, overrides or ())
         summary = plan_summary(loaded)
+    summary["cost"] = _cost(loaded, summary, trial)
     tried = _tried(loaded, trial)
     summary["trial"] = [{**asdict(state), "interval_95": state.interval} for state in tried]
     if as_json:
@@ -78,6 +79,16 @@ def plan(
     for note in (note for kind in NOTES for note in summary[kind]):
         console.print(f"note: {note}", highlight=False, markup=False)
     _print_trial(console, tried)
+
+
+def _cost(config: Config, summary: dict[str, Any], gearboxes: int | None) -> dict[str, Any] | None:
+    """Return the CPU hours of a set of lives; None for others, and where nothing may be tried."""
+    if config.life is None or gearboxes == 0:
+        return None
+    from siggen.sets.record_cost import life_cost
+
+    with working("timing four records (--trial 0 leaves this out)"):
+        return cost_summary(life_cost(config), summary, config)
 
 
 def _tried(config: Config, gearboxes: int | None) -> tuple[StateTrial, ...]:
@@ -162,7 +173,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
 def _notes(config: Config) -> dict[str, Any]:
     """Return how exact its tables are, how it varies, and what a user should know about it, in words."""
     from siggen.checks.contact_notes import contact_notes
-    from siggen.checks.damage_notes import damage_notes, section_notes, state_notes, torque_notes
+    from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
@@ -174,7 +185,7 @@ def _notes(config: Config) -> dict[str, Any]:
         "variation": variation_notes(config),
         "lubrication_notes": contact_notes(config),
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
-        "damage_notes": [*_of_every_pair(config, damage_notes), *section_notes(config)],
+        "damage_notes": [*_of_every_pair(config, damage_notes)],
         "state_notes": state_notes(config),
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }
@@ -280,6 +291,7 @@ def _overview(summary: dict[str, Any]) -> Table:
         "errors of the teeth": summary["manufacture"],
         "shards": f"{sum(summary['shards_of_split'].values())}  ({_per_split(summary['shards_of_split'])}), "
         f"{counted(summary['specimens_per_full_shard'], 'gearbox', 'gearboxes')} in a full one",
+        **_of_lives(summary),
         "size on disk": f"about {_megabytes(summary['estimated_bytes_on_disk'])}",
         "size of signals": _megabytes(summary["raw_bytes"]),
     }
@@ -288,6 +300,13 @@ def _overview(summary: dict[str, Any]) -> Table:
     for name, text in rows.items():
         table.add_row(name, text)
     return table
+
+
+def _of_lives(summary: dict[str, Any]) -> dict[str, str]:
+    """Return what is said of sets of lives alone: the history of load, and CPU hours where they were tried."""
+    history = history_text(summary["life"]) if summary["life"] else ""
+    cost = {"CPU time": cost_text(summary["cost"])} if summary["cost"] else {}
+    return {**({"history of load": history} if history else {}), **cost}
 
 
 def _balance(summary: dict[str, Any]) -> dict[str, str]:

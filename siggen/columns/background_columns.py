@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
+from siggen.columns.planetary_columns import in_words_of_set
 from siggen.keys.column import Column, Role, in_role
 
 if TYPE_CHECKING:
@@ -52,4 +53,4 @@ def background_columns(config: Config) -> tuple[Column, ...]:
     columns = [Column(name, pa.float64(), unit, meaning) for name, unit, meaning in numbers]
     if section.rubbing is not None and section.rubbing.bursts is not None:
         columns.append(Column("burst_count", pa.int32(), "", "bursts of the rubbing that begin within the record"))
-    return in_role(Role.PROVENANCE, *columns, section="background")
+    return in_words_of_set(config, in_role(Role.PROVENANCE, *columns, section="background"))

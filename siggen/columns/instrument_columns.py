@@ -41,4 +41,4 @@ def instrument_columns(config: Config) -> Iterator[Column]:
     """Yield the columns of all parts that a configuration has, channel by channel."""
     for sensor in config.sensors:
         for name, _ in sensor.channels:
-            yield from channel_columns(sensor, name, gives_way=config.gives_way)
+            yield from channel_columns(sensor, name, gives_way=config.gives_way or config.turns_in_housing)

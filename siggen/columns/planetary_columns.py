@@ -23,11 +23,17 @@ RENAMED = {
     "speed_hz": ("speed_hz", "nominal speed of the input (sun) shaft"),
     "pinion_shaft_hz": ("sun_shaft_hz", "rotation frequency of the sun's shaft"),
     "gear_shaft_hz": ("planet_hz", "rotation frequency of the planets about their pins, against the carrier"),
+    "bearing_velocity_gear_um_s": (
+        "bearing_velocity_carrier_um_s", "waviness of the carrier's bearings, 1800 to 10000 Hz at 30 turns/s",
+    ),
+    "coupling_force_gear_n": (
+        "coupling_force_carrier_n", "once per turn, of the misaligned coupling on the carrier's shaft",
+    ),
     "start_angle_rad": (
         "start_angle_rad",
         "angle of the sun at the first sample; that of the carrier by their ratio",
     ),
-}
+}  # fmt: skip
 """Column of a pair -> its name and its meaning in a planetary set."""
 EACH = "_each_planet"
 ADDED = in_role(
@@ -48,7 +54,12 @@ def of_planets(config: Config, columns: Iterable[Column]) -> tuple[Column, ...]:
     if config.planetary is None:
         return tuple(columns)
     errors = manufacture_of_others(config)
-    return (*(_renamed(column) for column in columns), *ADDED, *(column for column, _ in errors))
+    return (*in_words_of_set(config, columns), *ADDED, *(column for column, _ in errors))
+
+
+def in_words_of_set(config: Config, columns: Iterable[Column]) -> tuple[Column, ...]:
+    """Return columns of a pair as a planetary set has them; of gearboxes that are pairs as they are."""
+    return tuple(columns) if config.planetary is None else tuple(_renamed(column) for column in columns)
 
 
 def manufacture_of_others(config: Config) -> Iterator[tuple[Column, str]]:

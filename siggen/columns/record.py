@@ -185,7 +185,8 @@ def channel_metadata(channel: Channel, fs_hz: float) -> dict[str, str]:
 
 
 def _signal_field(config: Config, channel: Channel) -> pa.Field:
-    metadata = {**channel_metadata(channel, config.fs_hz), "role": Role.SIGNAL}
+    step = next(sensor.converter_step for sensor in config.sensors if sensor.name == channel.sensor)
+    metadata = {**channel_metadata(channel, config.fs_hz), "converter_step": repr(step), "role": Role.SIGNAL}
     signal = list_of(pa.float32(), config.samples)
     return pa.field(channel.column, signal, nullable=False, metadata=metadata)
 

@@ -141,6 +141,11 @@ class Config(Section):
         return self.dynamics.model == "casing" and isinstance(self.housing, PlateHousing)
 
     @property
+    def turns_in_housing(self) -> bool:
+        """Whether a planetary set stands in a housing, which hears its forces behind its own motion."""
+        return self.planetary is not None and self.dynamics.model == "casing"
+
+    @property
     def gives_way(self) -> bool:
         """Whether forces of the bearings reach sensors through modes of a housing."""
         return self.dynamics.model == "casing" and not isinstance(self.housing, RigidHousing)

@@ -22,7 +22,7 @@ from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
-from siggen.sensors.places import MODAL, PLANETARY, PLATES, Places
+from siggen.sensors.places import MODAL, PLATES, Places
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -101,18 +101,16 @@ def places_of(sections: Mapping[str, Any]) -> Places | None:
     """Return what there is for sensors; None where sections that say so are wrong themselves."""
     if not {"dynamics", "stages"} <= sections.keys():
         return None
-    if sections.get("planetary") is not None:
-        return Places(PLANETARY)
     model, stages = sections["dynamics"].model, tuple(stage.name for stage in sections["stages"])
-    if stages:  # other models and housings are refused
-        return Places("casing" if model == "casing" else "8dof", stages)
+    housing, planetary = sections.get("housing"), sections.get("planetary") is not None
+    if model == "casing" and isinstance(housing, ModalHousing):
+        model = MODAL
+    if planetary or stages:  # other models and housings are refused
+        return Places(model if model in {MODAL, "casing"} else "8dof", stages, planetary=planetary)
     helical = "gears" in sections and bounds(sections["gears"].helix_deg) != (0.0, 0.0)
-    if model != "casing":
-        return Places(model, helical=helical)
-    housing = sections.get("housing")
-    if isinstance(housing, PlateHousing):
+    if model == "casing" and isinstance(housing, PlateHousing):
         return Places(PLATES, helical=helical)
-    return None if housing is None else Places(MODAL if isinstance(housing, ModalHousing) else model, helical=helical)
+    return None if model == "casing" and housing is None else Places(model, helical=helical)
 
 
 def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

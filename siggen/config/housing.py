@@ -78,7 +78,8 @@ class RigidHousing(Section):
     mass_kg: Annotated[Number, Within(above=0)] = Field(default=20.0, description="without the gears and shafts")
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=0.25,
-        description="about its centre of gravity; null: the mass times the square of 1.15 centre distances (derived)",
+        description="about its centre of gravity; null: the mass times the square of 1.15 centre distances, or of the "
+        "rim's radius of a planetary set (derived)",
     )
     bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
     loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(default=1.0, description=FOOT)

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
+from siggen.config.load_history import COLUMNS, LoadHistory
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within
+from siggen.keys.problems import ONE, SEVERAL
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
 from siggen.life.pitting import Pitting
 
 Hours = Annotated[Real, Field(gt=0, le=1e7)]
-Block = Annotated[
-    tuple[Hours, Annotated[Real, Field(ge=0, le=100)]],
-    AllowedText("two numbers, [hours above 0, torque at least 0 over that of the first operating point]"),
+Block = tuple[Hours, Annotated[Real, Field(ge=0, le=100)]]
+History = Annotated[
+    Annotated[LoadHistory, Tag(ONE)] | Annotated[tuple[Block, ...], Tag(SEVERAL)],
+    Discriminator(lambda given: SEVERAL if isinstance(given, (list, tuple)) else ONE),
+    AllowedText(
+        "a list of blocks [hours above 0, torque from 0 to 100 over that of the first operating point], or file: with "
+        f"the columns {', '.join(COLUMNS)}"
+    ),
 ]
 
 
@@ -34,9 +41,9 @@ class Life(Section):
     scale: Annotated[Number, Within(above=0, most=1e6)] = Field(
         default=1.0, description="all times of the law are this much longer; drawn for each gearbox"
     )
-    history: tuple[Block, ...] = Field(
+    history: History = Field(
         default=(),
-        description="blocks of load that repeat; empty: the torque of the first operating point",
+        description="blocks of load that repeat, or `file:` of a table; empty: the first operating point",
     )
     interval_h: Hours = Field(description="from one inspection to the next, the first at age 0")
     most: Annotated[Whole, Field(ge=2, le=1000)] = Field(description="inspections of a gearbox at most")

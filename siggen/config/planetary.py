@@ -27,7 +27,8 @@ class Planetary(Section):
     """A ring round sun and planets, their carrier, and what holds them.
 
     `gears.pinion` is the sun, which the motor drives; `gears.gear` is each planet; the carrier drives the load. The
-    ring is shifted to mesh without backlash. Supports are alike in all directions.
+    ring is shifted to mesh without backlash. Supports are alike in all directions; they stand on the ground, or with
+    dynamics.model: casing in a `housing` (rigid or modal).
     """
 
     ring_teeth: Annotated[Whole, Field(ge=8, le=1000)] = Field(description="number of teeth of the ring")

@@ -7,6 +7,7 @@ from typing import Any
 
 from siggen.config.dynamics import Dynamics, Unbalance
 from siggen.config.gears import Gears
+from siggen.config.housing import PlateHousing
 from siggen.config.planetary import RING, ROLES, Planetary
 from siggen.errors import Problem
 from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems, typed_places
@@ -27,7 +28,7 @@ def sets_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Ite
     if "gears" in sections:
         yield from _of_gears(sections["gears"], section)
     if "dynamics" in sections:
-        yield from _of_dynamics(sections["dynamics"])
+        yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
     yield from _of_others(sections)
     yield from _of_states(sections)
 
@@ -56,10 +57,13 @@ def _of_gears(gears: Gears, section: Planetary) -> Iterator[Problem]:
         yield Problem(path, f"{one.name}: {one.received}", one.allowed)
 
 
-def _of_dynamics(dynamics: Dynamics) -> Iterator[Problem]:
-    if dynamics.model != "8dof":
-        received = f"'{dynamics.model}'{' (by default)' if dynamics.model == 'casing' else ''}"
-        yield Problem("dynamics.model", received, f"allowed: 8dof {BESIDE}, whose bodies stand on the ground")
+def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
+    if dynamics.model not in {"8dof", "casing"}:
+        allowed = f"allowed: 8dof (on the ground) or casing (in a housing) {BESIDE}"
+        yield Problem("dynamics.model", f"'{dynamics.model}'", allowed)
+    if dynamics.model == "casing" and isinstance(housing, PlateHousing):
+        allowed = f"allowed: rigid or modal {BESIDE}, since plates have seats for two shafts beside each other"
+        yield Problem("housing.kind", "'plates' (by default)", f"{allowed}; or dynamics.model: 8dof")
     if dynamics.mesh.law != "pairs":
         yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {BESIDE}")
     if dynamics.shafts is not None:
@@ -75,9 +79,11 @@ def _of_dynamics(dynamics: Dynamics) -> Iterator[Problem]:
 def _of_others(sections: Mapping[str, Any]) -> Iterator[Problem]:
     if sections.get("stages"):
         yield Problem("stages", "further meshes", f"allowed: none {BESIDE}")
-    for key in ("background", "internals"):
-        if sections.get(key) is not None:
-            yield Problem(key, "a section", f"allowed: null {BESIDE}")
+    if sections.get("internals") is not None:
+        yield Problem("internals", "a section", f"allowed: null {BESIDE}")
+    background = sections.get("background")
+    if background is not None and background.second_stage is not None:
+        yield Problem("background.second_stage", "a section", f"allowed: null {BESIDE}; auxiliary_drive has lines, too")
     for index, point in enumerate(sections.get("operating_points", ())):
         if bounds(point.torque_nm)[0] <= 0.0:
             yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")

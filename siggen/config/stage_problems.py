@@ -8,7 +8,6 @@ from typing import Any
 
 from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears, Pair, Wheel
-from siggen.config.housing import RigidHousing
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
@@ -82,7 +81,9 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
     if not sections.get("stages"):
         return
     if "dynamics" in sections:
-        yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
+        yield from _of_dynamics(
+            sections["dynamics"], sections.get("housing"), named=sections.get("machine") is not None
+        )
     if "gears" in sections:
         yield from _of_gears(sections["gears"], sections["stages"])
     background = sections.get("background")
@@ -93,14 +94,14 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
             yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")
 
 
-def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
+def _of_dynamics(dynamics: Dynamics, housing: object, *, named: bool) -> Iterator[Problem]:
     if dynamics.model not in {"8dof", "casing"}:
         yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof or casing {BESIDE}")
-    if dynamics.model == "casing" and not isinstance(housing, RigidHousing | None):
-        kind = getattr(housing, "kind", "plates")
-        yield Problem(
-            "housing.kind", f"'{kind}' (plates by default)", f"allowed: rigid {BESIDE}, or dynamics.model: 8dof"
-        )
+    kinds = {"rigid"} if named else {"rigid", "modal"}  # columns of modes are called in words of the program
+    if dynamics.model == "casing" and getattr(housing, "kind", "rigid") not in kinds:
+        kind, allowed = getattr(housing, "kind", ""), " or ".join(sorted(kinds, reverse=True))
+        beside = f"{BESIDE}{' in names of your own' if named else ''}, or dynamics.model: 8dof"
+        yield Problem("housing.kind", f"'{kind}' (plates by default)", f"allowed: {allowed} {beside}")
     if dynamics.shafts is not None:
         yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
     if dynamics.mesh.law != "pairs":

@@ -192,9 +192,22 @@ def integration_text(config: Config) -> str:
 def _sensing_text(config: Config) -> str:
     return (
         f"{_path_text(config)}{background_text(config)}Gain, noise, clipping at the sensor's "
-        "range, and rounding to the converter's step, which is a power of two and therefore exact in float32 (each "
-        "sensor's noise and bits are in `config.yaml`)." + "".join(f" {acts}" for acts in _acts(config))
+        "range, and rounding to the converter's step, which is a power of two and therefore exact in float32"
+        f"{_steps_text(config)}." + "".join(f" {acts}" for acts in _acts(config))
     )
+
+
+def _steps_text(config: Config) -> str:
+    """Return the steps of all converters, each with the sensors that have it."""
+    from siggen.sensors.converter import FROM_NOISE  # not for those who read: it loads the model of the configuration
+
+    sensors: dict[str, list[str]] = {}
+    for one in config.sensors:
+        of_noise = ", at most a fifth of the noise floor" if one.bits == FROM_NOISE else ""
+        step = f"{one.converter_step:.3g} {one.quantity.unit}{of_noise}" if one.converter_step else "none"
+        sensors.setdefault(step, []).append(f"`{one.name}`")
+    listed = "; ".join(f"{', '.join(names)}: {step}" for step, names in sensors.items())
+    return f" ({listed})"
 
 
 def _acts(config: Config) -> list[str]:

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import FloatArray
+
+
+class Block(NamedTuple):
+    """So many hours of one load: speed of the pinion, and torque over that of the law."""
+
+    hours: float
+    speed_hz: float
+    torque_ratio: float
 
 
 @dataclass(frozen=True)
@@ -16,38 +25,41 @@ class Clock:
 
     Parameters
     ----------
-    speed_hz : float
-        Of the pinion.
-    torque_ratio : float
-        Torque over that of the law.
+    blocks : sequence of Block
+        They repeat.
     exponent : float
-        To which it counts.
+        To which torque counts.
     scale : float
         By which all times of the law are longer.
-    history : sequence of (hours, torque)
-        Blocks that repeat, with their torque over that of `torque_ratio`; none: 1 all the time.
     """
 
-    speed_hz: float
-    torque_ratio: float
+    blocks: Sequence[Block]
     exponent: float
     scale: float
-    history: Sequence[tuple[float, float]] = ()
     _ages_h: FloatArray = field(init=False, repr=False, compare=False)
     _times: FloatArray = field(init=False, repr=False, compare=False)
+    _turns: FloatArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Sum up one round of the history."""
-        blocks = np.array(self.history or ((1.0, 1.0),))
-        turns = 3600.0 * self.speed_hz * blocks[:, 0]
-        passed = turns * (self.torque_ratio * blocks[:, 1]) ** self.exponent / self.scale
-        object.__setattr__(self, "_ages_h", np.concatenate([[0.0], np.cumsum(blocks[:, 0])]))
-        object.__setattr__(self, "_times", np.concatenate([[0.0], np.cumsum(passed)]))
+        """Sum up one round of the blocks."""
+        hours, speeds_hz, ratios = np.array(self.blocks).T
+        turns = 3600.0 * speeds_hz * hours
+        passed = turns * ratios**self.exponent / self.scale
+        for name, steps in (("_ages_h", hours), ("_times", passed), ("_turns", turns)):
+            object.__setattr__(self, name, np.concatenate([[0.0], np.cumsum(steps)]))
+
+    @property
+    def round_h(self) -> float:
+        """Hours after which the blocks begin again."""
+        return float(self._ages_h[-1])
 
     def time(self, age_h: float) -> float:
         """Return the damage time [turns] at an age [h]."""
-        rounds, rest = divmod(age_h, float(self._ages_h[-1]))
-        return float(rounds * self._times[-1] + np.interp(rest, self._ages_h, self._times))
+        return self._at(age_h, self._times)
+
+    def turns(self, age_h: float) -> float:
+        """Return the turns of the pinion at an age [h]."""
+        return self._at(age_h, self._turns)
 
     def age_h(self, time: float) -> float:
         """Return the first age [h] at which a damage time [turns] is reached."""
@@ -57,6 +69,6 @@ class Clock:
         inside = self._ages_h[block] + share * (self._ages_h[block + 1] - self._ages_h[block])
         return float(rounds * self._ages_h[-1] + inside)
 
-    def turns(self, age_h: float) -> float:
-        """Return the turns of the pinion at an age [h]."""
-        return 3600.0 * self.speed_hz * age_h
+    def _at(self, age_h: float, sums: FloatArray) -> float:
+        rounds, rest = divmod(age_h, self.round_h)
+        return float(rounds * sums[-1] + np.interp(rest, self._ages_h, sums))

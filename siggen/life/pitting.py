@@ -55,8 +55,10 @@ class Pitting(Law):
     first_share: Annotated[Real, Field(gt=0, le=0.02)] = Field(
         default=0.0045, description="median share of a flank with which a pit begins"
     )
-    rate_per_rev: Annotated[Real, Field(gt=0, le=1e-2)] = Field(
-        default=0.62e-6, description="median growth of a pit's logarithm per turn of its gear at the reference torque"
+    rate_per_rev: Annotated[Real, Field(ge=2e-8, le=1e-2)] = Field(
+        default=0.62e-6,
+        description="median growth of a pit's logarithm per turn of its gear at the reference torque (slower than the "
+        "least, no tooth would fail)",
     )
     rate_sd: Annotated[Real, Field(ge=0, le=2)] = Field(
         default=0.35, description="standard deviation of the rate's logarithm from pit to pit"

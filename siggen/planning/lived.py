@@ -11,10 +11,11 @@ from typing import Literal
 
 from siggen.config import Config, Gears, State
 from siggen.config.life import JITTER, Life
+from siggen.config.load_history import LoadHistory
 from siggen.faults.registry import HEALTHY
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
-from siggen.life.clock import Clock
+from siggen.life.clock import Block, Clock
 from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
 from siggen.life.law import Course, Named, Wearing
@@ -100,17 +101,20 @@ def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:
     )
     point = config.operating_points[0]
     of_point = named_uniforms(config.seed, Stage.OPERATING_POINT, specimen_id, 0)
-    clock = Clock(
-        at(point.speed_hz, of_point("speed_hz")),
-        at(point.torque_nm, of_point("torque_nm")) / life.reference_torque_nm,
-        life.damage.torque_exponent,
-        at(life.scale, uniform("scale")),
-        life.history,
-    )
+    steady = at(point.speed_hz, of_point("speed_hz")), at(point.torque_nm, of_point("torque_nm"))
+    clock = Clock(_blocks(life, *steady), life.damage.torque_exponent, at(life.scale, uniform("scale")))
     share = at(life.functional_share, uniform("functional_share"))
     course = life.damage.course(wearing, share)
     ages_h, observed_h, event = _observed(life, uniform, clock.age_h(course.ends.functional))
     return Lived(course, wearing.named, clock, share, ages_h, observed_h, event)
+
+
+def _blocks(life: Life, speed_hz: float, torque_nm: float) -> tuple[Block, ...]:
+    """Return the blocks of load; without a history that of an operating point all the time."""
+    if isinstance(life.history, LoadHistory):
+        return life.history.blocks(life.reference_torque_nm)
+    ratio = torque_nm / life.reference_torque_nm
+    return tuple(Block(hours, speed_hz, ratio * torque) for hours, torque in life.history or ((1.0, 1.0),))
 
 
 def _observed(life: Life, uniform: Callable[[str], float], failure_h: float) -> tuple[tuple[float, ...], float, Event]:

@@ -16,6 +16,8 @@ from typing import overload
 from siggen.config import BLOCK, Config, Splits
 from siggen.planning.gearbox import inspection_count, pair_of
 from siggen.seeding import Stage, generator
+from siggen.sensors.converter import FROM_NOISE
+from siggen.sensors.sensor import Sensor
 
 SPLITS = ("train", "validation", "test")
 
@@ -30,6 +32,9 @@ DISK_SHARE_PERCENT = 45
 
 UNQUANTISED_SHARE_PERCENT = 81
 """The same for readings that are not quantised, or finer than 16 bits (measured 0.76 to 0.81)."""
+
+NOISE_SHARE_PERCENT = 55
+"""The same for a converter as fine as the noise asks for (measured 0.54 and 0.55)."""
 
 MANY_QUANTITIES = 30
 """Assumed number of internal quantities where all are stored: 14 with the linear mesh law, 41 with pairs and casing."""
@@ -261,13 +266,15 @@ def specimens_per_shard(config: Config) -> int:
 
 def estimated_bytes(config: Config) -> int:
     """Return about how many bytes the signals of the set will take on disk."""
-    percents = [
-        DISK_SHARE_PERCENT if sensor.bits is not None and sensor.bits <= 16 else UNQUANTISED_SHARE_PERCENT
-        for sensor in config.sensors
-        for _ in sensor.axes
-    ]
+    percents = [_disk_percent(sensor) for sensor in config.sensors for _ in sensor.axes]
     internals = config.specimens * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
     return plan(config).count * _row_bytes(config) * sum(percents) // 100 + internals
+
+
+def _disk_percent(sensor: Sensor) -> int:
+    if sensor.bits == FROM_NOISE:
+        return NOISE_SHARE_PERCENT
+    return UNQUANTISED_SHARE_PERCENT if sensor.bits is None or sensor.bits > 16 else DISK_SHARE_PERCENT
 
 
 def rows_per_group(config: Config) -> int:

@@ -26,5 +26,7 @@ def state_config(config: Config, specimen_id: int, state_id: int) -> Config:
         for origin, one in changes
     ]
     sections = {name: getattr(own, name) for name in type(own).model_fields}
+    # the converter is that of all states, whatever becomes of the noise: its step must not tell the state
+    sections["sensors"] = tuple(one.model_copy(update={"bits": one.converter_bits}) for one in own.sensors)
     states = tuple(state.model_copy(update={"changes": ()}) for state in own.states)
     return own.model_copy(update={**changed_sections(sections, drawn), "states": states})

@@ -6,6 +6,7 @@ their phase against the pinion's angle, so that all states of a gearbox share th
 
 from __future__ import annotations
 
+from functools import partial
 from math import pi
 
 import numpy as np
@@ -20,6 +21,7 @@ from siggen.record.background_course import Course, course_at
 from siggen.record.bearing_noise import BearingVelocities
 from siggen.record.belt import belt_force
 from siggen.record.rubbing import RubbingForce
+from siggen.record.set_rubbing import SetRubbing
 from siggen.sensing.force_density import contact_filter, rising_floor
 from siggen.sensing.inputs import BACKGROUND, Input
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
@@ -54,7 +56,7 @@ class BackgroundBlocks:
         self._of_record = (config, specimen, record)
         self._next, self._length = first, length
         self._background = background
-        self._rubbing: RubbingForce | None = None
+        self._rubbing: RubbingForce | SetRubbing | None = None
         self._bearings: BearingVelocities | None = None
         self._machines: dict[str, ShapedNoise] = {}
         self.labels: dict[str, object] = {}
@@ -66,7 +68,8 @@ class BackgroundBlocks:
         if not self.labels:
             self._begin(course)
         if self._rubbing is not None:
-            forces["mesh"] = self._rubbing.take(course)
+            taken = self._rubbing.take(course)
+            forces |= taken if isinstance(taken, dict) else {"mesh": taken}
             labels |= self._rubbing.labels
         if self._bearings is not None:
             forces |= self._bearings.take(course)
@@ -81,7 +84,11 @@ class BackgroundBlocks:
     def _begin(self, course: Course) -> None:
         section = self._background.section
         if section.rubbing is not None:
-            self._rubbing = RubbingForce(section.rubbing, course, self._length)
+            specimen = self._of_record[1]
+            of_set = partial(SetRubbing, specimen=specimen)
+            self._rubbing = (RubbingForce if specimen.planetary is None else of_set)(
+                section.rubbing, course, self._length
+            )
         if self._background.bearings:
             self._bearings = BearingVelocities(self._background.bearings, course, self._of_record[1])
         if section.machines is not None:

@@ -20,6 +20,7 @@ from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
 from siggen.specimen.asperities import asperity_share
 from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.planetary_numbers import of_one_mesh, planetary_teeth
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +79,8 @@ def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: 
     time_s = np.maximum((np.arange(count) + first) / config.fs_hz, -TRANSIENT_CAP_S)
     angle_rad = rotation.angle_rad(time_s)
     orders = {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
+    if specimen.planetary is not None:
+        orders["gear"] = float(planetary_teeth(specimen).carrier_turns)
     return Course(
         angle_rad,
         orders,
@@ -86,7 +89,7 @@ def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: 
         -first,
         pair,
         point,
-        asperity_share(specimen.dynamics.friction, pair, point),
+        asperity_share(specimen.dynamics.friction, pair, of_one_mesh(specimen, point)),
         named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id),
         lambda name: named_generator(config.seed, Stage.BACKGROUND, record.specimen_id, name=name),
         lambda name: named_generator(config.seed, Stage.BACKGROUND_NOISE, *owner, name=name),

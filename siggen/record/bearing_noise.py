@@ -18,6 +18,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
+from siggen.dynamics.drive.external_forces import OF_SET
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course
@@ -34,6 +35,7 @@ BAND_EDGES_HZ = (50.0, 300.0, 1800.0, 10_000.0)
 TAPS = 2048
 PHASE_SPREAD = 0.1
 """Noise of one shaft's bearings rises at the same angle, within this share of a turn to either side."""
+SEATS_OF_SHAFTS = tuple(f"{place}/{axis}" for place in OF_SET for axis in ("vertical", "horizontal"))
 SLIP = (0.005, 0.02)
 """Share by which the cage lags (assumed)."""
 PASSING_LINES = 3
@@ -64,7 +66,8 @@ class BearingVelocities:
         self._bearings = bearings
         self._loaded = specimen_bearings(specimen)
         self._sense = {shaft: cage_sense(specimen.dynamics, shaft) for shaft in bearings}
-        self._noise = {name: self._shaped(name, course) for name in INPUTS}
+        names = INPUTS if specimen.planetary is None else SEATS_OF_SHAFTS
+        self._noise = {name: self._shaped(name, course) for name in names}
         self._levels = {shaft: _level(shaft, numbers, course) for shaft, numbers in bearings.items()}
         self.labels = {
             f"bearing_velocity_{shaft}_um_s": constant(numbers.high_um_s) for shaft, numbers in bearings.items()
@@ -123,8 +126,9 @@ class BearingVelocities:
 
 
 def shaft_of(name: str) -> str:
-    """Return the shaft of a bearing's input."""
-    return name.partition("_")[0]
+    """Return the shaft of a bearing's input: of a planetary set sun and carrier stand for pinion and gear."""
+    held = name.partition("_")[0]
+    return {"sun": "pinion", "carrier": "gear"}.get(held, held)
 
 
 def _level(shaft: str, numbers: BearingNumbers, course: Course) -> LevelCourse:

@@ -161,7 +161,7 @@ def _disturbances(
         rng, floor = white_noise(config, record, channel, draws)
         recorders[channel.name].begin_conversion(
             limit=channel.sensor.limit,
-            bits=channel.sensor.bits,
+            bits=channel.sensor.converter_bits,
             rng=rng,
             noise_floor=floor,
             gaps=lost_gaps(config, channel, draws),

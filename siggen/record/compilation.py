@@ -85,8 +85,8 @@ def _run_teeth(config: Config) -> None:
 
 
 def _damaged(config: Config) -> Sequence[int]:
-    """Return the last state of every kind of damage; the first state where there is none."""
-    kinds = {type(one): i for i, state in enumerate(config.states) for one in state.damages}
+    """Return the last state of every kind of damage, shams removing nothing; the first state where there is none."""
+    kinds = {type(one): i for i, state in enumerate(config.states) if not state.sham for one in state.damages}
     return tuple(kinds.values()) or (0,)
 
 

@@ -49,7 +49,12 @@ class RubbingForce:
         self._rms = spectrum.rms_n(0.5 * course.fs_hz)
         self.labels = rubbing_labels(rubbing, self._rms, course.asperity_share)
         if self._bursts is not None:
-            self.labels["burst_count"] = self._bursts.recorded
+            self.labels["burst_count"] = self.burst_count
+
+    @property
+    def burst_count(self) -> int:
+        """Bursts that begin within the record."""
+        return 0 if self._bursts is None else self._bursts.recorded
 
     def take(self, course: Course) -> FloatArray:
         """Return the force (k,) [N] over the next samples, those of `course`."""

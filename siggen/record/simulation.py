@@ -100,7 +100,7 @@ def _stream(
             SampleGrid(config.fs_hz, config.samples, grid.per_sample),
             wanted=Wanted(
                 internals,
-                internals or config.gives_way or needs(config.sensors, FORCE),
+                internals or config.gives_way or config.turns_in_housing or needs(config.sensors, FORCE),
                 motions,
                 needs(config.sensors, SHAFT),
             ),

@@ -181,7 +181,7 @@ def _sensor(i: int) -> str:
     gain: {{kind: normal, mean: 1.0, std: 0.05, low: 0.9, high: 1.1}}
     noise: {{floor_m_s2: {{kind: loguniform, low: 0.003, high: 0.01}}}}
     range_m_s2: 500.0
-    bits: 24
+    bits: noise
     high_pass_hz: {{kind: loguniform, low: 0.5, high: 2.0}}
     mounting: {{frequency_hz: {{kind: uniform, low: 6000, high: 15000}}, damping_ratio: 0.06}}"""
 

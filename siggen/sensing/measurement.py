@@ -35,11 +35,16 @@ class Measurement:
 
 def converted(analogue: NDArray[np.float64], limit: float, bits: int | None) -> tuple[NDArray[np.float32], int, float]:
     """Return what a converter stores (n,), how many values were clipped, and its step, 0 without quantisation."""
-    step = 0.0 if bits is None else power_of_two_from(2.0 * limit / 2.0**bits)
+    step = converter_step(limit, bits)
     on_grid = math.floor(limit / step) * step if step else limit
     clipped = int((np.abs(analogue) > on_grid).sum())
     kept = np.clip(analogue, -on_grid, on_grid)
     return (np.round(kept / step) * step if step else kept).astype(np.float32), clipped, step
+
+
+def converter_step(limit: float, bits: int | None) -> float:
+    """Return the step of a converter of so many bits over plus and minus a limit, 0 without quantisation."""
+    return 0.0 if bits is None else power_of_two_from(2.0 * limit / 2.0**bits)
 
 
 def power_of_two_from(value: float) -> float:

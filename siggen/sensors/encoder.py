@@ -16,6 +16,7 @@ from siggen.keys.number import Number, Within
 from siggen.keys.section import Real, Whole
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
+from siggen.sensors.converter import BITS_TEXT, Bits
 from siggen.sensors.places import TURNING, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, Sensor
@@ -59,9 +60,7 @@ class Encoder(Sensor):
     eccentricity: Annotated[Number, Within(least=0, most=0.1)] = Field(
         default=5e-4, description="of the disc over the radius of its marks, in a direction drawn per gearbox"
     )
-    bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
-        default=None, description="of the converter; null: not quantised"
-    )
+    bits: Bits = Field(default=None, description=BITS_TEXT)
 
     def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield a shaft that the model has not."""

@@ -18,8 +18,6 @@ PLATES = "casing, housing.kind: plates"
 """The model whose housing gives way."""
 MODAL = "casing, housing.kind: modal"
 """The model whose housing gives way as given modes say."""
-PLANETARY = "8dof, planetary"
-"""The model of a planetary set."""
 PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
 """Place -> plate of the housing."""
 GEARS = ("pinion", "gear")
@@ -65,11 +63,13 @@ class Places:
     model : `dynamics.model`, with its housing where that gives way
     stages : names of the further stages, in the order of power
     helical : whether teeth push along the shafts
+    planetary : whether it is a planetary set
     """
 
     model: str
     stages: tuple[str, ...] = ()
     helical: bool = False
+    planetary: bool = False
 
     @property
     def gears(self) -> tuple[str, ...]:
@@ -81,7 +81,7 @@ class Places:
         """The bearings of every shaft."""
         return (
             ()
-            if self.model in {"torsional", PLANETARY}
+            if self.model == "torsional" or self.planetary
             else (*BEARINGS, *(f"{stage}_bearing" for stage in self.stages))
         )
 
@@ -105,14 +105,14 @@ class Places:
     @property
     def motions(self) -> tuple[str, ...]:
         """Places whose motion the model has."""
-        if self.model == PLANETARY:
-            return OF_SET
+        if self.planetary:
+            return (*ON_CASING.get(self.model, ()), *OF_SET)
         return RIMS if self.model == "torsional" else (*ON_CASING.get(self.model, ()), *self.bearings)
 
     @property
     def shafts(self) -> tuple[str, ...]:
         """What turns and can carry a sensor."""
-        if self.model == PLANETARY:
+        if self.planetary:
             return ()
         return self.gears if self.model == "6dof" else ("motor", *self.gears, "load")
 
@@ -128,7 +128,7 @@ class Places:
     @property
     def couplings(self) -> tuple[str, ...]:
         """Couplings at both ends of the gearbox."""
-        return () if self.model in {"6dof", PLANETARY} else ("input_coupling", "output_coupling")
+        return () if self.model == "6dof" or self.planetary else ("input_coupling", "output_coupling")
 
     def problems(self, place: str, allowed: Sequence[str]) -> Iterator[Problem]:
         """Yield a place that is none of those that the gearbox has for a sensor."""
@@ -139,4 +139,4 @@ class Places:
     @property
     def _where(self) -> str:
         stages = f", stages: {', '.join(self.stages)}" if self.stages else ""
-        return f"dynamics.model: {self.model}{stages}"
+        return f"dynamics.model: {self.model}{stages}{', planetary' if self.planetary else ''}"

@@ -17,13 +17,15 @@ from pydantic import Field, model_validator
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN
-from siggen.keys.number import Number, Within, at
+from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.problems import BRANCHES, received_text, refusal
-from siggen.keys.section import Section, Whole
+from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 from siggen.noise.source import Source
 from siggen.seeding import Stage, generator
 from siggen.sensing.inputs import FORCE, Input
+from siggen.sensing.measurement import converter_step
+from siggen.sensors.converter import BITS_TEXT, FROM_NOISE, Bits, bits_of_noise
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
@@ -91,9 +93,7 @@ class Sensor(Section):
         description="of a record that a bad contact of the cable loses, drawn per record and axis: gaps of 1 to 50 ms "
         "of zeros (assumed)",
     )
-    bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
-        default=16, description="of the converter; null: not quantised"
-    )
+    bits: Bits = Field(default=16, description=BITS_TEXT)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -124,6 +124,18 @@ class Sensor(Section):
     def noise_floor(self) -> Number | None:
         """Standard deviation of its white noise, in its unit, drawn per record and axis; None without."""
         return None
+
+    @property
+    def converter_bits(self) -> int | None:
+        """Bits of its converter, of all records the same; None: not quantised."""
+        if self.bits != FROM_NOISE:
+            return self.bits
+        return bits_of_noise(self.limit, bounds(self.noise_floor or 0.0)[0])
+
+    @property
+    def converter_step(self) -> float:
+        """Step of its converter, in its unit; 0: not quantised."""
+        return converter_step(self.limit, self.converter_bits)
 
     @property
     def added_mass_g(self) -> Number:
@@ -229,6 +241,9 @@ class Sensor(Section):
             problems.append(
                 Problem("gain", received, f"allowed: one number, or a list of {len(self.axes)} (one per axis)")
             )
+        if self.bits == FROM_NOISE and not bounds(self.noise_floor or 0.0)[0]:
+            allowed = "allowed: a whole number or null without a noise floor, or with one that may be 0"
+            problems.append(Problem("bits", FROM_NOISE, allowed))
         problems += self.own_problems()
         if problems:
             raise refusal(problems)

@@ -11,8 +11,8 @@ from pydantic import Field
 
 from siggen.arrays import FloatArray
 from siggen.errors import Problem
-from siggen.keys.section import Whole
 from siggen.sensing.inputs import Input
+from siggen.sensors.converter import BITS_TEXT, Bits
 from siggen.sensors.encoder import Encoder
 from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
@@ -44,9 +44,7 @@ class TransmissionError(Sensor):
     )
     pinion_encoder: str = Field(description=ENCODER)
     gear_encoder: str = Field(description=ENCODER)
-    bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
-        default=None, description="of the converter; null: not quantised"
-    )
+    bits: Bits = Field(default=None, description=BITS_TEXT)
 
     def model_problems(self, places: Places) -> Iterator[Problem]:  # noqa: ARG002
         """Yield nothing: its encoders say what the model has not."""

@@ -77,11 +77,10 @@ def _same_label(before: object, now: object, *, exact: bool) -> bool:
 
 def _steps(config: Config) -> dict[str, float]:
     """Return the converter's step of every signal column; without one, the rounding of float32 at full range."""
-    from siggen.sensing.measurement import power_of_two_from
+    from siggen.sensing.measurement import converter_step
 
     steps: dict[str, float] = {}
     for sensor in config.sensors:
-        bits = 24 if sensor.bits is None else sensor.bits
-        step = power_of_two_from(2.0 * sensor.limit / 2.0**bits)
+        step = sensor.converter_step or converter_step(sensor.limit, 24)
         steps |= {sensor.quantity.column(name): step for name, _ in sensor.channels}
     return steps

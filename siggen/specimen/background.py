@@ -6,17 +6,22 @@ seats, on shafts, base and housing. What they do to bearing forces passes the fl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config, Dynamics
-from siggen.dynamics.drive.external_forces import bearing_direction, shaft_direction, shaft_directions
+from siggen.dynamics.drive.external_forces import (
+    bearing_direction,
+    bearing_places,
+    shaft_direction,
+    shaft_directions,
+)
 from siggen.dynamics.structure.body import Body
-from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
+from siggen.dynamics.structure.forced_motion import MeanMesh
 from siggen.dynamics.structure.foundation import Base, on_base
 from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
@@ -25,7 +30,6 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
-from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input, Weight
 from siggen.sensing.sensor_response import resonance_response
 from siggen.specimen.background_numbers import (
     MESH_STIFFNESS_N_PER_UM_MM,
@@ -36,35 +40,20 @@ from siggen.specimen.background_numbers import (
     ShaftNumbers,
     background_numbers,
 )
+from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.planetary_numbers import planets_in_ring
 from siggen.specimen.structure import linear_structure
 
 DECAYS = 7.0
 """Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
 AXES = ("horizontal", "vertical")
 SHAFTS = ("pinion", "gear")
+"""Shafts that machines stand beside: of the first pinion and its gear, of sun and carrier."""
+SET_MESHES, EVEN = ("sun_meshes", "ring_meshes"), "even"
+"""Of a planetary set, and the part of their push that has no direction."""
 MACHINES = {"motor": "pinion", "load": "gear"}
 """What stands beside the gearbox, and the shaft that leads there."""
-BLOCK = 8192
-"""Frequencies at a time: the responses of all motions and forces are ten times those of a channel."""
-
-
-@dataclass(frozen=True, slots=True)
-class ChannelWay:
-    """How a channel sees forces that act beside the model's own.
-
-    Attributes
-    ----------
-    shown : motions, forces and readings of shafts; of a housing of plates those of the modes that move with the gears
-    accelerance : (forces, k) beyond those motions, m/s² per N from bearing forces; None for none
-    entries : (entries of `Body`, k) the same from where other machines press on the housing
-    """
-
-    shown: Mapping[Input, Weight]
-    accelerance: ComplexArray | None
-    entries: ComplexArray | None
-    forces: tuple[str, ...] = INPUTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,20 +112,9 @@ def specimen_background(
     shafts, bearings = _shafts(numbers, uniform), bearings_of_shafts(numbers, uniform)
     if not directions:
         return SpecimenBackground(section, shafts, bearings, (), {})
-    ways = {name: _in_model(way, assembled) for name, way in channels.items()}
-    seen, readings = (_named(ways.values(), kind) for kind in (MOTION, SHAFT))
-    meshes = mean_meshes(specimen, assembled)
-    names, rows = tuple(directions), np.array(list(directions.values()))
-    turn_rad = _angle(uniform, "auxiliary_drive")
-    responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
-    for first in range(0, frequency_hz.size, BLOCK):
-        block = slice(first, first + BLOCK)
-        forced = forced_motion(assembled, meshes, rows, seen, frequency_hz[block], readings)
-        for name, way in ways.items():
-            try:
-                responses[name][:, block] = _response(names, turn_rad, forced, way, block)
-            except KeyError as error:
-                raise ValueError(f"sensor of {name}: shows {error}, which the background does not reach") from error
+    names = tuple(directions)
+    forcing = Forcing(directions, _pressed(assembled, _angle(uniform, "auxiliary_drive")))
+    responses = forced_ways((assembled, mean_meshes(specimen, assembled)), forcing, channels, frequency_hz)
     for name, factor in _factors(assembled, section, names, frequency_hz).items():
         for response in responses.values():
             response[names.index(name)] *= factor
@@ -163,7 +141,7 @@ def _factors(
     assembled: Structure, section: BackgroundNumbers, names: tuple[str, ...], frequency_hz: FloatArray
 ) -> dict[str, ComplexArray]:
     """Return input -> what lies between it and the force that acts on the model (k,)."""
-    bearings = INPUTS if section.bearings is not None else ()
+    bearings = bearing_inputs(assembled) if section.bearings is not None else ()
     found = {name: _per_velocity(assembled, name, frequency_hz) for name in bearings}
     for name in ("second_stage", "auxiliary_drive"):
         mesh: ForeignNumbers | None = getattr(section, name)
@@ -182,10 +160,11 @@ def _per_velocity(assembled: Structure, name: str, frequency_hz: FloatArray) -> 
 
 def mean_meshes(specimen: Specimen, assembled: Structure) -> list[MeanMesh]:
     """Return every mesh of a gearbox as a constant spring and damper."""
-    pairs = (specimen.gears, *(stage.gears for stage in specimen.stages))
+    pairs = [gear_pair(specimen.gears), *(gear_pair(stage.gears) for stage in specimen.stages)]
+    if specimen.planetary is not None:
+        pairs = [pair for pair in planets_in_ring(specimen) for _ in specimen.planetary.positions_deg]
     return [
-        mean_mesh(specimen.dynamics, gear_pair(gears), mesh.mass_kg)
-        for gears, mesh in zip(pairs, assembled.meshes, strict=True)
+        mean_mesh(specimen.dynamics, pair, mesh.mass_kg) for pair, mesh in zip(pairs, assembled.meshes, strict=True)
     ]
 
 
@@ -212,9 +191,9 @@ def _directions(
     """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
     found: dict[str, FloatArray] = {}
     if section.rubbing is not None:
-        found["mesh"] = assembled.mesh.vector
+        found |= mesh_directions(assembled)
     if section.bearings is not None:
-        found |= {name: bearing_direction(assembled, *name.split("/")) for name in INPUTS}
+        found |= {name: bearing_direction(assembled, *name.split("/")) for name in bearing_inputs(assembled)}
     if section.machines is not None:
         for name, shaft in MACHINES.items():
             found[name] = _turned(_stand(assembled, shaft), _angle(uniform, f"machines.{name}"))
@@ -234,6 +213,37 @@ def _directions(
     return found
 
 
+def mesh_directions(assembled: Structure) -> dict[str, FloatArray]:
+    """Return what presses along lines of action: of the first mesh, or of all meshes of a planetary set as they turn.
+
+    Derived: of N planets that stand evenly, one at the angle β in space moves central bodies as a + b cos β + c sin β,
+    with a, b and c the mean over all planets, and twice those of p cos β and p sin β.
+    """
+    if not assembled.frame:
+        return {"mesh": assembled.mesh.vector}
+    count = len(assembled.meshes) // len(SET_MESHES)
+    angle = 2.0 * pi * np.arange(count) / count
+    waves = {EVEN: np.ones(count), AXES[0]: 2.0 * np.cos(angle), AXES[1]: 2.0 * np.sin(angle)}
+    rows = np.array([mesh.vector for mesh in assembled.meshes]).reshape(len(SET_MESHES), count, -1)
+    return {
+        f"{mesh}/{wave}": (weights[:, None] * own).mean(axis=0)
+        for mesh, own in zip(SET_MESHES, rows, strict=True)
+        for wave, weights in waves.items()
+    }
+
+
+def bearing_inputs(assembled: Structure) -> tuple[str, ...]:
+    """Return the bearings of both shafts that machines stand beside, with their axes."""
+    return tuple(f"{place}/{axis}" for place in bearing_places(assembled)[: len(SHAFTS)] for axis in AXES[::-1])
+
+
+def _pressed(assembled: Structure, turn_rad: float) -> dict[str, dict[str, float]]:
+    """Return what presses on a housing by itself: a force between shaft and seat the other way than on the shaft."""
+    drive = dict(zip((f"auxiliary_drive/{axis}" for axis in AXES), (cos(turn_rad), sin(turn_rad)), strict=True))
+    own = {name: {name: -1.0} for name in bearing_inputs(assembled)}
+    return {**own, "second_stage": {"second_stage": 1.0}, "auxiliary_drive": drive}
+
+
 def _entry(assembled: Structure, body: Body | None, name: str) -> FloatArray:
     """Return the generalised force (n,) of 1 N where another machine presses on the body; nothing without a body."""
     return vector(assembled.coordinates, {} if body is None else body.entries[name])
@@ -248,12 +258,12 @@ def _turned(rows: FloatArray, angle: float) -> FloatArray:
 
 
 def _on_rotor(assembled: Structure, shaft: str) -> FloatArray:
-    return shaft_directions(assembled, f"{shaft}_bearing")
+    return shaft_directions(assembled, bearing_places(assembled)[SHAFTS.index(shaft)])
 
 
 def _moved(assembled: Structure, names: tuple[str, str]) -> FloatArray:
     """Return unit forces (2, n), horizontal and vertical, on a body with these translations; 0 if there is none."""
-    pinion = [assembled.coordinates.index(name) for name in ("x_1", "y_1")]
+    pinion = [assembled.coordinates.index(f"{axis}_{'s' if assembled.frame else 1}") for axis in "xy"]
     rows = np.zeros((2, len(assembled.coordinates)))
     if set(names) <= set(assembled.coordinates):
         rows[:, [assembled.coordinates.index(name) for name in names]] = _on_rotor(assembled, "pinion")[:, pinion]
@@ -267,40 +277,3 @@ def _on_base(assembled: Structure) -> FloatArray:
 def _stand(assembled: Structure, shaft: str) -> FloatArray:
     """Return where a machine presses: on the base, or on its shaft of a gearbox without one."""
     return _on_base(assembled) if "x_b" in assembled.coordinates else _on_rotor(assembled, shaft)
-
-
-def _named(ways: Iterable[ChannelWay], kind: str) -> tuple[str, ...]:
-    """Return the names of one kind of input that channels show, each once."""
-    return tuple(dict.fromkeys(one.name for way in ways for one in way.shown if one.kind == kind))
-
-
-def _in_model(way: ChannelWay, assembled: Structure) -> ChannelWay:
-    """Return a way that shows motions of the model alone: without those that it does not have, such as axial ones."""
-    shown = {
-        one: weight
-        for one, weight in way.shown.items()
-        if one.kind != MOTION or one.name in assembled.motions or not one.name.endswith("/axial")
-    }
-    return replace(way, shown=shown)
-
-
-def _response(
-    inputs: tuple[str, ...], turn_rad: float, forced: ForcedMotion, way: ChannelWay, block: slice
-) -> ComplexArray:
-    """Return the response (inputs, k) of one channel at a block of its frequencies."""
-    total = np.zeros_like(next(iter(forced.bearing_force.values())))
-    found = {FORCE: forced.bearing_force, MOTION: forced.acceleration, SHAFT: forced.shaft}
-    for one, weight in way.shown.items():
-        total += (weight if isinstance(weight, float) else weight[block]) * found[one.kind][one.name]
-    if way.accelerance is not None:
-        for name, row in zip(way.forces, way.accelerance[:, block], strict=True):
-            total += row * forced.bearing_force[name]
-            if name in inputs:  # a force between shaft and seat presses on the housing the other way
-                total[inputs.index(name)] -= row
-    if way.entries is not None:
-        stage, horizontal, vertical = way.entries[:, block]
-        direct = {"second_stage": stage, "auxiliary_drive": cos(turn_rad) * horizontal + sin(turn_rad) * vertical}
-        for name, row in direct.items():
-            if name in inputs:
-                total[inputs.index(name)] += row
-    return total

@@ -42,8 +42,8 @@ class ToothTables:
 
     @property
     def sink_depth_m(self) -> float:
-        """How far a flank sinks at most where damage leaves no land [m]."""
-        return 0.0 if self.contact is None else float(self.contact.touch_m.max())
+        """How far a flank sinks at most where damage leaves no land [m]; not what helical tips miss beside the path."""
+        return 0.0 if self.contact is None else float((self.contact.touch_m - self.contact.touch_m[:1]).max())
 
 
 def solves_across_the_face(dynamics: Dynamics) -> bool:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from siggen.config import Config, Stiffness
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.drawing import corners
@@ -21,7 +22,7 @@ def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
 
 def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
     """Return the options of one pair of a gearbox: in a ring neighbours do not act on each other."""
-    return options if pair.tips_meet_flanks else replace(options, coupling="none")
+    return replace(options, coupling="none") if isinstance(pair, InternalPair) else options
 
 
 def model_notes(config: Config) -> tuple[str, ...]:

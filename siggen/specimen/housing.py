@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from siggen.config import Config, ModalHousing
+from siggen.config import Config, ModalHousing, RigidHousing
 from siggen.planning.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
 from siggen.specimen.modal_housing import given_modes, modal_housing
+from siggen.specimen.planetary_housing import rigid_housing_of_set, slowest_decay_per_s
 from siggen.specimen.plate_housing import damped_modes, plate_housing
-from siggen.specimen.specimen_housing import SpecimenHousing, modes_settle_s
+from siggen.specimen.specimen_housing import SpecimenHousing, modes_settle_s, settle_s
 
 
 def specimen_housing(config: Config, specimen: Specimen) -> SpecimenHousing | None:
@@ -31,6 +32,8 @@ def housing_settle_s(config: Config, specimen: Specimen) -> float:
         case ModalHousing():
             table = given_modes(numbers)
             return modes_settle_s(table.frequency_hz, table.damping_ratio)
+        case RigidHousing() if specimen.planetary is not None:  # others move with the gears
+            return settle_s(slowest_decay_per_s(rigid_housing_of_set(specimen)))
     return 0.0
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
+from siggen.dynamics.structure.planetary import SEATS_OF_SET
 from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
@@ -22,15 +23,16 @@ from siggen.sensors.path import MeasuredPath
 from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Transducer
 from siggen.specimen.background import (
-    ChannelWay,
     SpecimenBackground,
     background_history_s,
     drawn_background,
     specimen_background,
 )
+from siggen.specimen.forced_ways import ChannelWay
 from siggen.specimen.housing import housing_settle_s, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
 from siggen.specimen.sensor_mass import Loading, sensor_loading
+from siggen.specimen.set_on_housing import forces_through_housing
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import moved_along
 
@@ -151,6 +153,9 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
             channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, paths)
             channels.append(channel)
+    if config.turns_in_housing:
+        through = forces_through_housing(config, specimen, ways, grid)
+        channels = [_on_set(channel, through[channel.name], grid) for channel in channels]
     background = None
     if section is not None:
         background = specimen_background(config, specimen, section, ways, grid)
@@ -160,6 +165,12 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     if background is not None:  # nobody asks for them again
         background = replace(background, responses={})
     return Instrument(blocks.memory, config.fs_hz, tuple(channels), filters, background)
+
+
+def _on_set(channel: ChannelInstrument, accelerance: ComplexArray, grid: FloatArray) -> ChannelInstrument:
+    """Return a channel on the housing of a planetary set: what it shows of the model is the ground's alone."""
+    rms = _band_rms(accelerance[:-1], grid)  # the last one is by a moment
+    return replace(channel, seen={}, accelerance=accelerance, forces=SEATS_OF_SET, path_rms_m_s2_per_n=rms)
 
 
 def channel_ways(

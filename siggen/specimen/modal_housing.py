@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from math import pi
 
 import numpy as np
@@ -10,9 +10,11 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Housing, ModalHousing
 from siggen.dynamics.housing.modes import TableModes, table_motion
+from siggen.dynamics.housing.motion import Motion
+from siggen.dynamics.structure.planetary import SEATS_OF_SET
 from siggen.planning.specimen import Specimen
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.mode_table import BASE, DRIVE, SEATS, ModeTable, mode_table
+from siggen.specimen.mode_table import BASE, DRIVE, ModeTable, mode_table, seats_of
 from siggen.specimen.specimen_housing import BoltMotions, SpecimenHousing, second_stage
 
 
@@ -30,23 +32,30 @@ def modal_housing(specimen: Specimen, section: ModalHousing) -> SpecimenHousing:
     """Return the housing of a specimen whose modes were given."""
     table = given_modes(section)
     places = {place: table_motion(shape) for place, shape in table.shapes.items()}
-    seats = {place: places[place] for place in SEATS}
-    still = np.zeros_like(table.frequency_hz)
-    drive = {place: places.get(place, table_motion(still)) for place in DRIVE}
-    angle = gear_pair(specimen.gears).working_pressure_angle_rad
+    names = SEATS_OF_SET if specimen.planetary is not None else seats_of(stage.name for stage in specimen.stages)
+    seats = {place: places[place] for place in names}
+    still = table_motion(np.zeros_like(table.frequency_hz))
+    drive = {place: places.get(place, still) for place in DRIVE}
+    stage = still  # a planetary set has no second one
+    if specimen.planetary is None:
+        stage = second_stage(seats, gear_pair(specimen.gears).working_pressure_angle_rad)
     return SpecimenHousing(
         modes=TableModes(table.frequency_hz),
         damping_ratio=table.damping_ratio,
         seats=seats,
-        motions={seen_as(place): motion for place, motion in places.items()},
-        entries={"second_stage": second_stage(seats, angle), **drive},
+        motions=_seen(places, {seat.split("/")[0] for seat in seats}),
+        entries={"second_stage": stage, **drive},
         bolts=lambda: _followed(table.frequency_hz, table.base),
     )
 
 
-def seen_as(place: str) -> str:
-    """Return what sensors call the motion of a place/axis of a table."""
-    return place if place.split("/", maxsplit=1)[0] in {"pinion_bearing", "gear_bearing"} else f"casing_{place}"
+def _seen(places: Mapping[str, Motion], held: Collection[str]) -> dict[str, Motion]:
+    """Return the motions of a table's places as sensors call them: at what is `held`, or on the casing by their name.
+
+    A sensor on the casing may bear the name of a ring, too.
+    """
+    found = {p if p.split("/")[0] in held else f"casing_{p}": motion for p, motion in places.items()}
+    return found | ({f"casing_{p}": motion for p, motion in places.items()} if "ring" in held else {})
 
 
 def _followed(frequency_hz: FloatArray, base: Mapping[str, FloatArray]) -> BoltMotions:

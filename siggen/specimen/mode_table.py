@@ -2,7 +2,8 @@
 
 A line per mode, ascending: `frequency_hz`, `damping_ratio`, and a column for every place and axis that counts:
 `<place>_<axis>_per_sqrt_kg` holds the mass-normalised shape. Places are `pinion_bearing`, `gear_bearing`,
-`auxiliary_drive` and the names of sensors. `base_horizontal_sqrt_kg`, `base_vertical_sqrt_kg` and
+`auxiliary_drive` and the names of sensors; of a planetary set `sun_bearing`, `carrier_bearing` and `ring`, whose
+rotation `ring_turning_per_sqrt_kg_m` holds. `base_horizontal_sqrt_kg`, `base_vertical_sqrt_kg` and
 `base_rocking_sqrt_kg_m` hold participation factors, φᵀ M of a body that moves with its base.
 """
 
@@ -12,7 +13,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -21,10 +22,11 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.housing.modes import VIBRATING_HZ
+from siggen.dynamics.structure.planetary import SEATS_OF_SET
 from siggen.keys.problems import nearest
 
 FREQUENCY, DAMPING = "frequency_hz", "damping_ratio"
-SHAPE = re.compile(r"^([a-z][a-z0-9_]*)_(horizontal|vertical|axial)_per_sqrt_kg$")
+SHAPE = re.compile(r"^([a-z][a-z0-9_]*)_(?:(horizontal|vertical|axial)_per_sqrt_kg|(turning)_per_sqrt_kg_m)$")
 SEATS = tuple(f"{shaft}_bearing/{axis}" for shaft in ("pinion", "gear") for axis in ("vertical", "horizontal"))
 DRIVE = ("auxiliary_drive/horizontal", "auxiliary_drive/vertical")
 BASE = ("base_horizontal_sqrt_kg", "base_vertical_sqrt_kg", "base_rocking_sqrt_kg_m")
@@ -73,12 +75,18 @@ class ModeTable:
     @property
     def seat_masses_kg(self) -> list[float]:
         """Mass that each seat feels of the six lowest modes, which are those of a body on its feet."""
-        return [1.0 / max(float((self.shapes[seat][:6] ** 2).sum()), 1e-12) for seat in SEATS]
+        seats = [seat for seat in (*SEATS, *SEATS_OF_SET[:-1]) if seat in self.shapes]
+        return [1.0 / max(float((self.shapes[seat][:6] ** 2).sum()), 1e-12) for seat in seats]
+
+
+def seats_of(stages: Iterable[str]) -> tuple[str, ...]:
+    """Return place/axis of the bearings of all shafts, those behind further stages included."""
+    return (*SEATS, *(f"{stage}_bearing/{axis}" for stage in stages for axis in ("vertical", "horizontal")))
 
 
 def shape_column(place: str) -> str:
     """Return the column of a place/axis."""
-    return f"{place.replace('/', '_')}_per_sqrt_kg"
+    return f"{place.replace('/', '_')}_per_sqrt_kg{'_m' if place.endswith('/turning') else ''}"
 
 
 @lru_cache(maxsize=16)
@@ -102,7 +110,9 @@ def mode_table(text: str) -> ModeTable:
     return ModeTable(
         frequency_hz=columns[FREQUENCY],
         damping_ratio=columns[DAMPING],
-        shapes={"/".join(found.groups()): columns[name] for name in names if (found := SHAPE.match(name))},
+        shapes={
+            "/".join(filter(None, found.groups())): columns[name] for name in names if (found := SHAPE.match(name))
+        },
         base={name: columns[name] for name in BASE if name in columns},
     )
 

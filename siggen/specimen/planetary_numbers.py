@@ -21,7 +21,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair, ring_round
 from siggen.gears.geometry.planetary import PlanetarySet
 from siggen.keys.number import Number, constant
-from siggen.planning.specimen import Specimen
+from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 from siggen.seeding import Stage, named_generator
 from siggen.specimen.gears import gear_pair
@@ -47,6 +47,14 @@ def planets_in_ring(specimen: Specimen) -> tuple[GearPair, InternalPair]:
     """
     pair = gear_pair(specimen.gears)
     return pair, ring_round(pair, planetary_teeth(specimen).ring)
+
+
+def of_one_mesh(specimen: Specimen, point: OperatingPoint) -> OperatingPoint:
+    """Return a point as the sun has it against the carrier in one of its meshes; that of a pair as it is."""
+    if specimen.planetary is None:
+        return point
+    teeth = planetary_teeth(specimen)
+    return OperatingPoint(point.speed_hz * (1.0 - float(teeth.carrier_turns)), point.torque_nm / len(teeth.places))
 
 
 def hunting_turns_of_sun(specimen: Specimen) -> float:
@@ -95,9 +103,18 @@ def _body(radius_m: float, inertias: tuple[float, float], stiffness: Number, rat
     return PlanetaryBody(radius_m, mass, inertia, stiffness_n_per_m, 2.0 * ratio * sqrt(stiffness_n_per_m * mass))
 
 
+def ring_outer_radius_m(specimen: Specimen) -> float:
+    """Return the radius of the ring's rim [m]."""
+    return _outer_radius_m(planets_in_ring(specimen)[1])
+
+
+def _outer_radius_m(inner: InternalPair) -> float:
+    return inner.gear.root_radius_m + RIM_MODULES * inner.gear.module_m
+
+
 def _ring(section: Planetary, inner: InternalPair, ratio: float) -> PlanetaryBody:
     ring = inner.gear
-    root, outer = ring.root_radius_m, ring.root_radius_m + RIM_MODULES * ring.module_m
+    root, outer = ring.root_radius_m, _outer_radius_m(inner)
     steel_kg = STEEL_DENSITY_KG_M3 * pi * (outer**2 - root**2) * inner.face_width_m
     mass = steel_kg if section.ring_mass_kg is None else constant(section.ring_mass_kg)
     held = constant(section.ring_stiffness_n_per_m)

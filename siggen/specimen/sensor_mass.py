@@ -23,7 +23,8 @@ from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.inputs import MOTION, Input, Weight
 from siggen.sensing.mass_loading import mass_loading
 from siggen.sensors.sensor import Sensor
-from siggen.specimen.background import BLOCK, mean_meshes
+from siggen.specimen.background import mean_meshes
+from siggen.specimen.forced_ways import BLOCK
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import linear_structure
 

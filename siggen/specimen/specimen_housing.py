@@ -95,8 +95,12 @@ class SpecimenHousing:
 
 def modes_settle_s(frequency_hz: FloatArray, damping_ratio: FloatArray) -> float:
     """Return the time over which modes settle [s]."""
-    slowest = float((2.0 * pi * frequency_hz * damping_ratio).min())
-    return min(SETTLED_DECAYS / slowest, LONGEST_S)
+    return settle_s(float((2.0 * pi * frequency_hz * damping_ratio).min()))
+
+
+def settle_s(slowest_per_s: float) -> float:
+    """Return the time over which what decays at a rate settles [s]."""
+    return min(SETTLED_DECAYS / slowest_per_s, LONGEST_S) if slowest_per_s > 0.0 else LONGEST_S
 
 
 def coupled_modes(housing: SpecimenHousing) -> ModalBody:

@@ -22,21 +22,19 @@ LEAST_SPAN = 0.5 / min(PLACES[0], PLACES[1] - PLACES[0])
 """Distance of the bearings of a common shaft over both faces, from which on neither gears nor bearings overlap."""
 
 
-def staged_structure(first: GearStage, specimen: Specimen) -> Structure:
-    """Return the structure of a gearbox with further meshes behind the first one.
+def staged_structure(first: GearStage, specimen: Specimen, body: Body | None) -> Structure:
+    """Return the structure of a gearbox with further meshes behind the first one, in a body or on the ground."""
+    return drivetrain(first, _next_stages(specimen), body)
+
+
+def staged_casing(specimen: Specimen) -> Body:
+    """Return the rigid casing round all shafts. Its x is horizontal, its y vertical.
 
     Raises
     ------
     ValueError
-        If the bolts leave a casing free to move.
+        If the bolts leave it free to move.
     """
-    return drivetrain(first, _next_stages(specimen), staged_casing(specimen))
-
-
-def staged_casing(specimen: Specimen) -> Body | None:
-    """Return the rigid casing round all shafts; None for shafts on the ground. Its x is horizontal, its y vertical."""
-    if specimen.dynamics.model != "casing":
-        return None
     assert isinstance(specimen.housing, RigidHousing)
     places = axis_places_m(specimen)
     across = [place[0] for place in places.values()]

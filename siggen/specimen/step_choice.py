@@ -26,7 +26,6 @@ from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response_stream import Run
 from siggen.dynamics.time.stretch import LEAD, Stretch, state_at, stretch_accelerations
-from siggen.dynamics.time.transient import DECAY_TIMES
 from siggen.errors import SolverFailure
 from siggen.planning.specimen import OperatingPoint
 from siggen.sensors.quantity import STILL_M_S2
@@ -97,7 +96,7 @@ class Probe:
 
     def ringing(self, motion: Motion) -> int:
         """Return the samples in which two motions from one state part as far as they will."""
-        return ceil(min(motion.transient_s / DECAY_TIMES, LONGEST_RINGING_S) * self.config.fs_hz)
+        return ceil(min(motion.decay_s, LONGEST_RINGING_S) * self.config.fs_hz)
 
     def stretch(self, motion: Motion) -> Stretch:
         """Return where the record is looked at."""
@@ -170,7 +169,7 @@ class _Errors:
         self._probe, self._motion = probe, motion
         self._stretch, self._ringing = probe.stretch(motion), probe.ringing(motion)
         first, end = self._stretch.first, self._stretch.first + self._stretch.samples
-        settling = ceil(SETTLING_DECAYS / DECAY_TIMES * motion.transient_s * probe.config.fs_hz)
+        settling = ceil(SETTLING_DECAYS * motion.decay_s * probe.config.fs_hz)
         self._acting = probe.inputs(first - settling, end, probe.config.fs_hz * grid.per_sample)
         run = probe.run(motion, grid.per_sample, self._acting)
         self._state = state_at(run, first - settling, first)

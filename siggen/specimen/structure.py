@@ -24,6 +24,7 @@ from siggen.planning.specimen import Specimen
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.loaded_bearings import loaded_bearings, on_loaded_bearings
+from siggen.specimen.planetary_housing import rigid_housing_of_set, set_in_housing
 from siggen.specimen.planetary_numbers import planetary_numbers
 from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.rotors import rotor_numbers
@@ -34,15 +35,20 @@ ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 
 
 def structure(config: Config, specimen: Specimen) -> Structure:
-    """Return the structure of a drawn specimen; a gear without given mass is a steel disc with its bore."""
+    """Return the structure of a drawn specimen; a gear without given mass is a steel disc with its bore.
+
+    A planetary set stands on the ground: its frame turns in its housing (`planetary_housing`).
+    """
     dynamics, pair, stage = specimen.dynamics, gear_pair(specimen.gears), supported_stage(specimen)
-    if specimen.stages:
-        return staged_structure(stage, specimen)
     if specimen.planetary is not None:
         return planetary_structure(planetary_numbers(specimen))
-    if dynamics.model != "casing":
+    body = specimen_body(config, specimen) if dynamics.model == "casing" else None
+    if specimen.stages:
+        found = staged_structure(stage, specimen, body)
+    elif body is None:
         return ASSEMBLIES[dynamics.model](stage)
-    found = carried_structure(stage, specimen_body(config, specimen), _shafts(dynamics, stage, pair))
+    else:
+        found = carried_structure(stage, body, _shafts(dynamics, stage, pair))
     if specimen_housing(config, specimen) is None:
         return found
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
@@ -61,10 +67,12 @@ def linear_structure(config: Config, specimen: Specimen) -> tuple[Structure, Bod
 
     The load is held softly: otherwise nothing would keep the shafts from turning away.
     """
-    assembled = locked_load(structure(config, specimen))
-    if specimen.dynamics.model != "casing":
+    housed = specimen.dynamics.model == "casing"
+    body = specimen_body(config, specimen) if housed else None
+    assembled = structure(config, specimen) if specimen.planetary is None else set_in_housing(specimen, body)
+    assembled = locked_load(assembled)
+    if body is None:
         return assembled, None
-    body = specimen_body(config, specimen)
     motions = {name: vector(assembled.coordinates, row) for name, row in body.motions.items()}
     return replace(assembled, motions=motions), body
 
@@ -85,12 +93,14 @@ def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
 
 def specimen_body(config: Config, specimen: Specimen) -> Body:
     """Return the body that carries the bearings of a specimen, sensors and entries on it included."""
-    pair, staged = gear_pair(specimen.gears), staged_casing(specimen) if specimen.stages else None
-    if staged is not None:
-        return staged
-    housing = specimen_housing(config, specimen)
+    pair, housing = gear_pair(specimen.gears), specimen_housing(config, specimen)
     if housing is not None:
-        return modal_body(coupled_modes(housing), pair.working_pressure_angle_rad)
+        upright = specimen.stages or specimen.planetary is not None  # coordinates of others follow their line of action
+        return modal_body(coupled_modes(housing), 0.0 if upright else pair.working_pressure_angle_rad)
+    if specimen.planetary is not None:
+        return rigid_housing_of_set(specimen)
+    if specimen.stages:
+        return staged_casing(specimen)
     assert isinstance(specimen.housing, RigidHousing)
     casing = casing_numbers(specimen.housing, pair.working_centre_distance_m, specimen.sensors)
     body = casing_body(gear_stage(specimen.dynamics, pair), casing)

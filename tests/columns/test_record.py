@@ -48,7 +48,8 @@ def test_signals_are_fixed_size_lists_without_nulls_that_say_what_they_are() -> 
     assert field.metadata == {
         b"sensor": b"bearing",
         b"place": b"pinion_bearing", b"axis": b"horizontal", b"quantity": b"acceleration",
-        b"unit": b"m/s^2", b"fs_hz": b"5120.0", b"role": b"signal",
+        b"unit": b"m/s^2", b"fs_hz": b"5120.0", b"converter_step": b"0.015625",
+        b"role": b"signal",
     }  # fmt: skip
     assert not any(f.nullable for f in [*schema, *damage_schema(CONFIG)])
     assert schema.metadata[b"siggen.identity"].decode() == CONFIG.identity

@@ -20,6 +20,7 @@ from tests.diagnostics.column_roles import ListedRoles
 
 if TYPE_CHECKING:
     from diagnostics.indicators.table import RecordTable
+    from diagnostics.training.training import Training
 
 STATES = ("healthy", "slight", "severe")
 DEPTH = {"healthy": 0.0, "slight": 0.15, "severe": 0.5}
@@ -204,6 +205,27 @@ def features(measured: RecordTable) -> pa.Table:
     from diagnostics.indicators.classifier_table import classifier_table
 
     return classifier_table(measured)
+
+
+@pytest.fixture(scope="session")
+def training(dataset: MemoryDataset, features: pa.Table) -> Training:
+    """What training without networks makes of the separable set."""
+    from diagnostics.training.network_training import NetworkOptions
+    from diagnostics.training.training import train_models
+
+    return train_models(dataset, features, 0, network=NetworkOptions(cnn=False))
+
+
+@pytest.fixture(scope="session")
+def models_folder(
+    training: Training, features: pa.Table, dataset: MemoryDataset, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
+    """The folder of these models; tests that change a file copy it."""
+    from diagnostics.prediction.saved_models import save_models
+
+    folder = tmp_path_factory.mktemp("models")
+    save_models(training, features, dataset, folder)
+    return folder
 
 
 @pytest.fixture(scope="session")

@@ -7,12 +7,17 @@ import pytest
 from scipy.stats import expon, kstest
 
 from siggen.gears.stiffness.sections import union_area_m2
-from siggen.life.clock import Clock
+from siggen.life.clock import Block, Clock
 from siggen.life.growth import STEP, Seeds, grown
 from siggen.life.initiation import begun, times_of, tooth_scale
 from siggen.life.pitting import FIRST_SHARE_SD, Pitting
 from siggen.seeding import Stage, named_generator
 from tests.life.wearing import NOMINAL, course, pair_flanks
+
+
+def steady(torque_ratio: float = 1.0, scale: float = 1.0) -> Clock:
+    """Return the clock of one torque all the time."""
+    return Clock((Block(1.0, 23.3, torque_ratio),), 10.0, scale)
 
 
 def first_pits(slope: float, units: int, scale: float = 6.9e6, own=NOMINAL, nominal=NOMINAL) -> list:
@@ -56,16 +61,16 @@ def test_twice_the_face_pits_earlier_by_its_area_and_a_young_pit_is_as_large() -
 
 def test_twice_the_torque_brings_first_pits_earlier_by_its_power_in_the_same_order() -> None:
     ends = course(1).ends
-    slow, fast = Clock(23.3, 1.0, 10.0, 1.0), Clock(23.3, 2.0, 10.0, 1.0)
+    slow, fast = steady(), steady(2.0)
     assert fast.age_h(ends.first_pit) == pytest.approx(slow.age_h(ends.first_pit) * 2.0**-10, rel=1e-12)
     begins = [pit.begun for pit in course(1).pits]
     assert sorted(begins, key=lambda one: fast.age_h(one.time)) == begins
 
 
 def test_short_blocks_of_two_torques_wear_as_the_constant_one_of_their_mean_power() -> None:
-    constant = Clock(23.3, ((1.0 + 0.7**10) / 2.0) ** 0.1, 10.0, 1.0)
+    constant = steady(((1.0 + 0.7**10) / 2.0) ** 0.1)
     for hours, nearness in ((10.0, 10.0), (0.1, 0.1)):
-        blocks = Clock(23.3, 1.0, 10.0, 1.0, ((hours, 1.0), (hours, 0.7)))
+        blocks = Clock((Block(hours, 23.3, 1.0), Block(hours, 23.3, 0.7)), 10.0, 1.0)
         assert abs(blocks.age_h(5e6) - constant.age_h(5e6)) < nearness
         assert blocks.time(blocks.age_h(5e6)) == pytest.approx(5e6, rel=1e-12)
 
@@ -78,8 +83,7 @@ def test_without_scatter_a_small_pit_grows_as_an_exponential_at_any_age() -> Non
 
 
 def test_a_factor_on_all_times_changes_no_area() -> None:
-    one, life = course(2), Clock(23.3, 1.0, 10.0, 1.0)
-    longer = Clock(23.3, 1.0, 10.0, 1.7)
+    one, life, longer = course(2), steady(), steady(scale=1.7)
     for share in (0.2, 0.6, 1.0):
         age = share * life.age_h(one.ends.functional)
         before, after = one.teeth(life.time(age)), one.teeth(longer.time(1.7 * age))

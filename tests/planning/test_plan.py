@@ -204,6 +204,8 @@ def test_the_estimate_of_bytes_on_disk_knows_what_is_quantised():
     assert estimated_bytes(config(sensors__0__bits=None)) == raw * 81 // 100
     both = [{"name": "a", "axes": ["vertical", "horizontal"]}, {"name": "b", "bits": 24}]
     assert estimated_bytes(config(sensors=both)) == raw * (45 + 45 + 81) // 100
+    quiet = [{"name": "a", "bits": "noise", "noise": {"floor_m_s2": 0.01}}]
+    assert estimated_bytes(config(sensors=quiet)) == raw * 55 // 100
 
 
 def test_a_specimen_larger_than_a_shard_is_a_shard():

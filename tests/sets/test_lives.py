@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -143,8 +144,9 @@ def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: P
     [
         ({"states": [{"name": "healthy"}]}, "states", "states beside a section life"),
         ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -60.0}]}, "operating_points.0.torque_nm", "-60"),
-        ({"life": {**LIFE, "history": [[5.0, -1.0]]}}, "life.history.0.1", "allowed: a number from 0 to 100"),
+        ({"life": {**LIFE, "history": [[5.0, -1.0]]}}, "life.history.0.1", "torque from 0 to 100 over"),
         ({"life": {**LIFE, "history": [[5.0, 0.0]]}}, "life.history", "no block with a torque above 0"),
+        ({"life": {**LIFE, "damage": {"rate_per_rev": 1e-12}}}, "life.damage.rate_per_rev", "from 2e-08 to 0.01"),
         ({"life": None}, "states", "a list of 0"),
     ],
 )
@@ -177,7 +179,19 @@ def test_a_file_of_states_is_never_overwritten(tmp_path: Path) -> None:
 )
 def test_plan_tells_a_schedule_that_sees_no_end(tmp_path: Path, life: dict[str, Any], said: str) -> None:
     (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(life)))
-    assert said in " ".join(run("plan", str(tmp_path / "lives.yaml")).split())
+    assert said in " ".join(run("plan", str(tmp_path / "lives.yaml"), "--trial", "0").split())
+
+
+def test_plan_tells_cpu_hours_in_proportion_to_records(tmp_path: Path) -> None:
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives({"history": [[0.5, 1.0], [0.5, 0.0]]})))
+    found = json.loads(run("plan", str(tmp_path / "lives.yaml"), "--json"))
+    cost, pitted = found["cost"], round(found["records"] * found["life"]["pitted_inspections"])
+    of_records = found["records"] * (cost["record_s"] + found["duration_s"] * cost["signal_s"])
+    whole_s = 2 * cost["gearbox_s"] + of_records + pitted * cost["damage_s"]
+    assert cost["cpu_hours"] == pytest.approx(whole_s / 3600.0, rel=1e-12)
+    assert 0 < pitted < found["records"]
+    assert cost["gearbox_s"] > 0.0
+    assert (found["life"]["history_h"], found["life"]["schedule_h"]) == (1.0, 6.0)
 
 
 def test_plan_counts_the_records_that_there_will_be(fleet: Path) -> None:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from math import cos, radians, sin
+from math import cos, pi, radians, sin
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 from siggen.config import parse
 from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.structure import Structure, assemble, vector
 from siggen.dynamics.time.equations import mesh_springs
+from siggen.dynamics.time.modes import natural_modes
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.staged_structure import axis_places_m
-from siggen.specimen.structure import structure
+from siggen.specimen.structure import specimen_body, structure
 from tests.config.staged import SLOW, staged
 
 MESH = np.array([3e8, 5e8])
@@ -67,6 +69,30 @@ def test_bolts_carry_what_all_shafts_press_with() -> None:
     )
     loaded = torque_nm * (47 / 18) * (52 / 17)
     assert moment == pytest.approx(torque_nm - loaded, rel=1e-9)
+
+
+def test_the_modes_of_a_rigid_casing_make_the_same_machine() -> None:
+    rigid = staged(dynamics={"model": "casing"}, housing={"kind": "rigid"}, stages=[{**SLOW, "direction_deg": 35.0}])
+    parsed = parse(rigid)
+    assert parsed.config is not None, parsed.problems
+    specimen = draw_specimen(parsed.config, 0)
+    body = specimen_body(parsed.config, specimen)
+    stiffness, _ = assemble(tuple(body.inertias), body.supports)
+    values, shapes = eigh(stiffness, np.diag(list(body.inertias.values())))
+    columns = {
+        "frequency_hz": np.sqrt(values) / (2.0 * pi),
+        "damping_ratio": np.full(3, 0.04),
+        **{f"{name.replace('/', '_')}_per_sqrt_kg": vector(tuple(body.inertias), row) @ shapes
+           for name, row in body.seats.items()},
+    }  # fmt: skip
+    rows = zip(*columns.values(), strict=True)
+    text = "\n".join([",".join(columns), *(",".join(repr(float(x)) for x in row) for row in rows), ""])
+    modal = parse({**rigid, "housing": {"kind": "modal", "modes": text}})
+    assert modal.config is not None, modal.problems
+    first, second = (structure(config, draw_specimen(config, 0)) for config in (parsed.config, modal.config))
+    expected, found = (natural_modes(one, MESH).frequency_hz for one in (first, second))
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-6)
+    assert "slow_shaft/vertical" in second.motions
 
 
 def test_shafts_stand_at_their_centre_distances_in_their_directions() -> None:

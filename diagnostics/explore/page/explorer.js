@@ -59,6 +59,7 @@ Explore.draw = () => {
   Explore.showAverages(section("averages"), row, channel, healthy);
   Explore.showInternals(section("internals"), row, healthy);
   Explore.showFlank(section("flank"), row);
+  Explore.showLife(section("life"), row);
   Explore.showIndicators(section("indicators"), row, channel);
   Explore.drawScatter(section("scatter"));
 };

@@ -15,6 +15,9 @@ from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.structure.structure import Structure
 
+OF_SET = {"sun_bearing": "s", "carrier_bearing": "c"}
+"""Bearings of the shafts of a planetary set, and how the coordinates of what they hold end."""
+
 
 @dataclass(frozen=True, slots=True)
 class Unbalance(Source):
@@ -70,14 +73,16 @@ def shaft_direction(structure: Structure, name: str) -> FloatArray:
 
 
 def bearing_places(structure: Structure) -> tuple[str, ...]:
-    """Return what the bearings of each shaft are called, in the order of power."""
+    """Return what the bearings of each shaft are called, in the order of power; of a planetary set sun and carrier."""
+    if structure.frame:
+        return tuple(OF_SET)
     return ("pinion_bearing", "gear_bearing", *(f"{mesh.name}_bearing" for mesh in structure.meshes[1:]))
 
 
-def gear_directions(structure: Structure, place: str, gear: int) -> FloatArray:
+def gear_directions(structure: Structure, place: str, gear: str) -> FloatArray:
     """Return the generalised forces (2, n) of 1 N on one gear of the shaft at a bearing, horizontal and vertical.
 
-    Gears are counted from the first pinion, 1, in the order of power; an idler is one gear.
+    Gears are counted from the first pinion, "1", in the order of power; an idler is one gear.
     """
     along = shaft_directions(structure, place)
     if len(_gears(structure, place)) == 1:
@@ -116,17 +121,19 @@ def _cross(first: FloatArray, second: FloatArray) -> float:
     return float(first[0] * second[1] - first[1] * second[0])
 
 
-def _gears(structure: Structure, place: str) -> tuple[int, ...]:
-    """Return the numbers of the gears on the shaft at a bearing: between two meshes a driven and a driving one."""
+def _gears(structure: Structure, place: str) -> tuple[str, ...]:
+    """Return the gears on the shaft at a bearing: between two meshes a driven and a driving one; a carrier is one."""
+    if structure.frame:
+        return (OF_SET[place],)
     shaft, meshes = bearing_places(structure).index(place), structure.meshes
     driven = meshes[shaft - 1].turning[1:] if shaft > 0 else ()
     driving = meshes[shaft].turning[:1] if shaft < len(meshes) else ()
     return tuple(dict.fromkeys(gear_number(name) for name in (*driven, *driving)))
 
 
-def gear_number(rotation: str) -> int:
+def gear_number(rotation: str) -> str:
     """Return the number of a gear by the coordinate in which it turns."""
-    return int(rotation.removeprefix("theta_"))
+    return rotation.removeprefix("theta_")
 
 
 def _on_shaft(structure: Structure, place: str, values: FloatArray) -> FloatArray:

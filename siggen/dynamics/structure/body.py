@@ -10,7 +10,7 @@ moves slowly takes the whole box along.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -132,6 +132,26 @@ def modal_body(modal: ModalBody, angle_rad: float) -> Body:
         entries=rows(modal.entries),
         base={name: dict(zip(BASE, row.tolist(), strict=True)) for name, row in zip(names, taken, strict=True)},
         flexibility_m_per_n=modal.flexibility_m_per_n,
+    )
+
+
+def renamed(body: Body, names: Mapping[str, str]) -> Body:
+    """Return a body with other names of its coordinates."""
+
+    def row(entries: Row) -> Row:
+        return {names.get(name, name): value for name, value in entries.items()}
+
+    def rows(named: Mapping[str, Row]) -> Mapping[str, Row]:
+        return {key: row(one) for key, one in named.items()}
+
+    return replace(
+        body,
+        inertias=row(body.inertias),
+        supports=tuple(replace(one, direction=row(one.direction)) for one in body.supports),
+        seats=rows(body.seats),
+        motions=rows(body.motions),
+        entries=rows(body.entries),
+        base={names.get(name, name): one for name, one in body.base.items()},
     )
 
 

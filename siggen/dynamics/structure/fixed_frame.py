@@ -31,13 +31,28 @@ def in_space(
     angle_rad : (k,)
         Of the frame's x axis against the fixed one.
 
-    Rates stay those of the frame: accelerations are taken from places.
+    Rates are those in the frame along fixed axes, as supports feel them: accelerations are taken from places.
     """
-    seen, names = states.copy(), list(coordinates)
+    seen, n = states.copy(), static_deflection.size
     cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
-    for body in CENTRAL:
-        x, y = names.index(f"x_{body}"), names.index(f"y_{body}")
+    for x, y in _places(coordinates):
         along, across = states[:, x] + static_deflection[x], states[:, y] + static_deflection[y]
         seen[:, x] = cosine * along - sine * across
         seen[:, y] = sine * along + cosine * across
+        along, across = states[:, n + x], states[:, n + y]
+        seen[:, n + x] = cosine * along - sine * across
+        seen[:, n + y] = sine * along + cosine * across
     return seen
+
+
+def at_rest_beside(coordinates: Sequence[str], static_deflection: FloatArray) -> FloatArray:
+    """Return the static deflection (n,) without what `in_space` puts into states."""
+    rest = static_deflection.copy()
+    rest[[row for places in _places(coordinates) for row in places]] = 0.0
+    return rest
+
+
+def _places(coordinates: Sequence[str]) -> list[tuple[int, int]]:
+    """Return the numbers of x and y of the central bodies."""
+    names = list(coordinates)
+    return [(names.index(f"x_{body}"), names.index(f"y_{body}")) for body in CENTRAL]

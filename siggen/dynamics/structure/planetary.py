@@ -13,13 +13,15 @@ which the driving gear turns, so that it grows with s.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin, tan
 
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.structure.body import Body, Row
+from siggen.dynamics.structure.casing_structure import seated_springs
 from siggen.dynamics.structure.gear_stage import Coupling
 from siggen.dynamics.structure.mesh_vectors import MeshVectors
 from siggen.dynamics.structure.structure import Element, Structure, assemble, vector
@@ -65,16 +67,28 @@ class PlanetaryStage:
         return 1.0 + self.ring.base_radius_m / self.sun.base_radius_m
 
 
-def planetary_structure(stage: PlanetaryStage) -> Structure:
+def planetary_structure(stage: PlanetaryStage, body: Body | None = None) -> Structure:
     """Return the structure of a planetary set; its meshes: sun with each planet, then each planet with the ring.
 
-    q = [θ_m, x_s, y_s, θ_s, x_c, y_c, θ_c, then x, y and θ of every planet, x_r, y_r, θ_r, θ_l].
+    q = [θ_m, x_s, y_s, θ_s, x_c, y_c, θ_c, x, y and θ of every planet, x_r, y_r, θ_r, θ_l, those of the body].
+
+    A `body` holds sun, carrier and ring in its seats, at the moment at which the frame's axes are its own; without one
+    they stand on the ground, whatever the frame's angle.
     """
     numbers = range(1, len(stage.places_turns) + 1)
     names = ["s", "c", *(f"p{i}" for i in numbers), "r"]
-    coordinates = ("theta_m", *(f"{axis}_{name}" for name in names for axis in ("x", "y", "theta")), "theta_l")
-    stiffness, damping = assemble(coordinates, _springs(stage))
-    mass, _ = assemble(coordinates, _masses(stage))
+    own = ("theta_m", *(f"{axis}_{name}" for name in names for axis in ("x", "y", "theta")), "theta_l")
+    coordinates = own if body is None else (*own, *body.inertias)
+    held = supports_of_set(stage, {} if body is None else body.seats)
+    elements, masses = _springs(stage), _masses(stage)
+    if body is not None:
+        elements += body.supports
+        masses += [Element({name: 1.0}, inertia, 0.0) for name, inertia in body.inertias.items()]
+    flexibility = None if body is None else body.flexibility_m_per_n
+    springs = seated_springs(coordinates, {name: (one,) for name, one in held.items()}, tuple(held), flexibility)
+    stiffness, damping = assemble(coordinates, elements)
+    stiffness, damping = stiffness + springs.stiffness, damping + springs.damping
+    mass, _ = assemble(coordinates, masses)
     for matrix in (mass, damping, stiffness):
         matrix.setflags(write=False)
     return Structure(
@@ -90,8 +104,8 @@ def planetary_structure(stage: PlanetaryStage) -> Structure:
             for place, name in _SEEN.items()
             for direction, axis in (("horizontal", "x"), ("vertical", "y"))
         },
-        bearing_forces={},
-        bearing_directions={},
+        bearing_forces=springs.forces,
+        bearing_directions=springs.directions,
         line_speeds=_line_speeds(stage),
         frame="theta_c",
     )
@@ -99,6 +113,13 @@ def planetary_structure(stage: PlanetaryStage) -> Structure:
 
 _SEEN = {"sun_bearing": "s", "carrier_bearing": "c", "ring": "r"}
 """Place of a sensor -> body whose motion it shows; along axes of the frame, which `in_space` turns."""
+AXES = {"x": "horizontal", "y": "vertical"}
+RING_TURNING = "ring/turning"
+"""What keeps the ring from turning: a moment [N m] among the forces on a housing."""
+
+
+SEATS_OF_SET = (*(f"{place}/{axis}" for place in _SEEN for axis in AXES.values()), RING_TURNING)
+"""Place/axis of what presses on a housing: both axes of sun, carrier and ring, and the ring's moment."""
 
 
 def _line_speeds(stage: PlanetaryStage) -> tuple[float, ...]:
@@ -137,11 +158,25 @@ def _springs(stage: PlanetaryStage) -> list[Element]:
             ("theta_c", "theta_l", stage.output_coupling),
         )
     ]
-    planets = [(f"p{i}", stage.planet) for i in range(1, len(stage.places_turns) + 1)]
-    for name, body in (("s", stage.sun), ("c", stage.carrier), *planets, ("r", stage.ring)):
-        found += [Element({f"{axis}_{name}": 1.0}, body.stiffness_n_per_m, body.damping_n_s_per_m) for axis in "xy"]
+    pin = stage.planet.stiffness_n_per_m, stage.planet.damping_n_s_per_m
+    numbers = range(1, len(stage.places_turns) + 1)
+    return found + [Element({f"{axis}_p{i}": 1.0}, *pin) for i in numbers for axis in AXES]
+
+
+def supports_of_set(stage: PlanetaryStage, seats: Mapping[str, Row]) -> dict[str, Element]:
+    """Return place/axis -> what holds sun, carrier and ring, in seats or on the ground; in the order of all seats."""
+    bodies = {"s": stage.sun, "c": stage.carrier, "r": stage.ring}
+    found = {
+        f"{place}/{shown}": ({f"{axis}_{name}": 1.0}, bodies[name].stiffness_n_per_m, bodies[name].damping_n_s_per_m)
+        for place, name in _SEEN.items()
+        for axis, shown in AXES.items()
+    }
     held = stage.ring.turning_stiffness_nm_per_rad, stage.ring.turning_damping_nm_s_per_rad
-    return [*found, Element({"theta_r": 1.0}, *held)]
+    found[RING_TURNING] = ({"theta_r": 1.0}, *held)
+    return {
+        name: Element({**own, **{key: -value for key, value in seats.get(name, {}).items()}}, *numbers)
+        for name, (own, *numbers) in found.items()
+    }
 
 
 def _sun_meshes(coordinates: Sequence[str], stage: PlanetaryStage) -> list[MeshVectors]:

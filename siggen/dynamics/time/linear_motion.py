@@ -23,7 +23,7 @@ from siggen.dynamics.time.equations import (
 from siggen.dynamics.time.motion import APPROACH_LIMIT_PITCHES
 from siggen.dynamics.time.product_integration import ProductIntegration
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
-from siggen.dynamics.time.transient import transient_s
+from siggen.dynamics.time.transient import DECAY_TIMES, transient_s
 from siggen.gears.stiffness.mesh_tables import MeshTables
 
 
@@ -102,6 +102,7 @@ class LinearMotion:
         self._law = mesh_law(tables, damping, backlash_m)
         self.equations = equations_of_motion(structure, self._law, torque_nm, stiffness, input_vectors)
         self.transient_s = transient_s(structure, self.equations, np.array([damping]))
+        self.decay_s = self.transient_s / DECAY_TIMES
         self.teeth, self.laws = self._law.table_of_pair.shape[0], (self._law,)
         self.limits_m = np.array([0.5 * backlash_m + APPROACH_LIMIT_PITCHES * tables.base_pitch_m])
         self._integrator = INTEGRATORS[integrator](self.equations, self._law, step_s)

@@ -16,7 +16,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import Equations, mesh_springs, state_matrix
 
 EXCITED_SHARE = 1e-9
-"""Modes whose residue in the bearing displacement is below this share of the largest are not excited by the mesh."""
+"""Modes whose residue in what is shown is below this share of the largest are not excited by the mesh."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +58,16 @@ def _orthonormal(vectors: FloatArray, mass: FloatArray) -> FloatArray:
 
 
 def slowest_decay_per_s(
-    structure: Structure, equations: Equations, mesh_damping_n_s_per_m: FloatArray, above_hz: float = 0.0
+    structure: Structure,
+    equations: Equations,
+    mesh_damping_n_s_per_m: FloatArray,
+    above_hz: float = 0.0,
+    *,
+    at_meshes: bool = False,
 ) -> float:
     """Return the smallest decay rate [1/s] of the modes that the mesh excites and a bearing shows; 0 if undamped.
 
-    Modes below `above_hz` do not count.
+    Modes below `above_hz` do not count. `at_meshes`: those count too that approaches of meshes show alone.
 
     The residue of mode i in the displacement at a bearing, c · r_i l_i · B, tells whether it takes part.
     """
@@ -75,7 +80,8 @@ def slowest_decay_per_s(
     matrix[:m, m:] = np.eye(m)
     matrix[m:, :m], matrix[m:, m:] = (basis.T @ structure.mass @ full[:, half] @ basis for half in _halves(n))
     values, right = np.linalg.eig(matrix)
-    motions = np.array(list(structure.motions.values())) @ basis
+    approaches = [mesh.vector for mesh in structure.meshes] if at_meshes else []
+    motions = np.array([*structure.motions.values(), *approaches]) @ basis
     excited = np.zeros(len(values), dtype=bool)
     for mesh in structure.meshes:
         inputs = np.concatenate([np.zeros(m), basis.T @ mesh.vector])

@@ -22,12 +22,14 @@ class Motion(Protocol):
     `teeth`: of the first gear, by which angles are counted in base pitches; `limits_m` (meshes,): approaches beyond
     which a state is refused. `coarse_inputs`: whether inputs may be splines over a coarse grid; motions of older sets
     keep every bit without.
-    `starts_settled`: whether a motion starts near its end, on a whole sample.
+    `starts_settled`: whether a motion starts near its end, on a whole sample. `transient_s` is discarded before a
+    record, `decay_s` one decay time of the slowest mode that bearings show.
     """
 
     structure: Structure
     equations: Equations
     transient_s: float
+    decay_s: float
     teeth: int
     limits_m: FloatArray
     internal_names: tuple[str, ...]

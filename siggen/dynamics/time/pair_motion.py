@@ -38,7 +38,7 @@ from siggen.dynamics.time.motion import APPROACH_LIMIT_PITCHES
 from siggen.dynamics.time.pair_equations import APPROACH, TILT, PairEquations, pair_equations
 from siggen.dynamics.time.pair_rate import at_speed, load_pairs, pair_rate, steps_apart
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
-from siggen.dynamics.time.transient import transient_s
+from siggen.dynamics.time.transient import decay_s, transient_s
 
 LARGEST_SHIFT = 0.02
 """Of a base pitch: gears that shafts let move farther apart no longer mesh at their centre distance."""
@@ -97,7 +97,8 @@ class PairMotion:
         self.teeth = self.laws[0].teeth
         self.pair_equations = pair_equations(structure, self.equations, mean.speed_hz, self._places())
         rubs = any(law.places[layout.ROUGHNESSES] > 0 for law in self.laws)
-        self.transient_s = transient_s(structure, self.equations, self.damping, 2.0 * LOCK_HZ if rubs else 0.0)
+        seen = structure, self.equations, self.damping, 2.0 * LOCK_HZ if rubs else 0.0
+        self.transient_s, self.decay_s = transient_s(*seen), decay_s(*seen)
         self.limits_m = np.array([law.backlash_m + APPROACH_LIMIT_PITCHES * law.base_pitch_m for law in self.laws])
         self.tilts = structure.mesh.tilt is not None
         self._bodies = structure.bodies

@@ -18,7 +18,7 @@ from siggen.compiled import njit
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
-from siggen.dynamics.structure.fixed_frame import in_space
+from siggen.dynamics.structure.fixed_frame import at_rest_beside, in_space
 from siggen.dynamics.structure.shaft_lines import frame_turns
 from siggen.dynamics.time.decimation import Decimator, half_length, value_taps
 from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
@@ -58,6 +58,12 @@ class Run:
             return states
         turned = self.drive.angle_rad(self.time_s(first, len(states))) * frame_turns(motion.structure)
         return in_space(motion.structure.coordinates, states, motion.equations.static_deflection, turned)
+
+    @property
+    def seen_from(self) -> FloatArray:
+        """The static deflection (n,) that states as `seen` count from."""
+        structure, static = self.motion.structure, self.motion.equations.static_deflection
+        return at_rest_beside(structure.coordinates, static) if structure.frame else static
 
     def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
         """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
@@ -160,9 +166,8 @@ class ResponseStream:
         readings = ValueDecimator((shafts[name] for name in self.readings), static, steps)
         end = (self.samples + self.ahead - 1) * steps + half + 1
         for block in stepped_blocks(run, state, begin, end):
-            piece = Piece(
-                accelerations.take(run.seen(block.first, block.states)), forces.take(block), readings.take(block.states)
-            )
+            seen = run.seen(block.first, block.states)
+            piece = Piece(accelerations.take(seen), forces.take(seen, block.inputs), readings.take(block.states))
             self._count(block)
             if piece.acceleration_m_s2.shape[1]:
                 yield piece
@@ -182,14 +187,14 @@ class BearingForces:
     def __init__(self, run: Run, places: tuple[str, ...]) -> None:
         motion, steps = run.motion, run.steps_per_sample
         pairs = (motion.structure.bearing_forces[name] for name in places)
-        self._of_states = ValueDecimator(pairs, motion.equations.static_deflection, steps)
+        self._of_states = ValueDecimator(pairs, run.seen_from, steps)
         rows = np.zeros((0, 0)) if run.excitation is None else run.excitation.seat_force_rows(places)
         self._of_inputs = Decimator(rows, value_taps(steps), steps) if rows.any() else None
 
-    def take(self, block: Stepped) -> FloatArray:
-        """Return the forces on the seats (places, k) as far as the filter reaches."""
-        forces = self._of_states.take(block.states)
-        return forces if self._of_inputs is None else forces + self._of_inputs.take(block.inputs)
+    def take(self, seen: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Return the forces on the seats (places, k) as far as the filter reaches, of states as `Run.seen`."""
+        forces = self._of_states.take(seen)
+        return forces if self._of_inputs is None else forces + self._of_inputs.take(inputs)
 
 
 def _steps_apart(run: Run, block: Stepped, recorded: slice) -> NDArray[np.int64]:

@@ -6,7 +6,7 @@ a number of steps proportional to the size: such a matrix is semiseparable, and 
 (Foreman-Mackey et al. 2017, Astron. J. 154, 220, section 5.1, for real exponentials). Rows that are not chosen are
 left out; distances count through them.
 
-The numbers of terms and of right sides are constants of the module: compiled loops over them are unrolled.
+Terms, and right sides, are lanes of one register: what is not used of them stays 0.
 """
 
 from __future__ import annotations
@@ -17,11 +17,14 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import njit
+from siggen.lanes import LANES, Lanes, extract, insert, load, shuffle, splat, store
 
 EXPONENTIALS = 5
 TERMS = EXPONENTIALS + 1
 """With the term whose strength and decay belong to the rows, the last one."""
-SIDES = 5
+INVERSE = TERMS
+"""Where the inverse of the pivot stands beside the factors."""
+_by_four, _by_two, _by_one = (shuffle(*((lane ^ k) for lane in range(LANES))) for k in (4, 2, 1))
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
@@ -84,7 +87,7 @@ class RowMatrix(NamedTuple):
     diagonal: FloatArray
 
 
-@njit(cache=True, fastmath={"contract", "reassoc"})
+@njit(cache=True, error_model="numpy")
 def solve_rows(
     matrix: RowMatrix, rows: IntArray, count: int, right: FloatArray, steps: FloatArray, work: FloatArray
 ) -> bool:
@@ -95,73 +98,81 @@ def solve_rows(
     matrix : RowMatrix
     rows : (>= count,)
         The chosen rows, ascending.
-    right : (n, SIDES)
+    right : (n, LANES)
         b at the chosen rows; x afterwards.
-    steps : (n, TERMS)
+    steps : (n, LANES)
         Room: decay from the row before.
-    work : (n, TERMS + 1)
+    work : (n, LANES)
         Room: the factors, and the pivots' inverse.
     """
     decay, strength, row_strength, row_decay, diagonal = matrix
-    # The sums of all rows before, of which `inner` is symmetric and kept below its diagonal; b and w are those of the
-    # row before. Numbers are read once, since the compiler must take arrays to overlap.
-    inner, run = np.zeros((TERMS, TERMS)), np.zeros((TERMS, SIDES))
-    own, step, w = np.zeros(TERMS), np.zeros(TERMS), np.zeros(TERMS)
-    product, b = np.zeros(TERMS), np.zeros(SIDES)
-    own[:EXPONENTIALS] = strength
-    last = 0.0
+    decays, own = _of_terms(decay), _of_terms(strength)
+    own_0, own_1, own_2, own_3, own_4 = strength[0], strength[1], strength[2], strength[3], strength[4]
+    # The sums of all rows before, `inner` of the matrix and `run` of the right sides, a row of lanes for each term.
+    none = splat(0.0)
+    inner_0, inner_1, inner_2, inner_3, inner_4, inner_5 = none, none, none, none, none, none
+    run_0, run_1, run_2, run_3, run_4, run_5 = none, none, none, none, none, none
+    w, b, last = none, none, 0.0  # of the row before
     for n in range(count):
         i = rows[n]
-        pivot = diagonal[i]
-        own[EXPONENTIALS] = row_strength[i]
+        own_5 = row_strength[i]
         if n > 0:
-            _steps(decay, row_decay, rows[n - 1], i, step)
-            for m in range(TERMS):
-                here, factor = step[m], w[m]
-                steps[i, m] = here
-                for k in range(m + 1):
-                    inner[m, k] = here * step[k] * (inner[m, k] + last * factor * w[k])
-                for side in range(SIDES):
-                    run[m, side] = here * (run[m, side] + factor * b[side])
-        product[:] = 0.0
-        for m in range(TERMS):
-            here = own[m]
-            total = here * inner[m, m]
-            for k in range(m):
-                total += own[k] * inner[m, k]
-                product[k] += here * inner[m, k]
-            product[m] += total
-        b[:] = right[i]
-        for m in range(TERMS):
-            pivot -= product[m] * own[m]
-            for side in range(SIDES):
-                b[side] -= own[m] * run[m, side]
+            step = insert(decays, EXPONENTIALS, row_decay[i])
+            for k in range(rows[n - 1] + 1, i):
+                step = step * insert(decays, EXPONENTIALS, row_decay[k])
+            store(steps, i * LANES, step)
+            added = last * w
+            inner_0 = extract(step, 0) * (step * (inner_0 + extract(added, 0) * w))
+            inner_1 = extract(step, 1) * (step * (inner_1 + extract(added, 1) * w))
+            inner_2 = extract(step, 2) * (step * (inner_2 + extract(added, 2) * w))
+            inner_3 = extract(step, 3) * (step * (inner_3 + extract(added, 3) * w))
+            inner_4 = extract(step, 4) * (step * (inner_4 + extract(added, 4) * w))
+            inner_5 = extract(step, 5) * (step * (inner_5 + extract(added, 5) * w))
+            run_0 = extract(step, 0) * (run_0 + extract(w, 0) * b)
+            run_1 = extract(step, 1) * (run_1 + extract(w, 1) * b)
+            run_2 = extract(step, 2) * (run_2 + extract(w, 2) * b)
+            run_3 = extract(step, 3) * (run_3 + extract(w, 3) * b)
+            run_4 = extract(step, 4) * (run_4 + extract(w, 4) * b)
+            run_5 = extract(step, 5) * (run_5 + extract(w, 5) * b)
+        product = (own_0 * inner_0 + own_1 * inner_1) + (own_2 * inner_2 + own_3 * inner_3)
+        product = product + (own_4 * inner_4 + own_5 * inner_5)
+        behind = (own_0 * run_0 + own_1 * run_1) + (own_2 * run_2 + own_3 * run_3)
+        b = load(right, i * LANES) - (behind + (own_4 * run_4 + own_5 * run_5))
+        pivot = diagonal[i] - _sum(insert(own, EXPONENTIALS, own_5) * product)
         if pivot <= 0.0:
             return False
         last = pivot
-        for m in range(TERMS):
-            w[m] = (1.0 - product[m]) / pivot
-            work[i, m] = w[m]
-        work[i, TERMS] = 1.0 / pivot
-        right[i] = b
-    _substitute(own, row_strength, rows, count, right, steps, work)
+        # No term holds anything in the lane behind the last one: there stands the inverse of the pivot.
+        w = (1.0 - product) * (1.0 / pivot)
+        store(work, i * LANES, w)
+        store(right, i * LANES, b)
+    _substitute(strength, row_strength, rows, count, right, steps, work)
     return True
 
 
-@njit(cache=True, inline="always")
-def _steps(decay: FloatArray, row_decay: FloatArray, before: int, i: int, step: FloatArray) -> None:
-    """Write the decays (TERMS,) from row `before` to row i."""
-    step[:EXPONENTIALS] = decay
-    step[EXPONENTIALS] = row_decay[i]
-    for k in range(before + 1, i):
-        for m in range(EXPONENTIALS):
-            step[m] *= decay[m]
-        step[EXPONENTIALS] *= row_decay[k]
+@njit(cache=True, error_model="numpy", inline="always")
+def _of_terms(values: FloatArray) -> Lanes:
+    """Return the numbers (EXPONENTIALS,) of the exponentials in lanes, 0 in the others."""
+    lanes = splat(0.0)
+    lanes = insert(lanes, 0, values[0])
+    lanes = insert(lanes, 1, values[1])
+    lanes = insert(lanes, 2, values[2])
+    lanes = insert(lanes, 3, values[3])
+    return insert(lanes, 4, values[4])
 
 
-@njit(cache=True, fastmath={"contract", "reassoc"})
+@njit(cache=True, error_model="numpy", inline="always")
+def _sum(lanes: Lanes) -> float:
+    """Return the sum of all lanes."""
+    lanes = lanes + _by_four(lanes)
+    lanes = lanes + _by_two(lanes)
+    total: float = extract(lanes + _by_one(lanes), 0)
+    return total
+
+
+@njit(cache=True, error_model="numpy", inline="always")
 def _substitute(
-    own: FloatArray,
+    strength: FloatArray,
     row_strength: FloatArray,
     rows: IntArray,
     count: int,
@@ -169,20 +180,25 @@ def _substitute(
     steps: FloatArray,
     work: FloatArray,
 ) -> None:
-    """Go back from the last row to the first; `own` (TERMS,) holds the strengths of the exponentials."""
-    run, x, ahead = np.zeros((TERMS, SIDES)), np.zeros(SIDES), np.zeros(SIDES)
+    """Go back from the last row to the first."""
+    own_0, own_1, own_2, own_3, own_4 = strength[0], strength[1], strength[2], strength[3], strength[4]
+    none = splat(0.0)
+    run_0, run_1, run_2, run_3, run_4, run_5 = none, none, none, none, none, none
+    ahead, after = none, 0
     for n in range(count - 1, -1, -1):
         i = rows[n]
-        for side in range(SIDES):
-            x[side] = right[i, side] * work[i, TERMS]
+        factor = load(work, i * LANES)
+        x = extract(factor, INVERSE) * load(right, i * LANES)
         if n < count - 1:
-            after = rows[n + 1]
-            own[EXPONENTIALS] = row_strength[after]
-            for m in range(TERMS):
-                step, here, factor = steps[after, m], own[m], work[i, m]
-                for side in range(SIDES):
-                    moved = step * (run[m, side] + here * ahead[side])
-                    run[m, side] = moved
-                    x[side] -= factor * moved
-        for side in range(SIDES):
-            right[i, side] = ahead[side] = x[side]
+            step = load(steps, after * LANES)
+            run_0 = extract(step, 0) * (run_0 + own_0 * ahead)
+            run_1 = extract(step, 1) * (run_1 + own_1 * ahead)
+            run_2 = extract(step, 2) * (run_2 + own_2 * ahead)
+            run_3 = extract(step, 3) * (run_3 + own_3 * ahead)
+            run_4 = extract(step, 4) * (run_4 + own_4 * ahead)
+            run_5 = extract(step, 5) * (run_5 + row_strength[after] * ahead)
+            taken = extract(factor, 0) * run_0 + extract(factor, 1) * run_1
+            taken = taken + (extract(factor, 2) * run_2 + extract(factor, 3) * run_3)
+            x = x - (taken + (extract(factor, 4) * run_4 + extract(factor, 5) * run_5))
+        store(right, i * LANES, x)
+        ahead, after = x, i

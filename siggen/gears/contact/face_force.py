@@ -183,7 +183,7 @@ def _assemble(
     # Arrays one by one: to hand over all slices costs more than the sink.
     left, right, notch, floor = slices.left_m, slices.right_m, slices.notch_m, slices.floor_m
     covered, tips, spread = slices.covered, slices.tips_m, slices.spread
-    radii = slices.radius_m, slices.rounding_m
+    radii, rounding = slices.radii_m, slices.rounding_m
     for i in range(loads.size):
         own = room.diagonal[i]
         wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
@@ -194,9 +194,10 @@ def _assemble(
             # small beside the neighbours but not 0, where sinks are infinitely soft
             loads[i] = min((wanted - room.rigid_m[i]) / (own + 4.0), 0.05 * total / loads.size + 1e-15)
             wanted -= own * loads[i]
-        one = CoveredSlice((left[i], right[i], notch[i], floor[i]), (tips[i, 0], tips[i, 1]), covered[i], spread, radii)
+        gaps, edges = (left[i], right[i], notch[i], floor[i]), (tips[i, 0], tips[i, 1])
+        one = CoveredSlice(gaps, edges, covered[i], spread, (radii[i], rounding))
         gap = slice_sink(one, loads[i])
-        factor, slope = own_law(loads[i], laws.width)
+        factor, slope = own_law(loads[i], radii[i] / slices.radius_m, laws.width)
         residual = wanted - (laws.beta + factor) * loads[i] - gap.sink_m
         room.rows[chosen] = i
         chosen += 1

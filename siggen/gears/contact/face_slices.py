@@ -19,9 +19,9 @@ class FaceSlices(NamedTuple):
     `left_m`, `right_m`, `notch_m`, `floor_m`: the gap that each slice meets, as for `two_edges.gap_sink`; `on_damage`:
     part of a slice whose normal lies in a gap of the damage; `covered`: part of a slice that has this gap, the rest has
     only the edges `tips_m` (n, 2; left, right) of the teeth; `spread`: k of `covered_slice`; `lead_m`: missing material
-    across the face, of any sign; `face_m`: y from the middle of the face; `kernel`: K; `teeth`: T; `radius_m`: R;
-    `rounding_m`: radius of the edges; `kappa_per_pa`: κ; `compliance_m_per_n`: C, of what is rigid across the face;
-    `carrying_m`: L.
+    across the face, of any sign; `face_m`: y from the middle of the face; `kernel`: K; `teeth`: T; `radius_m`: R by
+    which slices act on each other; `radii_m`: R of each; `rounding_m`: radius of the edges; `kappa_per_pa`: κ;
+    `compliance_m_per_n`: C, of what is rigid across the face; `carrying_m`: L.
     """
 
     left_m: FloatArray
@@ -37,6 +37,7 @@ class FaceSlices(NamedTuple):
     kernel: LineKernel
     teeth: ToothKernel
     radius_m: float
+    radii_m: FloatArray
     rounding_m: float
     kappa_per_pa: float
     compliance_m_per_n: float
@@ -48,7 +49,7 @@ def slice_of(slices: FaceSlices, i: int) -> CoveredSlice:
     """Return slice i on its own."""
     gap = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
     tips = slices.tips_m[i, 0], slices.tips_m[i, 1]
-    return CoveredSlice(gap, tips, slices.covered[i], slices.spread, (slices.radius_m, slices.rounding_m))
+    return CoveredSlice(gap, tips, slices.covered[i], slices.spread, (slices.radii_m[i], slices.rounding_m))
 
 
 @njit(cache=True)

@@ -14,9 +14,10 @@ from siggen.gears.contact.pair_rest import PairRest, bending_length_m
 from siggen.gears.contact.uneven_teeth import UnevenTeeth
 from siggen.gears.damage.flank_chords import FlankChords, one_line
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.helical import carrying_middle_m
 from siggen.gears.geometry.missing_material import TipRelief, missing_at_m
 from siggen.gears.stiffness.body_coupling import ring_torsion
-from siggen.gears.stiffness.compliance import tooth_compliance
+from siggen.gears.stiffness.compliance import axial_part, tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
@@ -49,20 +50,25 @@ def helical_missing_m(pair: GearPair, place_m: FloatArray, relief: TipRelief | N
 
 
 def helical_rest(pair: GearPair, place_m: FloatArray, options: StiffnessOptions) -> PairRest:
-    """Return how both teeth give way at places of slices (k, n) [m], each slice as at its own height."""
+    """Return how both teeth give way at places of slices (k, n) [m], each slice as at its own height.
+
+    Rigid across the face is what a body does in the middle of the line: its torsion, and its bending along the axis.
+    """
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
-    place, own, twists = _on_path(pair, place_m), [], 0.0
+    place, own, rigid = _on_path(pair, place_m), [], np.zeros(len(place_m))
+    middle = carrying_middle_m(pair, 0.5 * (place_m[:, 0] + place_m[:, -1]))
     for which, rolls in zip(("pinion", "gear"), rolls_at(pair, along), strict=True):
-        twist = 0.0
+        body = axial_part(pair, which, rolls, options)
         if options.foundation != "none":
             twist = ring_torsion(pair.member(which), pair.poisson_ratio) / (pair.youngs_modulus_pa * pair.face_width_m)
-        bends = np.maximum(tooth_compliance(pair, which, rolls, options).total - twist, 0.0)
+            body = body + twist
+        bends = np.maximum(tooth_compliance(pair, which, rolls, options).total - body, 0.0)
         own.append(np.interp(place, along, bends))
-        twists += twist
+        rigid += np.interp(middle, along, body)
     sound = np.stack([one.min(axis=1) for one in own])
     added = np.stack(own) - sound[:, :, np.newaxis]
     mean = np.sum([one.mean(axis=1) for one in own], axis=0)
-    return PairRest(np.full(len(place), twists), mean, bending_length_m(pair), UnevenTeeth(sound, added))
+    return PairRest(rigid, mean, bending_length_m(pair), UnevenTeeth(sound, added))
 
 
 def _on_path(pair: GearPair, place_m: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ from siggen.gears.damage.flank_chords import FlankChords, flank_chords
 from siggen.gears.damage.part_chip import standing_share
 from siggen.gears.damage.tooth_damage import Damage, acts_unevenly, goes_through, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.helical import carrying_middle_m, slice_shifts_m
+from siggen.gears.geometry.helical import carrying_middle_m, slice_radii_m, slice_shifts_m
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -176,9 +176,8 @@ def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
 def first_touch(pair: GearPair, row: KindRow, chosen: IntArray, lead_m: FloatArray) -> FloatArray:
     """Return the least rigid sink of all slices, missing material across the face included (chosen,) [m]."""
     lead = row.lead_at(chosen, lead_m)
-    return _least_sink(
-        pair, carrying_middle_m(pair, row.position_m[chosen]), row.gaps_at(chosen), row.edge_radius_m, lead
-    )
+    radii = slice_radii_m(pair, row.position_m[chosen], lead.shape[-1]) + row.edge_radius_m
+    return _least_sink(radii, row.gaps_at(chosen), lead)
 
 
 def touch_along(pair: GearPair, row: KindRow, healthy_m: FloatArray, lead_m: FloatArray) -> FloatArray:
@@ -190,14 +189,10 @@ def touch_along(pair: GearPair, row: KindRow, healthy_m: FloatArray, lead_m: Flo
     return touch
 
 
-def _least_sink(
-    pair: GearPair, position_m: FloatArray, gaps: FaceGaps, edge_radius_m: float, lead_m: FloatArray
-) -> FloatArray:
-    line = pair.line_of_action_m
-    radius = position_m * (line - position_m) / line + edge_radius_m
+def _least_sink(radii_m: FloatArray, gaps: FaceGaps, lead_m: FloatArray) -> FloatArray:
     near = np.maximum(np.minimum(gaps.left_m, gaps.right_m), 0.0)
     floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
-    sunk = np.minimum(near**2 / (2.0 * radius[:, None]), floor)
-    tip = np.maximum(gaps.tips_m.min(axis=2), 0.0) ** 2 / (2.0 * radius[:, None])
+    sunk = np.minimum(near**2 / (2.0 * radii_m), floor)
+    tip = np.maximum(gaps.tips_m.min(axis=2), 0.0) ** 2 / (2.0 * radii_m)
     sunk = np.where(gaps.covered < 1.0, np.minimum(sunk, tip), sunk)
     return np.asarray((sunk + lead_m).min(axis=1))

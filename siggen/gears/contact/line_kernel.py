@@ -101,18 +101,29 @@ def kernel_family(cells: int, cell_m: float, depth_m: float) -> KernelFamily:
 
 def line_kernel(family: KernelFamily, depth_m: float, poisson_ratio: float, *, coupled: bool = True) -> LineKernel:
     """Return the kernel at a position with Weber and Banaschek's depth h = √(h₁ h₂) [m]."""
+    (kernel,) = line_kernels(family, np.array([depth_m]), poisson_ratio, coupled=coupled)
+    return kernel
+
+
+def line_kernels(
+    family: KernelFamily, depth_m: FloatArray, poisson_ratio: float, *, coupled: bool = True
+) -> list[LineKernel]:
+    """Return the kernels at positions with depths (k,) [m]."""
     offset = np.arange(family.fit.shape[1] + 1)
-    below = _below(offset * family.cell_m, family.cell_m, depth_m, poisson_ratio)
-    return LineKernel(
-        decay=family.decay,
-        near=family.near,
-        below=family.fit @ below[1:],
-        below_diagonal=float(below[0]),
-        cell_m=family.cell_m,
-        depth_m=depth_m,
-        bracket=poisson_ratio / (2.0 * (1.0 - poisson_ratio)),
-        coupled=coupled,
-    )
+    taken = _below(offset * family.cell_m, family.cell_m, depth_m[:, np.newaxis], poisson_ratio)
+    return [
+        LineKernel(
+            decay=family.decay,
+            near=family.near,
+            below=family.fit @ below[1:],
+            below_diagonal=float(below[0]),
+            cell_m=family.cell_m,
+            depth_m=depth,
+            bracket=poisson_ratio / (2.0 * (1.0 - poisson_ratio)),
+            coupled=coupled,
+        )
+        for depth, below in zip(depth_m.tolist(), taken, strict=True)
+    ]
 
 
 def kernel_matrix(cells: int, cell_m: float, half_width_m: float, depth_m: float, poisson_ratio: float) -> FloatArray:
@@ -127,7 +138,7 @@ def _near(offset: NDArray[np.int64], width: float) -> FloatArray:
     return np.asarray(0.5 * (np.arcsinh((offset + 0.5) / width) - np.arcsinh((offset - 0.5) / width)))
 
 
-def _below(t: FloatArray, cell_m: float, depth_m: float, poisson_ratio: float) -> FloatArray:
+def _below(t: FloatArray, cell_m: float, depth_m: float | FloatArray, poisson_ratio: float) -> FloatArray:
     def integral(y: FloatArray) -> FloatArray:
         return np.arcsinh(y / depth_m) + y / (2.0 * (1.0 - poisson_ratio) * np.hypot(y, depth_m))
 

@@ -8,16 +8,18 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import njit
-from siggen.gears.contact.exponential_matrix import EXPONENTIALS, SIDES, TERMS, RowMatrix, solve_rows
+from siggen.gears.contact.exponential_matrix import EXPONENTIALS, RowMatrix, solve_rows
 from siggen.gears.contact.face_slices import FaceSlices
+from siggen.lanes import LANES, extract, load, splat
 
 
 class SolverRoom(NamedTuple):
     """Arrays that the solver reuses, made by `solver_room`.
 
     `rows` (n,): slices that carry; `losses` (n,): how often a slice lost touch; `product`, `growth` (n,): K u and
-    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 5): right sides residual, 1, u, v, y, then the solutions; `rigid_m`
-    (n,): sinks without load; `steps`, `factors`: of `solve_rows`; `strength`, `strength_slope` (m,): of the kernel.
+    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, LANES): right sides residual, 1, u, v, y, then the solutions;
+    `rigid_m` (n,): sinks without load; `steps`, `factors`: of `solve_rows`; `strength`, `strength_slope` (m,): of the
+    kernel.
     """
 
     rows: IntArray
@@ -40,11 +42,11 @@ def solver_room(slices: int) -> SolverRoom:
         losses=np.zeros(slices, np.int64),
         product=np.zeros(slices),
         diagonal=np.zeros(slices),
-        right=np.zeros((slices, SIDES)),
+        right=np.zeros((slices, LANES)),
         growth=np.zeros(slices),
         rigid_m=np.zeros(slices),
-        steps=np.zeros((slices, TERMS)),
-        factors=np.zeros((slices, TERMS + 1)),
+        steps=np.zeros((slices, LANES)),
+        factors=np.zeros((slices, LANES)),
         strength=np.zeros(EXPONENTIALS),
         strength_slope=np.zeros(EXPONENTIALS),
     )
@@ -79,27 +81,24 @@ def add_low_rank(
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
     c = slices.compliance_m_per_n * per_load
     p = 0.5 / square
-    gram = np.zeros((3, SIDES))
-    along = np.zeros(SIDES)
+    ones, by_load, by_growth, along = splat(0.0), splat(0.0), splat(0.0), splat(0.0)
+    rows, right, growth, face = room.rows, room.right, room.growth, slices.face_m
     for n in range(chosen):
-        i = room.rows[n]
-        for side in range(SIDES):
-            gram[0, side] += room.right[i, side]
-            gram[1, side] += loads[i] * room.right[i, side]
-            gram[2, side] += room.growth[i] * room.right[i, side]
-            along[side] += slices.face_m[i] * room.right[i, side]
+        i = rows[n]
+        sides = load(right, i * LANES)
+        ones = ones + sides
+        by_load = by_load + loads[i] * sides
+        by_growth = by_growth + growth[i] * sides
+        along = along + face[i] * sides
     # x = z_b - z_1 c (1·x) - z_u (p (v·x) - p s (u·x)) - z_v p (u·x); unknown are 1·x, u·x, v·x
-    matrix = np.zeros((3, 3))
-    # first the step, then the answers to a unit approach and to a unit tilt
-    sides = np.zeros((3, 3))
-    for j in range(3):
-        matrix[j, 0] = c * gram[j, 1]
-        matrix[j, 1] = p * (gram[j, 3] - (slope - 0.25 * bend) * gram[j, 2])
-        matrix[j, 2] = p * gram[j, 2]
+    matrix, sides = np.zeros((3, 3)), np.zeros((3, 3))
+    for j, sums in enumerate((ones, by_load, by_growth)):
+        matrix[j, 0] = c * extract(sums, 1)
+        matrix[j, 1] = p * (extract(sums, 3) - (slope - 0.25 * bend) * extract(sums, 2))
+        matrix[j, 2] = p * extract(sums, 2)
         matrix[j, j] += 1.0
-        sides[j, 0] = gram[j, 0]
-        sides[j, 1] = gram[j, 1]
-        sides[j, 2] = gram[j, 4]
+        # first the step, then the answers to a unit approach and to a unit tilt
+        sides[j, 0], sides[j, 1], sides[j, 2] = extract(sums, 0), extract(sums, 1), extract(sums, 4)
     _solve_three(matrix, sides)
     weights = np.zeros((3, 3))
     for k in range(3):
@@ -108,12 +107,12 @@ def add_low_rank(
         weights[2, k] = p * sides[1, k]
     largest = 0.0
     for n in range(chosen):
-        i = room.rows[n]
-        change = weights[0, 0] * room.right[i, 1] + weights[1, 0] * room.right[i, 2] + weights[2, 0] * room.right[i, 3]
-        room.right[i, 0] -= change
-        largest = max(largest, abs(room.right[i, 0]))
-    turning = along[1] - weights[0, 1] * along[1] - weights[1, 1] * along[2] - weights[2, 1] * along[3]
-    tilting = along[4] - weights[0, 2] * along[1] - weights[1, 2] * along[2] - weights[2, 2] * along[3]
+        i = rows[n]
+        right[i, 0] -= weights[0, 0] * right[i, 1] + weights[1, 0] * right[i, 2] + weights[2, 0] * right[i, 3]
+        largest = max(largest, abs(right[i, 0]))
+    of_1, of_u, of_v = extract(along, 1), extract(along, 2), extract(along, 3)
+    turning = of_1 - weights[0, 1] * of_1 - weights[1, 1] * of_u - weights[2, 1] * of_v
+    tilting = extract(along, 4) - weights[0, 2] * of_1 - weights[1, 2] * of_u - weights[2, 2] * of_v
     return Answers(largest, per_load * sides[0, 1], per_load * turning, per_load * tilting)
 
 

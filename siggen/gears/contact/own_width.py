@@ -7,8 +7,9 @@ slowly across the face makes each place as wide as it is loaded: the energy lack
 
 which is 0 for an even load and takes ½ from the compliance of waves. It is exact where they are long beside a: a strip
 that sinks with the wave sin ky has ln(4/ka) - γ, K alone ½ more. Without it a face gives way to a tilt by 10 % more
-than in three dimensions. ρ is a up to `EXACT` cells and stops at `WIDEST`, with two continuous derivatives: the short
-waves of K, whose eigenvalue falls to ½ at one cell, could not bear more.
+than in three dimensions. In λ(u_j) stands the radius of the slice: those of helical teeth differ. ρ is a up to `EXACT`
+cells and stops at `WIDEST`, with two continuous derivatives: the short waves of K, whose eigenvalue falls to ½ at one
+cell, could not bear more.
 """
 
 from __future__ import annotations
@@ -64,8 +65,11 @@ def mean_width(slices: FaceSlices, square: float) -> MeanWidth:
 
 
 @njit(cache=True)
-def own_law(load_m: float, shared: MeanWidth) -> tuple[float, float]:
-    """Return what the own width of a slice under κq > 0 [m] adds to its approach over the load, and to the slope."""
-    own = own_width(load_m, shared.scale_per_m, shared.coupled)
+def own_law(load_m: float, radius_share: float, shared: MeanWidth) -> tuple[float, float]:
+    """Return what the own width of a slice under κq > 0 [m] adds to its approach over the load, and to the slope.
+
+    `radius_share`: its radius over that of the pair.
+    """
+    own = own_width(load_m, radius_share * shared.scale_per_m, shared.coupled)
     factor = shared.mean.logarithm - own.logarithm + 0.25 * (shared.mean.growth - own.growth)
     return factor, factor - 0.5 * own.growth - 0.125 * own.bend

@@ -12,7 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.contact.covered_slice import spread_of_cells
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.line_kernel import kernel_family, line_kernel
+from siggen.gears.contact.line_kernel import kernel_family, line_kernels
 from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.contact.table_options import half_width, reference_force_n
 from siggen.gears.contact.tooth_kernel import ToothKernel, tooth_kernel, unit_tooth
@@ -44,6 +44,7 @@ def pair_faces(
     rest: PairRest,
     options: FaceOptions,
     lead_m: FloatArray | None = None,
+    radii_m: FloatArray | None = None,
 ) -> list[FaceSlices]:
     """Return the slices at positions s (k,) [m].
 
@@ -58,6 +59,8 @@ def pair_faces(
     options : FaceOptions
     lead_m : (n,), (k, n) or None
         Missing material across the face, of any sign; None: none.
+    radii_m : (k, n) or None
+        Relative radii of curvature of the slices [m]; None: as in the middle.
 
     Raises
     ------
@@ -84,11 +87,11 @@ def pair_faces(
     unit = unit_tooth(count, pair.face_width_m, rest.length_m)
     spread = spread_of_cells(cell / _reference_width(pair))
     family = kernel_family(count, cell, _typical_depth(pair))
+    kernels = line_kernels(family, depth, pair.poisson_ratio, coupled=options.coupled)
+    lengths = carrying_length(gaps, leads, cell, radius, kappa * options.line_load_n_per_m)
     out = []
     for i in range(position_m.size):
         here = FaceGaps(*(np.ascontiguousarray(array[i]) for array in gaps))
-        load = kappa * options.line_load_n_per_m
-        lead = leads if leads.ndim == 1 else leads[i]
         slices = FaceSlices(
             left_m=here.left_m,
             right_m=here.right_m,
@@ -96,17 +99,18 @@ def pair_faces(
             floor_m=here.floor_m,
             on_damage=here.on_damage,
             covered=here.covered,
-            lead_m=lead,
+            lead_m=leads if leads.ndim == 1 else leads[i],
             face_m=face,
             tips_m=here.tips_m,
             spread=spread,
-            kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
+            kernel=kernels[i],
             teeth=_teeth(unit, rest, i, pair.face_width_m, kappa),
             radius_m=float(radius[i]),
+            radii_m=np.full(count, radius[i]) if radii_m is None else np.ascontiguousarray(radii_m[i]),
             rounding_m=options.edge_radius_m,
             kappa_per_pa=kappa,
             compliance_m_per_n=float(rest.rigid_m_per_n[i]),
-            carrying_m=carrying_length(here, lead, cell, float(radius[i]), load),
+            carrying_m=float(lengths[i]),
         )
         out.append(slices)
     return out
@@ -137,21 +141,22 @@ def _typical_depth(pair: GearPair) -> float:
     return float(np.sqrt(np.prod([centre_line_depth(pair, which, np.array([roll])) for which, roll in rolls.items()])))
 
 
-def carrying_length(gaps: FaceGaps, lead_m: FloatArray, cell_m: float, radius_m: float, load_m: float) -> float:
-    """Return L [m] of slices (n,) at one position: each weighted by how little it lies below the least sunk one.
+def carrying_length(
+    gaps: FaceGaps, lead_m: FloatArray, cell_m: float, radius_m: FloatArray, load_m: float
+) -> FloatArray:
+    """Return L (...,) [m] of slices (..., n): each weighted by how little it lies below the least sunk one.
 
     Derived: a slice that lies lower by several κq [m] (`load_m`, of a typical load) does not carry; one that sinks with
     all others does. The weight is smooth, so that L is continuous over the position. A slice that a gap
     covers in part counts by its parts.
     """
+    round_m = 2.0 * np.asarray(radius_m)[..., np.newaxis]
     near = np.maximum(np.minimum(gaps.left_m, gaps.right_m), 0.0)
     floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
-    sunk = np.minimum(near**2 / (2.0 * radius_m), floor) + lead_m
+    sunk = np.minimum(near**2 / round_m, floor) + lead_m
     partly = (gaps.covered > 0.0) & (gaps.covered < 1.0)
-    if not partly.any():
-        over = (sunk - sunk.min()) / (4.0 * load_m)
-        return float(cell_m * np.sum(1.0 / (1.0 + over**2)))
-    land = lead_m + np.maximum(gaps.tips_m.min(axis=1), 0.0) ** 2 / (2.0 * radius_m)
-    least = min(sunk.min(), land[partly].min())
+    land = np.where(partly, lead_m + np.maximum(gaps.tips_m.min(axis=-1), 0.0) ** 2 / round_m, np.inf)
+    least = np.minimum(sunk, land).min(axis=-1, keepdims=True)
     weight, beside = (1.0 / (1.0 + ((depth - least) / (4.0 * load_m)) ** 2) for depth in (sunk, land))
-    return float(cell_m * np.sum(np.where(partly, gaps.covered * weight + (1.0 - gaps.covered) * beside, weight)))
+    whole = np.where(partly, gaps.covered, 1.0)
+    return np.asarray(cell_m * (whole * weight + (1.0 - whole) * beside).sum(axis=-1))

@@ -41,10 +41,10 @@ def slice_pressures(slices: FaceSlices, loads_m: FloatArray) -> SlicePressures:
 
 @njit(cache=True)
 def _pressures(slices: FaceSlices, loads: FloatArray) -> tuple[FloatArray, FloatArray]:
-    kappa, radius, rounding = slices.kappa_per_pa, slices.radius_m, slices.rounding_m
+    kappa, rounding = slices.kappa_per_pa, slices.rounding_m
     pressure, at_edge = np.zeros(loads.size), np.zeros(loads.size)
     for i in range(loads.size):
-        load = loads[i]
+        load, radius = loads[i], slices.radii_m[i]
         if load <= 0.0:
             continue
         one = slice_of(slices, i)

@@ -60,7 +60,8 @@ def stored_energy(
         if slices.left_m[i] > -0.5 * NO_EDGE or slices.right_m[i] > -0.5 * NO_EDGE:
             sunk = _sink_energy(slices, i, loads_m[i], nodes) / loads_m[i]
         reached = approach_m + tilt_rad * slices.face_m[i] - slices.lead_m[i]
-        wider = own_width(loads_m[i], shared.scale_per_m, shared.coupled).logarithm - shared.mean.logarithm
+        scale = slices.radii_m[i] / slices.radius_m * shared.scale_per_m
+        wider = own_width(loads_m[i], scale, shared.coupled).logarithm - shared.mean.logarithm
         local = own + slices.teeth.diagonal[i] - wider
         work += loads_m[i] * (reached - 0.5 * (local * loads_m[i] + room.product[i]) - sunk)
     per_load = kernel.cell_m / slices.kappa_per_pa

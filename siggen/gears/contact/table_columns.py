@@ -20,7 +20,7 @@ from siggen.gears.contact.pair_faces import FaceOptions, contact_kappa, pair_fac
 from siggen.gears.contact.table_options import TableOptions, half_width, reference_force_n
 from siggen.gears.contact.tilt_rays import RAYS, UPRIGHT, along_rays, ray_way
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.helical import carrying_middle_m
+from siggen.gears.geometry.helical import carrying_middle_m, slice_radii_m
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.hertz import centre_line_depth
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
@@ -90,6 +90,9 @@ def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceS
         row.rest.at(chosen),
         FaceOptions(typical, row.edge_radius_m, options.coupled),
         row.lead_at(chosen, solver.lead_m),
+        None
+        if solver.pair.helix_rad == 0.0
+        else slice_radii_m(solver.pair, row.position_m[chosen], solver.lead_m.size),
     )
 
 

@@ -5,6 +5,9 @@ of the pinion's tooth the gear's flank. With the corner at radius R and angle γ
 base tangent point, and r, g the radius and angle of that corner about the other centre, the other flank lags behind it
 by g - (ψ - inv ψ_r), ψ the roll angle of the other gear and ψ_r the one of its flank at r; times the base radius this
 is the gap along the line of action. Near the end (gap in m, Δs in m) it is (ρ_tip/R_b,tip)²/(2 R_e) Δs².
+
+In a ring the same holds with its base radius negative, as along the line of action: its centre lies on the other side.
+Its flank and the planet's bend the same way, so that a corner stays nearer for longer.
 """
 
 from __future__ import annotations
@@ -13,7 +16,6 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.spur_gear import SpurGear
 
 TURNS = 60
 """Of a fixed point whose error falls by the slope of the gap each time: 0.3 a third of a base pitch beside the path."""
@@ -33,14 +35,15 @@ def tip_gap_m(pair: GearPair, which: str, position_m: FloatArray, tip_roll_rad: 
     mate = pair.member("gear" if which == "pinion" else "pinion")
     own_m = position_m if which == "pinion" else length - position_m
     tip = own.tip_roll_rad if tip_roll_rad is None else tip_roll_rad
-    beyond = own_m > own.base_radius_m * tip
-    own_roll = own_m / own.base_radius_m
+    base_m, mate_m = own.signed_base_radius_m, mate.signed_base_radius_m
+    beyond = own_m > base_m * tip
+    own_roll = own_m / base_m
     angle = own_roll - _involute(np.asarray(tip))
-    radius = own.base_radius_m * np.hypot(1.0, tip)
+    radius = base_m * np.hypot(1.0, tip)
     # From the mate's centre, across and along the line of action.
-    across = mate.base_radius_m + own.base_radius_m - radius * np.cos(angle)
+    across = mate_m + base_m - radius * np.cos(angle)
     along = length - radius * np.sin(angle)
-    gap = _lag(mate, (length - own_m) / mate.base_radius_m, across, along)
+    gap = _lag(mate_m, (length - own_m) / mate_m, across, along)
     return np.where(beyond, np.maximum(gap, 0.0), 0.0)
 
 
@@ -59,11 +62,11 @@ def touching_gap_m(pair: GearPair, which: str, position_m: FloatArray, tip_roll_
     return tip_gap_m(pair, which, nominal, tip_roll_rad)
 
 
-def _lag(mate: SpurGear, mate_roll: FloatArray, across_m: FloatArray, along_m: FloatArray) -> FloatArray:
-    """Return the distance along the line of action by which the mate's flank misses a point."""
-    roll = np.sqrt(np.maximum(np.hypot(across_m, along_m) ** 2 / mate.base_radius_m**2 - 1.0, 0.0))
-    flank = mate_roll - _involute(roll)
-    return mate.base_radius_m * (np.arctan2(along_m, across_m) - flank)
+def _lag(mate_m: float, mate_roll: FloatArray, across_m: FloatArray, along_m: FloatArray) -> FloatArray:
+    """Return the distance along the line of action by which the flank of a mate of a base radius misses a point."""
+    roll = np.sqrt(np.maximum(np.hypot(across_m, along_m) ** 2 / mate_m**2 - 1.0, 0.0))
+    flank, side = mate_roll - _involute(roll), np.sign(mate_m)
+    return np.asarray(mate_m * (np.arctan2(side * along_m, side * across_m) - flank))
 
 
 def _involute(roll: FloatArray) -> FloatArray:

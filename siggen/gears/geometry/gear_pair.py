@@ -117,9 +117,9 @@ class GearPair:
         return self.face_travel_m / self.base_pitch_m
 
     @property
-    def tips_meet_flanks(self) -> bool:
-        """Whether the corner of a tip meets the mate beside the path of contact."""
-        return True
+    def total_contact_ratio(self) -> float:
+        """Base pitches from where a pair enters contact to where it leaves it, the overlap ratio among them."""
+        return (self.engagement_end_m - self.engagement_start_m) / self.base_pitch_m
 
     @property
     def engagement_start_m(self) -> float:

@@ -81,6 +81,17 @@ def slice_shifts_m(pair: GearPair, slices: int) -> FloatArray:
     return place * pair.face_width_m * tan(pair.base_helix_rad)
 
 
+def slice_radii_m(pair: GearPair, position_m: FloatArray, slices: int) -> FloatArray:
+    """Return relative radii of curvature of slices of pairs at positions (k,): (k, slices), of spur pairs (k, 1) [m].
+
+    A slice beside the path of contact counts as at its end.
+    """
+    place, line = position_m[:, np.newaxis], pair.line_of_action_m
+    if pair.helix_rad != 0.0:
+        place = np.clip(place + slice_shifts_m(pair, slices), pair.contact_start_m, pair.contact_end_m)
+    return np.asarray(place * (line - place) / line)
+
+
 def carrying_middle_m(pair: GearPair, position_m: FloatArray) -> FloatArray:
     """Return the middle of those places of the face that are on the path of contact, of pairs at positions (k,) [m]."""
     if pair.helix_rad == 0.0:
@@ -88,20 +99,6 @@ def carrying_middle_m(pair: GearPair, position_m: FloatArray) -> FloatArray:
     half = 0.5 * pair.face_travel_m
     low, high = pair.contact_start_m, pair.contact_end_m
     return 0.5 * (np.clip(position_m - half, low, high) + np.clip(position_m + half, low, high))
-
-
-def mean_over_face(pair: GearPair, rows: FloatArray) -> FloatArray:
-    """Return means over the face of what slices have on their path, 0 outside: rows (r, points) from s_A to s_E.
-
-    The result (r, points) goes from the first to the last position of the middle of the face.
-    """
-    points, travel = rows.shape[1], pair.face_travel_m
-    along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
-    middle = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
-    area = np.cumsum(0.5 * (rows[:, 1:] + rows[:, :-1]), axis=1) * (along[1] - along[0])
-    area = np.hstack([np.zeros((len(rows), 1)), area])
-    ends = (middle + 0.5 * travel, middle - 0.5 * travel)
-    return np.stack([(np.interp(ends[0], along, row) - np.interp(ends[1], along, row)) / travel for row in area])
 
 
 def contact_length_m(pair: GearPair, pitches: FloatArray, slices: int) -> FloatArray:

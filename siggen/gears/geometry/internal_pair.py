@@ -83,6 +83,11 @@ class RingGear(SpurGear):
         return self.tip_roll_rad, self.last_roll_rad
 
     @property
+    def root_roll_rad(self) -> float:
+        """Roll angle of the involute carried on to the root, where the tooth as a beam stands [rad]."""
+        return sqrt((self.root_radius_m / self.base_radius_m) ** 2 - 1.0)
+
+    @property
     def last_roll_rad(self) -> float:
         """Roll angle where the involute ends: a clearance before the root (assumed: cut by a tool with round tips)."""
         radius = self.root_radius_m - self.clearance_coefficient * self.module_m
@@ -120,11 +125,6 @@ class InternalPair(GearPair):
     def working_centre_distance_m(self) -> float:
         """Centre distance (R_br - R_bp)/cos(alpha_w) [m]."""
         return abs(self.line_of_action_m) / sin(self.working_pressure_angle_rad)
-
-    @property
-    def tips_meet_flanks(self) -> bool:
-        """Whether the corner of a tip meets the mate beside the path of contact; not modelled in a ring."""
-        return False
 
     def ring_radius_m(self, position_m: FloatArray) -> FloatArray:
         """Return the radius on the ring of contacts at positions (k,) [m]."""

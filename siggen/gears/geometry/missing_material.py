@@ -16,9 +16,13 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.internal_pair import InternalPair
 
 CORNER_REACH_PITCHES = 0.15
 """How far before and after the path of contact corners are followed: gaps there are ten times a usual deflection."""
+
+RING_REACH_PITCHES = 0.4
+"""The same in a ring: its flank and the planet's bend the same way, so that corners part a third as fast."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +70,7 @@ def missing_material(
     Of a helical pair positions are those of the middle of the face, and only what all slices miss is in the tables.
 
     Without corner contact the tables end with the path of contact: a pair that enters is loaded at once. With it they
-    reach `reach_pitches` base pitches further at both ends.
+    reach `reach_pitches` base pitches further at both ends, in a ring `RING_REACH_PITCHES` at least.
 
     Raises
     ------
@@ -78,13 +82,17 @@ def missing_material(
     if relief is not None and not (relief.amount_m >= 0.0 and 0.0 < relief.length_m <= pair.base_pitch_m):
         allowed = f"allowed are amounts from 0 and lengths above 0 up to a base pitch, {pair.base_pitch_m:.6g} m"
         raise ValueError(f"tip relief: received {relief.amount_m} m over {relief.length_m} m; {allowed}")
-    reach_m = reach_pitches * pair.base_pitch_m if corner_contact and pair.tips_meet_flanks else 0.0
+    reach_m = _reach_pitches(pair, reach_pitches) * pair.base_pitch_m if corner_contact else 0.0
     start_m, end_m = pair.engagement_start_m - reach_m, pair.engagement_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)
     if pair.helix_rad != 0.0:
         relief, position_m = None, nearest_place_m(pair, position_m)
     pinion, gear = (_teeth(pair, which, relief, position_m) for which in ("pinion", "gear"))
     return MissingMaterial(start_m, end_m, pinion, gear)
+
+
+def _reach_pitches(pair: GearPair, reach_pitches: float) -> float:
+    return max(reach_pitches, RING_REACH_PITCHES) if isinstance(pair, InternalPair) else reach_pitches
 
 
 def nearest_place_m(pair: GearPair, position_m: FloatArray) -> FloatArray:

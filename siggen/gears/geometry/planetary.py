@@ -37,6 +37,11 @@ class PlanetarySet:
         return self.sun + self.ring
 
     @property
+    def carrier_turns(self) -> Fraction:
+        """Turns of the carrier per turn of the sun (Willis)."""
+        return Fraction(self.sun, self.slots)
+
+    @property
     def evenly_spaced(self) -> bool:
         """Whether all neighbours are equally far apart."""
         return len(set(self.gaps)) == 1

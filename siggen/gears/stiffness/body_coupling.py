@@ -9,11 +9,13 @@ of their products is sin(a_upper - a_lower), the same all along the line of acti
 five are Chebyshev polynomials of 1/z and ln h_f (root over bore radius), fitted to finite elements
 (`siggen.gears.stiffness.coupling_table`); two teeth apart have a table of their own, farther ones keep the ring's twist
 only.
+
+Bodies of helical gears also bend along the axis (`axial_body`), which moves neighbours too.
 """
 
 from __future__ import annotations
 
-from math import floor, pi
+from math import floor, pi, tan
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -24,8 +26,10 @@ from siggen.gears.geometry.helical import carrying_middle_m
 from siggen.gears.geometry.internal_pair import RingGear
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.axial_body import axial_compliance
 from siggen.gears.stiffness.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, unit_coordinates
 from siggen.gears.stiffness.coupling_table import COUPLING_COEFFICIENTS
+from siggen.gears.stiffness.foundation import root_half_angle
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 TERMS = 5
@@ -64,8 +68,22 @@ def body_coupling(pair: GearPair, options: StiffnessOptions, position_m: FloatAr
         on_gear = (pair.line_of_action_m - ahead) / pair.gear.base_radius_m
         both = neighbour_compliance(pair.pinion, behind / pair.pinion.base_radius_m, row + 1, pair.poisson_ratio)
         both = both + neighbour_compliance(pair.gear, on_gear, row + 1, pair.poisson_ratio)
+        if pair.helix_rad != 0.0:
+            both = both + _axial(pair, options, behind, ahead, row + 1)
         out[row] = both / scale
     return out
+
+
+def _axial(
+    pair: GearPair, options: StiffnessOptions, behind_m: FloatArray, ahead_m: FloatArray, apart: int
+) -> FloatArray:
+    """Return what both bodies do along the axis, as `neighbour_compliance`; contacts at two positions (k,) [m]."""
+    found, line = np.zeros(behind_m.size), pair.line_of_action_m
+    for gear, one, two in ((pair.pinion, behind_m, ahead_m), (pair.gear, line - ahead_m, line - behind_m)):
+        angle, tip = root_half_angle(gear, options.root_reading), gear.tip_roll_rad
+        lower, upper = (np.clip(along / gear.base_radius_m, 0.0, tip) for along in (one, two))
+        found += axial_compliance(gear, pair.face_width_m, pair.poisson_ratio, angle, lower, upper, apart)
+    return np.asarray(tan(pair.base_helix_rad) ** 2 * found)
 
 
 def neighbour_compliance(gear: SpurGear, lower_roll: FloatArray, apart: int, poisson_ratio: float) -> FloatArray:

@@ -58,7 +58,7 @@ def neighbour_runs(pair: GearPair, table_of_pair: Int32Array) -> tuple[Int32Arra
     Column r is the pair itself, lower ones entered before it; r pairs on either side can be in contact with it. Run 0
     is all healthy.
     """
-    reach = floor(pair.contact_ratio + ROUNDING)
+    reach = floor(pair.total_contact_ratio + ROUNDING)
     shifted = [np.roll(table_of_pair, (-apart, -apart), axis=(0, 1)) for apart in range(-reach, reach + 1)]
     every = np.stack(shifted, axis=-1).reshape(-1, 2 * reach + 1)
     # The healthy run comes first even where every pair of teeth meets damage.
@@ -85,18 +85,18 @@ def coupled_contributions(
     stiffness_of_kinds : function
         Positions (m,) -> stiffness of each kind of pair alone, (kinds, m) [N/m].
     position_m : (k,)
-        Positions of the pair on the path of contact [m].
+        Positions of the pair, of helical ones of the middle of the face [m].
     own_n_per_m : (kinds, k) or None
         What `stiffness_of_kinds` returns for `position_m`, where it is known already.
 
     Source: derived, see this module.
     """
     reach, pitch = runs.shape[1] // 2, pair.base_pitch_m
-    own = np.clip(np.floor((position_m - pair.contact_start_m) / pitch + ROUNDING).astype(np.int64), 0, reach)
-    newest = np.maximum(position_m - own * pitch, pair.contact_start_m)
-    full = newest + reach * pitch <= pair.contact_end_m + ROUNDING * pitch
+    own = np.clip(np.floor((position_m - pair.engagement_start_m) / pitch + ROUNDING).astype(np.int64), 0, reach)
+    newest = np.maximum(position_m - own * pitch, pair.engagement_start_m)
+    full = newest + reach * pitch <= pair.engagement_end_m + ROUNDING * pitch
     # The kinds of all pairs that are in contact, evaluated in one go: damaged teeth are integrated once.
-    places = np.minimum(newest + pitch * np.arange(reach + 1)[:, np.newaxis], pair.contact_end_m)
+    places = np.minimum(newest + pitch * np.arange(reach + 1)[:, np.newaxis], pair.engagement_end_m)
     inside = np.ones(places.shape, dtype=np.bool_)
     inside[reach] = full
     alone = np.zeros((int(runs.max()) + 1, *places.shape))
@@ -120,7 +120,7 @@ def coupled_contributions(
 def _most_pairs(pair: GearPair, options: StiffnessOptions, newest_m: FloatArray, alone: FloatArray) -> FloatArray:
     """Return the contributions (rows, q, k) where the number of pairs q is the larger one."""
     last = alone.shape[1] - 1
-    width = pair.contact_end_m - last * pair.base_pitch_m - pair.contact_start_m
+    width = pair.engagement_end_m - last * pair.base_pitch_m - pair.engagement_start_m
     along = np.clip((newest_m - pair.contact_start_m) / max(width, ROUNDING * pair.base_pitch_m), 0.0, 1.0)
     without_newest, without_oldest = alone.copy(), alone.copy()
     without_newest[:, 1:] = approach_forces(pair, options, newest_m + pair.base_pitch_m, alone[:, 1:])

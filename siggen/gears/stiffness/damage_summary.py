@@ -17,7 +17,9 @@ from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.tooth_damage import Damage, ToothDamage, damaged_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.sections import largest_contact_length_loss, union_area_m2
+from siggen.gears.stiffness.sloping_lines import largest_line_loss
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +40,8 @@ class DamageSummary:
     largest_profile_length_m : float
         Longest single pit's or spall's arc along the involute, clipped to the flank [m].
     contact_length_loss_m : float
-        Largest loss of contact length of any flank at any height [m].
+        Largest loss of contact length of any flank at any height, of helical ones along any contact line; measured
+        along the face [m].
     through_face : bool
         Whether the damage takes the whole face width somewhere on the path of contact, on one flank or on two that
         meet: there no contact length remains.
@@ -69,7 +72,7 @@ def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
             own = union_area_m2(gear, pits, width)
             area += own
             share = max(share, own / (width * flank_arc_m(gear)))
-            loss = max(loss, largest_contact_length_loss(gear, pits, width))
+            loss = max(loss, _length_loss_m(pair, which, pits))
     longest = max(damage, key=lambda one: one.profile_arc_m(pair.member(one.gear)), default=None)
     outlines = [one.outline for one in damage if one.outline is not None]
     return DamageSummary(
@@ -79,7 +82,7 @@ def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
         largest_face_length_m=max((_face_length(outline, width) for outline in outlines), default=0.0),
         largest_profile_length_m=longest.profile_arc_m(pair.member(longest.gear)) if longest else 0.0,
         contact_length_loss_m=loss,
-        through_face=any(lost_contacts(pair, damage)),
+        through_face=_through_face(pair, damage),
         sagitta_m=_sagitta_m(pair, longest) if longest else 0.0,
     )
 
@@ -88,6 +91,20 @@ def flank_arc_m(gear: SpurGear) -> float:
     """Return the arc of the involute between the ends of the flank, R_b (psi_2^2 - psi_1^2)/2 [m]."""
     low, high = gear.flank_rolls_rad
     return 0.5 * gear.base_radius_m * (high**2 - low**2)
+
+
+def _length_loss_m(pair: GearPair, which: str, pits: Damage) -> float:
+    if pair.helix_rad == 0.0:
+        return largest_contact_length_loss(pair.member(which), pits, pair.face_width_m)
+    return largest_line_loss(pair, *((pits, ()) if which == "pinion" else ((), pits)))[0]
+
+
+def _through_face(pair: GearPair, damage: Damage) -> bool:
+    if pair.helix_rad == 0.0:
+        return any(lost_contacts(pair, damage))
+    kinds = pair_kinds(pair, damage)[1:]
+    meeting = ((pits_of(damage, "pinion", first), pits_of(damage, "gear", second)) for first, second in kinds)
+    return any(largest_line_loss(pair, *pits)[1] for pits in meeting)
 
 
 def _face_length(outline: Outline, width: float) -> float:

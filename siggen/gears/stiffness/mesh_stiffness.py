@@ -6,7 +6,7 @@ angle to contact is linear in the roll angle: s = s_A + R_b1 (theta - 2 pi n/z1)
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil
 
@@ -20,10 +20,10 @@ from siggen.gears.damage.union import lengths_covered
 from siggen.gears.damage.whole_loss import WHOLE_FACE
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.helical import slice_shifts_m
-from siggen.gears.stiffness.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
+from siggen.gears.stiffness.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance, tooth_compliances
 from siggen.gears.stiffness.coupled_pairs import coupled_sum
 from siggen.gears.stiffness.hertz import linear_compliance, weber_banaschek_compliance
+from siggen.gears.stiffness.sloping_lines import line_stiffness, lost_shares, path_points_m
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 __all__ = [
@@ -38,8 +38,6 @@ __all__ = [
 ]
 
 
-SLICES = 41
-"""Of a helical face, for the curve over the angle; tables take the mean over the face itself."""
 LINEAR = StiffnessOptions()
 """The options of a contact that does not depend on the force."""
 
@@ -92,7 +90,8 @@ def contact_compliance(
     ----------
     pair : GearPair
     position_m : (k,)
-        Contact positions from the pinion's base tangent point, in any order [m].
+        Contact positions from the pinion's base tangent point, of helical teeth those of the middle of the face, in any
+        order [m].
     pinion_pits, gear_pits : iterables of ToothDamage
         Pits of the two teeth in contact; their `gear` and `tooth` are not read.
     options : StiffnessOptions
@@ -108,22 +107,26 @@ def contact_compliance(
     Source: `siggen.gears.stiffness.hertz`; the remaining length as contact length: paper A, section 2.2.
     """
     position = np.atleast_1d(np.asarray(position_m, dtype=np.float64))
-    rows_pinion, rows_gear = pit_rows(pinion_pits), pit_rows(gear_pits)
-    width = pair.face_width_m
-    lost = np.zeros(position.size)
-    if rows_pinion.size or rows_gear.size:
-        roll_pinion, roll_gear = rolls_at(pair, position)
-        pinion, gear = pair.pinion, pair.gear
-        height_pinion = involute.heights(roll_pinion, pinion.base_radius_m, pinion.base_half_angle_rad)
-        height_gear = involute.heights(roll_gear, gear.base_radius_m, gear.base_half_angle_rad)
-        lost = lengths_covered(height_pinion, rows_pinion, height_gear, rows_gear, width)
-        worst = float(np.max(lost, initial=0.0))
-        if worst >= width * (1.0 - WHOLE_FACE) and not through_face:
-            raise ValueError(
-                f"pits take {worst:.6g} m of contact length; allowed: less than the face width {width:.6g} m"
-            )
+    width, lost = pair.face_width_m, _lost_m(pair, position, tuple(pinion_pits), tuple(gear_pits))
+    worst = float(np.max(lost, initial=0.0))
+    if worst >= width * (1.0 - WHOLE_FACE) and not through_face:
+        raise ValueError(f"pits take {worst:.6g} m of contact length; allowed: less than the face width {width:.6g} m")
     open_face = lost >= width * (1.0 - WHOLE_FACE)
     return np.where(open_face, np.inf, _law(pair, position, np.where(open_face, width, width - lost), options))
+
+
+def _lost_m(pair: GearPair, position_m: FloatArray, pinion_pits: Damage, gear_pits: Damage) -> FloatArray:
+    """Return the contact length that pits of two teeth take (k,) [m]; of helical teeth as if all were on the path."""
+    if pair.helix_rad != 0.0:
+        return lost_shares(pair, position_m, pinion_pits, gear_pits) * pair.face_width_m
+    rows_pinion, rows_gear = pit_rows(pinion_pits), pit_rows(gear_pits)
+    if not (rows_pinion.size or rows_gear.size):
+        return np.zeros(position_m.size)
+    roll_pinion, roll_gear = rolls_at(pair, position_m)
+    pinion, gear = pair.pinion, pair.gear
+    height_pinion = involute.heights(roll_pinion, pinion.base_radius_m, pinion.base_half_angle_rad)
+    height_gear = involute.heights(roll_gear, gear.base_radius_m, gear.base_half_angle_rad)
+    return lengths_covered(height_pinion, rows_pinion, height_gear, rows_gear, pair.face_width_m)
 
 
 def _law(pair: GearPair, position_m: FloatArray, length_m: FloatArray, options: StiffnessOptions) -> FloatArray:
@@ -189,6 +192,55 @@ def pair_stiffness(
     return 1.0 / pair_compliance(pair, position_m, options, pinion_pits, gear_pits, through_face=through_face).total
 
 
+def kinds_stiffness(
+    pair: GearPair,
+    position_m: FloatArray,
+    options: StiffnessOptions,
+    kinds: Sequence[tuple[Damage, Damage]],
+    *,
+    through_face: bool = False,
+) -> FloatArray:
+    """Return the stiffness of one pair with different damage of pinion and gear tooth (kinds, k) [N/m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    position_m : (k,)
+        Of spur teeth contact positions as for `pair_stiffness`; of helical teeth where the middle of the face is, from
+        `engagement_start_m` to `engagement_end_m` [m].
+    options : StiffnessOptions
+    kinds : sequence of (Damage, Damage)
+        Of the pinion's and the gear's tooth.
+    through_face : bool
+        Whether a contact may lose its whole length; the pair has no stiffness there.
+
+    Raises
+    ------
+    ValueError
+        As `pair_stiffness`.
+
+    Source: `pair_stiffness`; along the sloping lines of helical teeth `siggen.gears.stiffness.sloping_lines`.
+    """
+    at = position_m if pair.helix_rad == 0.0 else path_points_m(pair)
+    teeth = []
+    for which, rolls, own in zip(("pinion", "gear"), rolls_at(pair, at), zip(*kinds, strict=True), strict=True):
+        distinct = list(dict.fromkeys(own))
+        found = tooth_compliances(pair, which, rolls, options, distinct)
+        teeth.append({pits: one.total for pits, one in zip(distinct, found, strict=True)})
+    out = np.empty((len(kinds), position_m.size))
+    for row, (first, second) in enumerate(kinds):
+        pinion, gear = teeth[0][first], teeth[1][second]
+        if pair.helix_rad == 0.0:
+            contact = contact_compliance(pair, at, first, second, options, through_face=through_face)
+            out[row] = 1.0 / (contact + pinion + gear)
+            continue
+        lost = lost_shares(pair, position_m, first, second)
+        if not through_face and float(np.max(lost, initial=0.0)) >= 1.0 - WHOLE_FACE:
+            raise ValueError("pits take a whole contact line; allowed: a part of every line")
+        out[row] = line_stiffness(pair, position_m, contact_compliance(pair, at, options=options), pinion + gear, lost)
+    return out
+
+
 def mesh_stiffness(
     pair: GearPair,
     angle_rad: ArrayLike,
@@ -204,8 +256,8 @@ def mesh_stiffness(
     pair : GearPair
     angle_rad : (k,)
         Pinion angle since the pair of pinion tooth 0 and gear tooth 0 entered contact; any value [rad]. Pair n of the
-        global count is pinion tooth n mod z1 and gear tooth n mod z2, at s = s_A + R_b1 (angle - 2 pi n/z1). Zones
-        are closed.
+        global count is pinion tooth n mod z1 and gear tooth n mod z2, at s = s_A + R_b1 (angle - 2 pi n/z1), of helical
+        teeth with `engagement_start_m` for s_A. Zones are closed.
     options : StiffnessOptions
     damage : tuple of ToothDamage
         On any teeth of both gears.
@@ -223,19 +275,6 @@ def mesh_stiffness(
     angle = np.atleast_1d(np.asarray(angle_rad, dtype=np.float64))
     if not np.all(np.isfinite(angle)):
         raise ValueError("angle_rad holds values that are not finite; allowed: finite angles")
-    if pair.helix_rad == 0.0:
-        return _of_sections(pair, angle, options, damage, through_face=through_face)
-    # Slices of a helical face are ahead of each other, and do not act on each other here.
-    ahead = pair.engagement_start_m - pair.contact_start_m + slice_shifts_m(pair, SLICES)
-    turned = (angle[:, np.newaxis] + ahead / pair.pinion.base_radius_m).ravel()
-    found = _of_sections(pair, turned, options, damage, through_face=through_face)
-    return np.asarray(found.reshape(angle.size, SLICES).mean(axis=1))
-
-
-def _of_sections(
-    pair: GearPair, angle: FloatArray, options: StiffnessOptions, damage: Damage, *, through_face: bool
-) -> FloatArray:
-    """Return the mesh stiffness of teeth whose sections are all at one place of the path (k,) [N/m]."""
     index, count, position = pairs_in_contact(pair, angle)
     pinion_bad, gear_bad = damaged_teeth(damage, "pinion"), damaged_teeth(damage, "gear")
     pinion_tooth, gear_tooth = count % pair.pinion.teeth, count % pair.gear.teeth
@@ -245,10 +284,8 @@ def _of_sections(
     total, stiffness = np.zeros(angle.size), np.empty(index.size)
     for first, second in sorted(set(zip(pinion_key.tolist(), gear_key.tolist(), strict=True))):
         chosen = (pinion_key == first) & (gear_key == second)
-        pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
-        stiffness[chosen] = pair_stiffness(
-            pair, position[chosen], options, pinion_pits, gear_pits, through_face=through_face
-        )
+        kind = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
+        stiffness[chosen] = kinds_stiffness(pair, position[chosen], options, (kind,), through_face=through_face)[0]
         np.add.at(total, index[chosen], stiffness[chosen])
     if options.coupling == "none":
         return total
@@ -256,13 +293,16 @@ def _of_sections(
 
 
 def pairs_in_contact(pair: GearPair, angle_rad: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return (index into `angle_rad`, global pair count n, position s [m]) of every pair in contact, each (m,)."""
-    start, end, pitch = pair.contact_start_m, pair.contact_end_m, pair.base_pitch_m
+    """Return (index into `angle_rad`, global pair count n, position s [m]) of every pair in contact, each (m,).
+
+    Positions of helical pairs are those of the middle of the face.
+    """
+    start, end, pitch = pair.engagement_start_m, pair.engagement_end_m, pair.base_pitch_m
     travel = angle_rad * pair.pinion.base_radius_m
     newest = np.floor(travel / pitch).astype(np.int64)
     indices, counts, positions = [], [], []
     # One pair more on either side: at a zone edge rounding may put the floor on the wrong pair.
-    for back in range(-1, ceil(pair.contact_ratio) + 2):
+    for back in range(-1, ceil(pair.total_contact_ratio) + 2):
         count = newest - back
         position = start + (travel - count * pitch)
         inside = (position >= start) & (position <= end)

@@ -19,12 +19,10 @@ from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.row_columns import HEIGHT, HIGHEST, LOWEST
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.helical import mean_over_face
 from siggen.gears.stiffness.body_coupling import body_coupling
-from siggen.gears.stiffness.compliance import tooth_compliances
 from siggen.gears.stiffness.coupled_pairs import approach_forces
 from siggen.gears.stiffness.coupled_rows import CoupledRows, coupled_contributions, neighbour_runs
-from siggen.gears.stiffness.mesh_stiffness import contact_compliance, rolls_at
+from siggen.gears.stiffness.mesh_stiffness import kinds_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 HEALTHY = -1
@@ -41,7 +39,7 @@ class MeshTables:
     Parameters
     ----------
     start_m, end_m, step_m : float
-        First and last position (s_A and s_E) and the grid's step [m].
+        First and last position (s_A and s_E, of helical teeth of the middle of the face) and the grid's step [m].
     base_pitch_m : float
         Distance between neighbouring pairs [m].
     pair_stiffness_n_per_m : (tables, points)
@@ -85,7 +83,7 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
     damage : tuple of ToothDamage
     options : StiffnessOptions
     points : int
-        Grid points from s_A to s_E, at least 2.
+        Grid points from first to last contact, at least 2.
 
     Raises
     ------
@@ -95,12 +93,10 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
     if points < 2:
         raise ValueError(f"received {points} table points; allowed: at least 2")
     kinds = pair_kinds(pair, damage)
-    position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    position = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
     rows = table_of_pair(pair, kinds)
     alone = kind_stiffness(pair, damage, options, kinds, position)
     coupled = None if options.coupling == "none" else _coupled(pair, damage, options, rows, position, alone)
-    if pair.helix_rad != 0.0:
-        alone, coupled = mean_over_face(pair, alone), _over_face(pair, options, coupled, points)
     return MeshTables(
         start_m=pair.engagement_start_m,
         end_m=pair.engagement_end_m,
@@ -110,16 +106,6 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
         table_of_pair=rows,
         coupled=coupled,
     )
-
-
-def _over_face(
-    pair: GearPair, options: StiffnessOptions, slices: CoupledRows | None, points: int
-) -> CoupledRows | None:
-    if slices is None:
-        return None
-    position = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
-    stiffness = mean_over_face(pair, slices.stiffness_n_per_m)
-    return CoupledRows(stiffness, slices.row_of_pair, body_coupling(pair, options, position))
 
 
 def _coupled(
@@ -172,7 +158,7 @@ def kind_stiffness(
     kinds : tuple of (int, int)
         Pinion tooth and gear tooth of each kind, HEALTHY for any undamaged one.
     position_m : (k,)
-        Contact positions on the path of contact, in any order [m].
+        Positions as for `kinds_stiffness`, in any order [m].
     through_face : bool
         Whether pits may leave no contact; the pair's stiffness is 0 there.
 
@@ -181,19 +167,8 @@ def kind_stiffness(
     ValueError
         If a position is off the path of contact, or pits leave no section, or no contact where that is not allowed.
     """
-    rolls = dict(zip(("pinion", "gear"), rolls_at(pair, position_m), strict=True))
-    tooth: dict[tuple[str, int], FloatArray] = {}
-    for which, column in (("pinion", 0), ("gear", 1)):
-        teeth = sorted({kind[column] for kind in kinds})
-        damages = [pits_of(damage, which, index) for index in teeth]
-        found = tooth_compliances(pair, which, rolls[which], options, damages)
-        tooth |= {(which, index): one.total for index, one in zip(teeth, found, strict=True)}
-    out = np.empty((len(kinds), position_m.size))
-    for row, (first, second) in enumerate(kinds):
-        pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
-        contact = contact_compliance(pair, position_m, pinion_pits, gear_pits, options, through_face=through_face)
-        out[row] = 1.0 / (contact + tooth["pinion", first] + tooth["gear", second])
-    return out
+    damages = [(pits_of(damage, "pinion", first), pits_of(damage, "gear", second)) for first, second in kinds]
+    return kinds_stiffness(pair, position_m, options, damages, through_face=through_face)
 
 
 def table_of_pair(pair: GearPair, kinds: tuple[tuple[int, int], ...]) -> NDArray[np.int32]:
@@ -264,7 +239,7 @@ def _around_peaks(grid: FloatArray, losses: FloatArray) -> FloatArray:
 def _sequences(pair: GearPair, table: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return the distinct runs of table rows (newest pair first) that touch damage, (runs, pairs)."""
     count = np.arange(lcm(pair.pinion.teeth, pair.gear.teeth))
-    older = np.arange(int(pair.contact_ratio) + 1)
+    older = np.arange(int(pair.total_contact_ratio) + 1)
     number = count[:, np.newaxis] - older
     runs = np.unique(table[number % pair.pinion.teeth, number % pair.gear.teeth], axis=0)
     return runs[np.any(runs > 0, axis=1)]
@@ -272,7 +247,7 @@ def _sequences(pair: GearPair, table: NDArray[np.int32]) -> NDArray[np.int32]:
 
 def _newest_positions(pair: GearPair, damage: Damage) -> FloatArray:
     """Return positions of the newest pair over one base pitch, with zone edges, centres and ends of damage (k,) [m]."""
-    start, end, pitch = pair.contact_start_m, pair.contact_end_m, pair.base_pitch_m
+    start, end, pitch = pair.engagement_start_m, pair.engagement_end_m, pair.base_pitch_m
     marks = [np.array([start, end, np.nextafter(end, np.inf)])]
     for which in ("pinion", "gear"):
         gear = pair.member(which)
@@ -299,7 +274,7 @@ def _losses(
     healthy = np.zeros(newest_m.size)
     damaged = np.zeros((sequences.shape[0], newest_m.size))
     position = newest_m + np.arange(sequences.shape[1])[:, np.newaxis] * pair.base_pitch_m
-    inside = position <= pair.contact_end_m
+    inside = position <= pair.engagement_end_m
     alone = np.zeros((len(kinds), *position.shape))
     alone[:, inside] = kind_stiffness(pair, damage, options, kinds, position[inside], through_face=True)
     if options.coupling == "none":
@@ -307,7 +282,7 @@ def _losses(
             healthy += alone[0, older]
             damaged += alone[sequences[:, older], older]
         return 1.0 - damaged / healthy
-    pairs = np.count_nonzero(alone[0], axis=0)
+    pairs = np.count_nonzero(inside, axis=0)
     for number in np.unique(pairs):
         chosen = np.flatnonzero(pairs == number)
         runs = np.vstack([np.zeros_like(sequences[:1]), sequences])[:, :number]

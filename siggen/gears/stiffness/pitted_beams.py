@@ -128,7 +128,7 @@ def _add_piece(tooth: PittedTooth, low: float, high: float, room: Room, count: i
             t = 0.5 * pi * (1.0 + nodes[node])
             roll, step = middle - half * cos(t), 0.5 * pi * weights[node] * half * sin(t)
         x = height(roll, base_radius, half_angle)
-        h = half_thickness(roll, base_radius, half_angle)
+        h = abs(half_thickness(roll, base_radius, half_angle))  # of a ring with its sign turned
         filled = add_intervals(x, pits, active, count, face_width, intervals, 0)
         depth_moments(x, pits, intervals, filled, stretches, moments)
         area_loss, inertia_loss = section_losses(h, face_width, moments)

@@ -4,7 +4,7 @@ Equations: standard literature. Beam: potential energy as in `compliance`, over 
 its thickest part. With the half angle tau and the pressure angle alpha at the contact the load is slanted by
 alpha + tau against the normal of the tooth's centre line, towards the root (derived). Foot: O'Donnell's flexible root
 in plane stress, coefficients as in Cornell 1981 (memory): the ring is held in a housing, so it has no thin rim.
-Damage of a ring's tooth takes contact, and none of its section, which is the thickest of all gears.
+What notches take of the sections between contact and root is added as in other teeth (`compliance`).
 """
 
 from __future__ import annotations

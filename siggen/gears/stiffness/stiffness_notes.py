@@ -95,10 +95,10 @@ def _pair(pair: GearPair, options: StiffnessOptions) -> Iterator[str]:
 
 def _helix(pair: GearPair) -> Iterator[str]:
     if pair.helix_rad != 0.0:
-        total = pair.contact_ratio + pair.overlap_ratio
         yield (
-            f"pair: helical teeth of overlap ratio {pair.overlap_ratio:.3g}, total contact ratio {total:.3g}; the "
-            f"axial force is {abs(tan(pair.helix_rad)):.3g} of the tangential one on the pitch circle"
+            f"pair: helical teeth of overlap ratio {pair.overlap_ratio:.3g}, total contact ratio "
+            f"{pair.total_contact_ratio:.3g}; the axial force is {abs(tan(pair.helix_rad)):.3g} of the tangential one "
+            "on the pitch circle"
         )
 
 

@@ -13,7 +13,7 @@ from diagnostics.audit.condition_traps import condition_layers, condition_traps
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from diagnostics.audit.simple_thresholds import simple_thresholds
-from diagnostics.audit.state_ties import chance_bound, likeness, permuted_states, told_share
+from diagnostics.audit.state_ties import chance_bound, likeness, permuted_states, told_shares
 from tests.diagnostics.column_roles import ListedRoles
 
 LAYER = "state_told_by_"
@@ -222,8 +222,9 @@ def test_permuting_moves_states_among_specimens_that_have_one_state_each() -> No
 
 def test_told_share_is_one_for_a_copy_and_zero_for_an_independent_code() -> None:
     state = np.tile(np.arange(3), 4)
-    assert told_share(state, state) == pytest.approx(1.0)
-    assert told_share(np.repeat(np.arange(4), 3), state) == pytest.approx(0.0, abs=1e-12)
+    alone = np.stack([state, np.zeros_like(state)])
+    assert told_shares(state, alone) == pytest.approx([1.0, 0.0])
+    assert told_shares(np.repeat(np.arange(4), 3), alone) == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 def test_likeness_is_one_up_to_rotation_and_below_the_bound_for_independent_phases() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from pathlib import Path
 
@@ -32,18 +33,33 @@ def report(*arguments: str) -> str:
     return CliRunner().invoke(app, ["report", *arguments], catch_exceptions=False).output
 
 
-def test_a_report_of_lives_judges_baselines_of_remaining_life(fleet: Path, tmp_path: Path) -> None:
+def test_a_report_of_lives_judges_baselines_of_remaining_life(
+    fleet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("diagnostics.training.life_network.STEPS", 20)
     metrics = json.loads(report(str(fleet), "--json", "--out", str(tmp_path / "report")))
     assert "five indicators, age" in (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
     assert metrics["gearboxes_judged"] == 5
     assert list(metrics["baselines"])[:2] == ["constant", "age"]
     assert {"oil debris, age", "five indicators with their history, age"} < set(metrics["baselines"])
+    assert "sequence network on averages, age" in metrics["baselines"]
+    assert metrics["first_detection"]["pictures"]["detected"] == 5
     assert "hours since the inspections before" in [leak["clue"] for leak in metrics["leaks"]]
     rows = {row["record_id"]: row for row in siggen.open(fleet).life("inspections").to_pylist()}
     outlook = siggen.open(fleet).life("outlook").to_pylist()
     error_h = np.array([row["rul_q50_h"] - rows[row["record_id"]]["rul_h"] for row in outlook])
     known = metrics["baselines"]["the true state itself"]["rmse_h"][0]["value"]
     assert known == pytest.approx(np.sqrt(np.mean(error_h**2)), rel=1e-12)
+
+
+def test_the_page_to_explore_shows_each_gearbox_over_its_life(fleet: Path, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    CliRunner().invoke(app, ["explore", str(fleet), "--out", str(page)], catch_exceptions=False)
+    data = json.loads(page.read_text(encoding="utf-8").split('id="data">')[1].split("</script>")[0])
+    assert sorted(data["lives"]) == [str(unit) for unit in range(5)]
+    ages = {row["record_id"]: row["age_h"] for row in siggen.open(fleet).life("inspections").to_pylist()}
+    assert {record["record_id"]: record["age_h"] for record in data["records"]} == ages
+    assert all(base64.b64decode(one["png"]).startswith(b"\x89PNG") for one in data["lives"].values())
 
 
 @pytest.mark.parametrize("command", ["audit", "indicators"])

@@ -24,10 +24,8 @@ from diagnostics.explore.explorer import ExplorerOptions, predicted_labels, writ
 from diagnostics.explore.server import page_server
 from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.indicators.table import record_table
-from diagnostics.prediction.saved_models import save_models
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.training import train_models
+from diagnostics.indicators.table import RecordTable
+from diagnostics.training.training import Training
 from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
 from tests.diagnostics.explore.unpacked import steps
@@ -118,10 +116,9 @@ def test_the_page_holds_every_record_with_all_its_views(page: str) -> None:
 
 
 def test_a_model_names_every_record_and_a_report_folder_holds_one(
-    dataset: MemoryDataset, features: pa.Table, tmp_path: Path
+    dataset: MemoryDataset, measured: RecordTable, training: Training, models_folder: Path, tmp_path: Path
 ) -> None:
-    training = train_models(dataset, features, 0, network=NetworkOptions(cnn=False))
-    save_models(training, features, dataset, tmp_path / "report" / "models")
+    shutil.copytree(models_folder, tmp_path / "report" / "models")
     options = ExplorerOptions(model=tmp_path / "report")
     text = write_explorer(dataset, tmp_path / "page.html", options).read_text(encoding="utf-8")
     records = json.loads(Read(text).data)["records"]
@@ -135,7 +132,7 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     assert all((record["seen"] == "seen in training") == (record["split"] != "test") for record in records)
     seen = sum(record["split"] != "test" for record in records)
     assert f"{seen} of {len(records)}\N{NO-BREAK SPACE}records are of the gearboxes that the model was trained" in text
-    table, another = record_table(dataset), replace(dataset, manifest={"identity": "another set"})
+    table, another = measured, replace(dataset, manifest={"identity": "another set"})
     assert set(predicted_labels(table, another, tmp_path / "report")["seen"]) == {"no"}
     other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))
     with pytest.raises(UsageError, match="columns that the set does not have"):

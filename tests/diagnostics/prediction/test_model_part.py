@@ -13,24 +13,14 @@ import pytest
 from diagnostics.cli.app import main
 from diagnostics.prediction.model_facts import sealed_text, unsealed_text
 from diagnostics.prediction.released_model import load_model
-from diagnostics.prediction.saved_models import save_models
 from diagnostics.training.baselines import logistic_pipeline
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.training import train_models
 from siggen.errors import UsageError
 from tests.diagnostics.prediction.resealed_model import reseal
 
 
-@pytest.fixture(scope="module")
-def trained(dataset: Any, features: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    found = tmp_path_factory.mktemp("models")
-    save_models(train_models(dataset, features, 0, network=NetworkOptions(cnn=False)), features, dataset, found)
-    return found
-
-
 @pytest.fixture
-def folder(trained: Path, tmp_path: Path) -> Path:
-    for file in trained.iterdir():
+def folder(models_folder: Path, tmp_path: Path) -> Path:
+    for file in models_folder.iterdir():
         (tmp_path / file.name).write_bytes(file.read_bytes())
     return tmp_path
 

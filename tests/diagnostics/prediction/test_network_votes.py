@@ -11,7 +11,7 @@ import pyarrow as pa
 import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.saved_models import save_models
@@ -21,16 +21,14 @@ from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.baselines import state_index
 from diagnostics.training.circular_network import CircularSettings, circular_probability, train_circular
 from diagnostics.training.circular_training import TrainedCircularFile
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.training import train_models
+from diagnostics.training.training import Training
 from siggen.errors import UsageError
 
 
 def test_the_vote_of_a_recording_is_that_of_the_record_and_a_foreign_network_is_refused(
-    dataset: Any, features: pa.Table, tmp_path: Path
+    dataset: Any, features: pa.Table, measured: RecordTable, training: Training, tmp_path: Path
 ) -> None:
-    training = train_models(dataset, features, 0, network=NetworkOptions(cnn=False))
-    averages = averaged_records(record_table(dataset))
+    averages = averaged_records(measured)
     target = state_index(feature_matrix(features), training.split.classes)
     found = train_circular(averages, target, training.split, 1, CircularSettings(most_epochs=8))
     kept = TrainedCircularFile(replace(found, temperature=0.7), averages.channels, "0" * 64)

@@ -18,23 +18,13 @@ from diagnostics.cli.app import main
 from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
-from diagnostics.prediction.saved_models import save_models
 from diagnostics.prediction.training_distance import fit_part
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from diagnostics.statistics.calibration import tempered
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.training import train_models
 from siggen.dataset.seal import sealed
 from siggen.errors import UsageError
 
 FS_HZ = 12_800.0
-
-
-@pytest.fixture(scope="module")
-def folder(dataset: Any, features: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    found = tmp_path_factory.mktemp("models")
-    save_models(train_models(dataset, features, 0, network=NetworkOptions(cnn=False)), features, dataset, found)
-    return found
 
 
 def save(path: Path, dataset: Any, record: int, gain: float = 1.0) -> Path:
@@ -62,11 +52,11 @@ def options(*more: str) -> tuple[str, ...]:
 
 
 def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
-    folder: Path, make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    models_folder: Path, make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     file = save_as_siggen_does(tmp_path / "run.parquet", make_dataset(("test",) * 2, seed=8), 2)  # severe
-    assert run(monkeypatch, str(folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
+    assert run(monkeypatch, str(models_folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
     assert "answer:               severe" in capsys.readouterr().out
     found = json.loads((tmp_path / "out" / "prediction.json").read_text())
     assert found["state"] == "severe"
@@ -79,12 +69,12 @@ def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
 
 
 def test_no_state_of_a_measured_recording_is_named_without_a_healthy_one(
-    folder: Path, make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    models_folder: Path, make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     """The same samples as above, from a file that siggen did not write."""
     file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)
-    assert run(monkeypatch, str(folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
+    assert run(monkeypatch, str(models_folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
     said = capsys.readouterr().out
     assert "answer:               abstains" in said
     assert "named only beside healthy recordings" in said
@@ -95,15 +85,23 @@ def test_no_state_of_a_measured_recording_is_named_without_a_healthy_one(
 
 
 def test_a_foreign_level_and_foreign_teeth_get_no_answer(
-    folder: Path, dataset: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    models_folder: Path,
+    dataset: Any,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     file = save(tmp_path / "run.npz", dataset, 0, gain=300.0)
-    assert run(monkeypatch, str(folder), str(file), "--fs", "12800", "--teeth", "18,47", "--tacho", "tacho_s") == 0
+    assert (
+        run(monkeypatch, str(models_folder), str(file), "--fs", "12800", "--teeth", "18,47", "--tacho", "tacho_s") == 0
+    )
     found = capsys.readouterr().out
     assert "answer:               abstains" in found
     assert "unlike the training records" in found
     file = save(tmp_path / "run.npz", dataset, 0)
-    assert run(monkeypatch, str(folder), str(file), "--fs", "12800", "--teeth", "18,31", "--tacho", "tacho_s") == 0
+    assert (
+        run(monkeypatch, str(models_folder), str(file), "--fs", "12800", "--teeth", "18,31", "--tacho", "tacho_s") == 0
+    )
     assert "18/31 teeth, training covers 18/47 only" in capsys.readouterr().out
 
 
@@ -118,12 +116,12 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
     ],
 )
 def test_what_is_missing_is_a_usage_error_with_a_way_out(
-    arguments: tuple[str, ...], message: str, folder: Path, dataset: Any, tmp_path: Path,
+    arguments: tuple[str, ...], message: str, models_folder: Path, dataset: Any, tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     save(tmp_path / "run.npz", dataset, 0)
     monkeypatch.chdir(tmp_path)
-    assert run(monkeypatch, str(folder), "run.npz", *arguments) == 2
+    assert run(monkeypatch, str(models_folder), "run.npz", *arguments) == 2
     assert message in capsys.readouterr().err
 
 
@@ -146,7 +144,7 @@ def test_what_is_missing_is_a_usage_error_with_a_way_out(
     ],
 )
 def test_a_recording_that_cannot_be_used_is_named_with_the_way_out(
-    name: str, change: dict[str, np.ndarray], message: str, folder: Path, dataset: Any, tmp_path: Path,
+    name: str, change: dict[str, np.ndarray], message: str, models_folder: Path, dataset: Any, tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     monkeypatch.chdir(tmp_path)
@@ -160,7 +158,7 @@ def test_a_recording_that_cannot_be_used_is_named_with_the_way_out(
         np.savez(name, **(signals | change))
     elif name != ".":
         Path(name).write_bytes(b"no recording") if name != "gone.npz" else None
-    assert run(monkeypatch, str(folder), name, *options()) == 2
+    assert run(monkeypatch, str(models_folder), name, *options()) == 2
     assert message in " ".join(capsys.readouterr().err.split())
 
 
@@ -178,8 +176,8 @@ class Trap:
 
 
 @pytest.mark.parametrize("name", ["classifier.skops", "cnn.safetensors", "model.json"])
-def test_loading_never_unpickles(name: str, folder: Path, tmp_path: Path) -> None:
-    for file in folder.iterdir():
+def test_loading_never_unpickles(name: str, models_folder: Path, tmp_path: Path) -> None:
+    for file in models_folder.iterdir():
         (tmp_path / file.name).write_bytes(file.read_bytes())
     (tmp_path / name).write_bytes(pickle.dumps(Trap()))
     with pytest.raises(UsageError, match=Path(name).stem):
@@ -227,9 +225,9 @@ def test_onnx_gives_the_logits_of_torch(tmp_path: Path) -> None:
 
 
 def test_probabilities_are_calibrated_as_the_models_own_are(
-    folder: Path, make_dataset: Callable[..., Any], tmp_path: Path
+    models_folder: Path, make_dataset: Callable[..., Any], tmp_path: Path
 ) -> None:
-    model = load_model(folder)
+    model = load_model(models_folder)
     file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)
     recording = replace(read_recording(file, model.facts.channels, RecordingFacts(FS_HZ)), simulated=True)
     found = {}

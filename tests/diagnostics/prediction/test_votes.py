@@ -15,10 +15,7 @@ import diagnostics.prediction.prediction as prediction
 from diagnostics.prediction.prediction import NETWORK, Prediction, Vote, predict_recording
 from diagnostics.prediction.prediction_page import prediction_facts, prediction_rows, prediction_summary
 from diagnostics.prediction.released_model import ReleasedModel, load_model
-from diagnostics.prediction.saved_models import save_models
 from diagnostics.recordings.measured_recording import MeasuredRecording
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.training import train_models
 from siggen.errors import UsageError
 from tests.diagnostics.prediction.resealed_model import reseal
 
@@ -26,10 +23,8 @@ FS_HZ = 12_800.0
 
 
 @pytest.fixture(scope="module")
-def model(dataset: Any, features: Any, tmp_path_factory: pytest.TempPathFactory) -> ReleasedModel:
-    folder = tmp_path_factory.mktemp("models")
-    save_models(train_models(dataset, features, 0, network=NetworkOptions(cnn=False)), features, dataset, folder)
-    return load_model(folder)
+def model(models_folder: Path) -> ReleasedModel:
+    return load_model(models_folder)
 
 
 @pytest.fixture(scope="module")

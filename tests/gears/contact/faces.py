@@ -53,8 +53,9 @@ def face(
         lead_m=lead, face_m=cell * (np.arange(slices) + 0.5) - 0.5 * WIDTH,
         kernel=line_kernel(kernel_family(slices, cell, DEPTH), DEPTH, 0.3, coupled=coupled),
         teeth=tooth_kernel(unit_tooth(slices, WIDTH, teeth[0]), teeth[1], WIDTH, KAPPA),
-        radius_m=RADIUS, rounding_m=rounding, kappa_per_pa=KAPPA, compliance_m_per_n=rest,
-        carrying_m=carrying_length(gaps, lead, cell, RADIUS, KAPPA * 60e3),
+        radius_m=RADIUS, radii_m=np.full(slices, RADIUS), rounding_m=rounding, kappa_per_pa=KAPPA,
+        compliance_m_per_n=rest,
+        carrying_m=float(carrying_length(gaps, lead, cell, np.array(RADIUS), KAPPA * 60e3)),
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from math import exp, log
 import numpy as np
 import pytest
 
-from siggen.gears.contact.exponential_matrix import SIDES, TERMS, RowMatrix, add_row_products, products, solve_rows
+from siggen.gears.contact.exponential_matrix import RowMatrix, add_row_products, products, solve_rows
 from siggen.gears.contact.line_kernel import (
     EXPONENTIALS,
     diagonal,
@@ -18,6 +18,7 @@ from siggen.gears.contact.line_kernel import (
     strengths,
 )
 from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
+from siggen.lanes import LANES
 
 CELL, DEPTH, CELLS = 0.1e-3, 2.2e-3, 200
 
@@ -83,9 +84,9 @@ def test_rows_are_solved_like_a_full_matrix():
     own = np.diag(matrix) + rng.random(CELLS)
     np.fill_diagonal(matrix, own)
     rows = np.sort(rng.choice(CELLS, 120, replace=False))
-    right = rng.random((CELLS, SIDES))
+    right = rng.random((CELLS, LANES))
     x = right.copy()
-    room = np.zeros((CELLS, TERMS)), np.zeros((CELLS, TERMS + 1))
+    room = np.zeros((CELLS, LANES)), np.zeros((CELLS, LANES))
     padded = np.append(rows, np.zeros(80, np.int64))
     found = RowMatrix(kernel.decay, strength, teeth.strength, teeth.decay, own)
     assert solve_rows(found, padded, 120, x, *room)

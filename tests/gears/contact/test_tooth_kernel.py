@@ -79,7 +79,7 @@ def _line(slices, loads: np.ndarray) -> np.ndarray:
     np.fill_diagonal(change, own_slope)
     beta = 0.25 * growth * (loads @ change @ loads) / (loads @ loads)
     shared = mean_width(slices, float(loads @ loads))
-    own_terms = [own_law(load, shared)[0] * load if load > 0.0 else 0.0 for load in loads.tolist()]
+    own_terms = [own_law(load, 1.0, shared)[0] * load if load > 0.0 else 0.0 for load in loads.tolist()]
     return np.asarray(matrix @ loads + beta * loads + own_terms)
 
 

@@ -223,7 +223,7 @@ def test_compliances_equal_slow_quadrature(layout):
 def test_kinks_leave_smooth_pieces(layout):
     # Halving every piece changes little only if no piece has a kink inside, none that was taken for hidden either.
     rows = pit_rows(layout)
-    breaks = section_breaks(GEAR, rows, WIDTH, GEAR.involute_start_roll_rad)
+    breaks = section_breaks(GEAR, rows, WIDTH, (GEAR.involute_start_roll_rad, GEAR.tip_roll_rad))
     fine = np.unique(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
     roll, base, half = np.array([GEAR.tip_roll_rad]), GEAR.base_radius_m, GEAR.base_half_angle_rad
     flank = (rows, base, half, WIDTH)

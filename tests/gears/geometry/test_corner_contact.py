@@ -3,8 +3,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from siggen.arrays import FloatArray
 from siggen.gears.geometry.corner_contact import tip_gap_m
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.internal_pair import InternalPair, ring_round
+from siggen.gears.geometry.missing_material import missing_material
 from tests.dynamics.pair_runs import gear_pair
+from tests.gears.builders import spur_gear
 
 DISTANCES = np.array([0.1, 0.2, 0.4, 0.8]) * 1e-3
 
@@ -37,3 +42,62 @@ def test_on_the_path_of_contact_no_corner_leaves_a_gap(which: str) -> None:
     pair = gear_pair()
     inside = np.linspace(pair.contact_start_m, pair.contact_end_m, 101)
     assert (tip_gap_m(pair, which, inside) == 0.0).all()
+
+
+def planet_in_ring() -> InternalPair:
+    return ring_round(GearPair(spur_gear(25, 2e-3, 8e-3), spur_gear(26, 2e-3, 8e-3), 20e-3, 206e9, 0.3), 77)
+
+
+def turned_until_touching_m(pair: InternalPair, which: str, position_m: float) -> float:
+    """Return by how much the mate turns until its flank meets a corner, along the line of action.
+
+    Both flanks as points in the plane, from the planet's centre at (0, 0) and the ring's at (-a, 0) for a planet on the
+    right of the ring's centre; the ring's corner is its tip, the planet's its own. Angles of flanks are read at the
+    corner's distance from the mate's centre.
+    """
+    planet, ring, slant = pair.pinion, pair.gear, pair.working_pressure_angle_rad
+    a = pair.working_centre_distance_m
+
+    def flank(radius_m: FloatArray, base_m: float, origin: float) -> FloatArray:
+        roll = np.sqrt((radius_m / base_m) ** 2 - 1.0)
+        return origin + roll - np.arctan(roll)
+
+    of_planet = slant - position_m / planet.base_radius_m
+    of_ring = slant - (position_m - pair.line_of_action_m) / ring.base_radius_m
+    if which == "pinion":
+        radius = np.array([planet.tip_radius_m])
+        angle = flank(radius, planet.base_radius_m, of_planet)
+        x, y = a + radius * np.cos(angle), radius * np.sin(angle)
+        missed = np.arctan2(y, x) - flank(np.hypot(x, y), ring.base_radius_m, of_ring)
+        return float(abs(missed[0]) * ring.base_radius_m)
+    radius = np.array([ring.tip_radius_m])
+    angle = flank(radius, ring.base_radius_m, of_ring)
+    x, y = radius * np.cos(angle) - a, radius * np.sin(angle)
+    missed = np.arctan2(y, x) - flank(np.hypot(x, y), planet.base_radius_m, of_planet)
+    return float(abs(missed[0]) * planet.base_radius_m)
+
+
+@pytest.mark.parametrize("which", ["gear", "pinion"])
+def test_corners_in_a_ring_leave_the_gap_of_turned_outlines_and_less_than_outside(which: str) -> None:
+    pair = planet_in_ring()
+    for distance in DISTANCES:
+        position = pair.contact_start_m - distance if which == "gear" else pair.contact_end_m + distance
+        found = tip_gap_m(pair, which, np.array([position]))[0]
+        assert found == pytest.approx(turned_until_touching_m(pair, which, position), rel=1e-6)
+    own = pair.member(which)
+    end = pair.contact_start_m if which == "gear" else pair.contact_end_m
+    relative = end * (pair.line_of_action_m - end) / pair.line_of_action_m
+    parabola = own.tip_roll_rad**2 / (2.0 * relative) * 1e-4**2
+    small = tip_gap_m(pair, which, np.array([end - 1e-4 if which == "gear" else end + 1e-4]))[0]
+    assert small == pytest.approx(parabola, rel=0.02)  # second order in 0.1 mm
+    assert small < 0.25 * 42.9e-6 * (1e-4 / 0.886e-3) ** 2 * 1.1  # of sun and planet 0.15 pitches beside their path
+    inside = np.linspace(pair.contact_start_m, pair.contact_end_m, 101)
+    assert (tip_gap_m(pair, which, inside) == 0.0).all()
+
+
+def test_corners_are_followed_until_they_have_parted_by_ten_times_a_usual_deflection() -> None:
+    outer = GearPair(spur_gear(25, 2e-3, 8e-3), spur_gear(26, 2e-3, 8e-3), 20e-3, 206e9, 0.3)
+    for pair in (outer, planet_in_ring()):
+        found = missing_material(pair)
+        assert found.gear.profile_m[0, 0] > 30e-6
+        assert found.pinion.profile_m[0, -1] > 30e-6

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import RingGear, ring_round
 from siggen.gears.stiffness.compliance import tooth_compliance
@@ -76,6 +78,53 @@ def test_ring_tooth_against_slow_quadrature_of_its_outline():
         shifted = 1.534 * (1.0 + (along / across) ** 2 / (2.4 * 1.3))
         foot = 16.67 / pi * lever**2 + 2.0 * 0.7 * lever + shifted
         assert found.foundation[0] == pytest.approx(across**2 * foot / (206e9 * 20e-3), rel=1e-4)
+
+
+def spalled(pair, depth_m, heights_m=(2.0e-3, 3.0e-3)):
+    """Return a spall across the face between two heights of a ring's tooth, which grow towards its root."""
+    return (Spall("gear", 0, rectangle(heights_m, (0.0, pair.face_width_m)), depth_m),)
+
+
+def test_a_spall_across_the_face_leaves_a_tapered_beam_that_is_thinner_by_its_depth():
+    """Closed form: a thickness of 2h - D, about its own axis; integrated over the outline's points."""
+    _, pair = sets()
+    ring, depth = pair.gear, 0.3e-3
+    low, high = 2.0e-3, 3.0e-3
+    rolls = ring.roll_at_height(np.array([1.2e-3, 1.9e-3, 2.5e-3]))  # before the spall, and in its middle
+    sound, damaged = (
+        tooth_compliance(pair, "gear", rolls, StiffnessOptions(), pits) for pits in ((), spalled(pair, depth))
+    )
+    radii = np.linspace(ring.tip_radius_m, ring.root_radius_m, 400_001)
+    half = ring.half_angle_rad(radii)
+    height, width = radii * np.cos(half), radii * np.sin(half)
+    above = height - float(height[0] - ring.height_m(ring.tip_roll_rad))  # from the base circle's point
+    for i, roll in enumerate(rolls):
+        place = float(ring.height_m(roll)), float(ring.half_thickness_m(roll))
+        slant = roll - ring.base_half_angle_rad
+        along, across = np.sin(slant), np.cos(slant)
+        inside = (above >= max(low, place[0])) & (above <= high)
+        y, thick = above[inside], 2.0 * width[inside]
+        lever = across * (y - place[0]) - along * place[1]
+        more = 12.0 / (20e-3 * (thick - depth) ** 3) - 12.0 / (20e-3 * thick**3)
+        assert (damaged.bending - sound.bending)[i] == pytest.approx(np.trapezoid(lever**2 * more, y) / 206e9, rel=1e-4)
+        area = np.trapezoid(1.0 / (thick - depth) - 1.0 / thick, y) / 20e-3
+        assert (damaged.shear - sound.shear)[i] == pytest.approx(1.2 * across**2 * area * 2.6 / 206e9, rel=1e-4)
+        assert (damaged.axial - sound.axial)[i] == pytest.approx(along**2 * area / 206e9, rel=1e-4)
+    assert (damaged.foundation == sound.foundation).all()
+
+
+def test_what_a_spall_takes_of_a_ring_tooth_softens_it_and_ends_with_its_depth():
+    _, pair = sets()
+    roll = pair.gear.roll_at_height(np.linspace(1.2e-3, 3.5e-3, 9))
+    sound = tooth_compliance(pair, "gear", roll, StiffnessOptions()).total
+    more = [tooth_compliance(pair, "gear", roll, StiffnessOptions(), spalled(pair, d)).total - sound for d in DEPTHS]
+    assert (more[0][:6] > 0.0).all()  # loaded before or in it
+    assert more[0][-1] == pytest.approx(0.0, abs=1e-9 * sound.max())  # loaded behind it, nearer to the root
+    assert more[1] == pytest.approx(0.1 * more[0], rel=0.02, abs=1e-9 * sound.max())  # first order in the depth
+    assert np.abs(more[2]).max() < 1e-6 * sound.max()
+
+
+DEPTHS = (1e-5, 1e-6, 1e-12)
 
 
 def test_the_foot_turns_on_the_half_plane_as_its_potential_says():

@@ -20,7 +20,7 @@ def test_crowded_pits_are_integrated_as_exactly_as_on_ever_finer_parts(floor):
     gear, width = PAIR.pinion, PAIR.face_width_m
     rows = pit_rows(crowd)
     roll = np.linspace(*PAIR.active_flank[0], 501)
-    breaks = section_breaks(gear, rows, width, 0.0)
+    breaks = section_breaks(gear, rows, width, (0.0, gear.tip_roll_rad))
     ends = np.unique(np.concatenate([breaks, roll]))
     # Parts towards either end, down to 1e-4 of a piece: a square root's end leaves less than 1e-6 of it there.
     shares = np.array([1e-4, 1e-3, 0.01, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85, 0.95, 0.99, 0.999, 0.9999])

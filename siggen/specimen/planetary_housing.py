@@ -1,0 +1,63 @@
+"""What carries sun, carrier and ring of a planetary set, and the set on it as small forces see it.
+
+Teeth push as on the ground, and what the bodies then press with acts on seats of the whole linear machine (derived:
+with the forces F_0 on seats that are held, a linear machine moves beyond its motion with held seats as F_0 on the free
+seats moves it). So housing and bodies answer each other, bolts included; what the housing's motion does to the mesh
+stiffness and to contact alone is left out. The carrier's turning is slow beside both, and planets that stand evenly
+make the machine alike in all directions: it is the same at every angle of the frame. Those that do not stand evenly
+count as if they did.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from siggen.config import RigidHousing
+from siggen.dynamics.structure.body import Body, renamed, rigid_body
+from siggen.dynamics.structure.casing_structure import refuse_single_bolt
+from siggen.dynamics.structure.planetary import RING_TURNING, planetary_structure
+from siggen.dynamics.structure.structure import Structure, assemble
+from siggen.planning.specimen import Specimen
+from siggen.specimen.planetary_numbers import planetary_numbers, ring_outer_radius_m
+from siggen.specimen.rigid_casing import CASING_GYRATION, casing_numbers
+
+AXIS = (0.0, 0.0)
+"""Of all bodies: the middle of the housing."""
+NAMES = {"x_c": "x_h", "y_c": "y_h", "phi_c": "phi_h"}
+"""Coordinates of a rigid housing, beside those of a carrier."""
+
+
+def set_in_housing(specimen: Specimen, body: Body | None) -> Structure:
+    """Return the structure of a set with evenly spread planets in a body, or on the ground."""
+    stage = planetary_numbers(specimen)
+    count = len(stage.places_turns)
+    return planetary_structure(replace(stage, places_turns=tuple(i / count for i in range(count))), body)
+
+
+def rigid_housing_of_set(specimen: Specimen) -> Body:
+    """Return a block on bolts round a set, whose axis lies in its middle.
+
+    Raises
+    ------
+    ValueError
+        If the bolts leave it free to move.
+    """
+    assert isinstance(specimen.housing, RigidHousing)
+    extent_m = ring_outer_radius_m(specimen) / CASING_GYRATION
+    casing = replace(casing_numbers(specimen.housing, extent_m, specimen.sensors), pinion_place_m=AXIS)
+    refuse_single_bolt(casing)
+    places = dict.fromkeys(("sun_bearing", "carrier_bearing", "ring"), AXIS)
+    body = rigid_body(casing, places, 0.0)
+    return renamed(replace(body, seats={**body.seats, RING_TURNING: {"phi_c": 1.0}}), NAMES)
+
+
+def slowest_decay_per_s(body: Body) -> float:
+    """Return the smallest decay rate of a rigid body on its supports [1/s]."""
+    coordinates = tuple(body.inertias)
+    stiffness, damping = assemble(coordinates, body.supports)
+    inverse = np.diag(1.0 / np.array(list(body.inertias.values())))
+    still, unit = np.zeros_like(stiffness), np.eye(len(coordinates))
+    state = np.block([[still, unit], [-inverse @ stiffness, -inverse @ damping]])
+    return float((-np.linalg.eigvals(state).real).min())

@@ -1,0 +1,51 @@
+"""What a planetary set presses its housing with, as its channels hear it: forces on held seats, set free (derived).
+
+Seats that modes beyond those of the machine let give way by R lie in series with the springs, K = (1/k + R)^-1. A force
+F_0 on one of them stretches that chain by R F_0, which passes K R F_0 back to the body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.config import Config
+from siggen.dynamics.structure.body import Body
+from siggen.dynamics.structure.planetary import SEATS_OF_SET, supports_of_set
+from siggen.dynamics.structure.structure import Structure, vector
+from siggen.planning.specimen import Specimen
+from siggen.specimen.background import mean_meshes
+from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
+from siggen.specimen.planetary_numbers import planetary_numbers
+from siggen.specimen.structure import linear_structure
+
+
+def forces_through_housing(
+    config: Config, specimen: Specimen, channels: Mapping[str, ChannelWay], frequency_hz: FloatArray
+) -> dict[str, ComplexArray]:
+    """Return channel -> response (`SEATS_OF_SET`, k) at frequencies (k,) to what a set presses held seats with.
+
+    Raises
+    ------
+    ValueError
+        If a channel shows what the machine does not have.
+    """
+    assembled, body = linear_structure(config, specimen)
+    assert body is not None
+    springs = supports_of_set(planetary_numbers(specimen), {}).values()
+    forcing = _on_seats(assembled, body, np.array([spring.stiffness for spring in springs]))
+    return forced_ways((assembled, mean_meshes(specimen, assembled)), forcing, channels, frequency_hz)
+
+
+def _on_seats(assembled: Structure, body: Body, stiffness: FloatArray) -> Forcing:
+    """Return unit forces on the seats of a body whose springs have a stiffness (seats,)."""
+    seats = np.array([vector(assembled.coordinates, body.seats[name]) for name in SEATS_OF_SET])
+    given = body.flexibility_m_per_n
+    flexibility = np.zeros((len(seats), len(seats))) if given is None else given
+    pulled = np.array([assembled.bearing_forces[name][0] for name in SEATS_OF_SET])
+    back = np.linalg.solve(np.diag(1.0 / stiffness) + flexibility, flexibility)
+    rows, shares = seats + flexibility @ pulled, np.eye(len(seats)) - back
+    pressed = [dict(zip(SEATS_OF_SET, own, strict=True)) for own in shares.T.tolist()]
+    return Forcing(dict(zip(SEATS_OF_SET, rows, strict=True)), dict(zip(SEATS_OF_SET, pressed, strict=True)))
