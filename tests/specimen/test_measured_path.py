@@ -86,11 +86,11 @@ def passed(config: Config, response: Response, residues: dict[str, tuple[float, 
     length = 2**16  # nothing wraps round
     hz = np.arange(length // 2 + 1) * config.fs_hz / length
     total = np.zeros(hz.size, dtype=complex)
-    for name in residues:
+    for name, residue in residues.items():
         whole = np.concatenate([response.history.bearing_force_n[name], response.bearing_force_n[name]])
         assert 2 * whole.size < length
         values = whole - response.history.bearing_force_n[name].mean()
-        total += accelerance(hz, (400.0, 1700.0), residues[name]) * np.fft.rfft(values, length)
+        total += accelerance(hz, (400.0, 1700.0), residue) * np.fft.rfft(values, length)
     return np.asarray(np.fft.irfft(total, length)[whole.size - config.samples : whole.size])
 
 
@@ -112,7 +112,7 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
     residues = {name: (0.01 * (k + 1), 0.02 - 0.01 * k) for k, name in enumerate(forces)}
     found = {"frequency_hz": GRID}
     for name, own in forces.items():
-        curve = accelerance(GRID, (400.0, 1700.0), residues[name])
+        curve = accelerance(GRID, (400.0, 1700.0), residue)
         found |= {f"vertical_from_{own}_{part}_m_s2_per_n": getattr(curve, part) for part in ("real", "imag")}
     save(found, tmp_path / "lid.npz")
     sensor = {**SENSOR, "path": {"file": "lid.npz"}}
