@@ -112,7 +112,7 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
     residues = {name: (0.01 * (k + 1), 0.02 - 0.01 * k) for k, name in enumerate(forces)}
     found = {"frequency_hz": GRID}
     for name, own in forces.items():
-        curve = accelerance(GRID, (400.0, 1700.0), residue)
+        curve = accelerance(GRID, (400.0, 1700.0), residues[name])
         found |= {f"vertical_from_{own}_{part}_m_s2_per_n": getattr(curve, part) for part in ("real", "imag")}
     save(found, tmp_path / "lid.npz")
     sensor = {**SENSOR, "path": {"file": "lid.npz"}}
