@@ -124,7 +124,9 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
     expected = passed(config, response, residues)
     assert np.abs(signal(config) - expected).max() < 3e-3 * expected.std()
     save(columns(), tmp_path / "lid.npz")
-    with pytest.raises(ConfigError, match="a force gear_bearing/horizontal; allowed: forces of input"):
+    with pytest.raises(
+        ConfigError, match=r"columns vertical_from_gear_bearing_horizontal_...; allowed: forces of input"
+    ):
         load_config(tmp_path / "set.yaml")
 
 
