@@ -14,7 +14,7 @@ from diagnostics.calibration.calibration import Calibration, ChannelFit
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted
 from diagnostics.calibration.noise_fit import NoiseFit
 from diagnostics.calibration.own_lines import OwnLine
-from diagnostics.calibration.source_library import PLACES
+from diagnostics.calibration.path_draws import PathDraw
 from siggen.errors import UsageError
 
 FACTS = "calibration.json"
@@ -60,7 +60,7 @@ def write_calibration(found: Calibration, out: Path) -> Path:
             rows = [(line.order, line.frequency_hz, line.amplitude) for line in table]
             _write_table(folder / f"lines_{name}.csv", ("order", "frequency_hz", "amplitude_m_s2"), rows)
         for number in range(len(channel.paths)):
-            _write_path(folder / _path_file(name, number), found.grid_hz, axis, channel, number)
+            _write_path(folder / _path_file(name, number), found, axis, channel.paths[number])
     facts = json.dumps(calibration_facts(found), indent=1, allow_nan=False)
     (folder / FACTS).write_text(facts + "\n", encoding="utf-8")
     out.write_text(calibrated_text(found, out), encoding="utf-8")
@@ -69,9 +69,7 @@ def write_calibration(found: Calibration, out: Path) -> Path:
 
 def sensor_axes(found: Calibration) -> list[tuple[str, str]]:
     """Return name and axis of the sensor that stands for each channel; sensors of several axes become several."""
-    axes = [
-        (sensor["name"], axis, len(sensor["axes"])) for sensor in found.config["sensors"] for axis in sensor["axes"]
-    ]
+    axes = [(sensor["name"], axis, len(sensor["axes"])) for sensor in found.rig.sensors for axis in sensor["axes"]]
     return [(name if count == 1 else f"{name}_{axis}", axis) for name, axis, count in axes]
 
 
@@ -90,7 +88,7 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         f"# identified: {data_folder(out).name}/{FACTS}. Data of your recordings are in it: keep it to yourself.",
         "",
         f"name: {_set_name(out)}",
-        f"extends: {_beside(found.rig, out)}",
+        f"extends: {_beside(found.rig.file, out)}",
         f"fs_hz: {found.blocks.fs_hz:g}",
         "operating_points:",
         f"  - speed_hz: {_number(point['speed_hz'])}    # of the recordings",
@@ -98,11 +96,11 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         f"variation: {{speed: {{random_rms: {_range(0.7 * low, 1.4 * high)}}}}}",
         "background: null              # noise and lines are those of the recordings",
         "dynamics: {unbalance: {grade_mm_s: 0.0}}    # among the lines of the recordings",
-        *_manufacture(found.config),
+        *_manufacture(found.rig.config),
         "sensors:",
     ]
     for channel, (name, axis) in zip(found.channels, sensor_axes(found), strict=True):
-        lines += _sensor(channel, name, axis, data_folder(out).name)
+        lines += _sensor(channel, (name, axis), data_folder(out).name, found.rig.depth_keys)
     return "\n".join(lines) + "\n"
 
 
@@ -112,8 +110,8 @@ def _manufacture(config: dict[str, Any]) -> Iterable[str]:
         yield "manufacture: {flank_waves: 'off'}    # among the lines of the recordings"
 
 
-def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[str]:
-    noise, sensor = channel.noise, channel.sensor
+def _sensor(channel: ChannelFit, called: tuple[str, str], folder: str, depth_keys: tuple[str, str]) -> Iterable[str]:
+    (name, axis), noise, sensor = called, channel.noise, channel.sensor
     yield f"  - name: {name}                # column or channel {channel.name}"
     yield "    place: casing"
     yield f"    axes: [{axis}]"
@@ -126,7 +124,7 @@ def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[
     yield f"    noise_spectrum:             # {level.value:.1f} dB re 1 (m/s2)2 in all, {_interval(level)}"
     yield f"      file: {folder}/noise_{name}.csv"
     yield f"      factor: {_range(1.0 / ratio, ratio, 'loguniform')}"
-    depths = {"pinion_depth": noise.pinion_depth, "gear_depth": noise.gear_depth, "level_std": noise.level_std}
+    depths = dict(zip(depth_keys, noise.depths, strict=True)) | {"level_std": noise.level_std}
     inner = ", ".join(f"{key}: {_depth(value)}" for key, value in depths.items())
     yield f"      modulation: {{{inner}}}"
     if table := _lines(channel):
@@ -142,7 +140,7 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
     """Return what was fitted, with intervals, and what was not identified."""
     groups = [group.name for group in found.library.groups]
     return {
-        "rig": str(found.rig),
+        "rig": str(found.rig.file),
         "recordings": [block.name for block in found.blocks.blocks],
         "speed_hz": [block.speed_hz for block in found.blocks.blocks],
         "speed_random_rms": list(found.random_rms),
@@ -160,8 +158,7 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
                     if np.isfinite(level.value)
                 },
                 "noise_level_db": _fact(channel.noise.level_db),
-                "pinion_depth": _fact(channel.noise.pinion_depth),
-                "gear_depth": _fact(channel.noise.gear_depth),
+                **dict(zip(found.rig.depth_keys, map(_fact, channel.noise.depths), strict=True)),
                 "level_std": _fact(channel.noise.level_std),
                 "lines_beside_the_mesh": len(channel.own),
                 "second_stage_level_db": {one.name: _fact(one.level_db) for one in channel.stage},
@@ -176,17 +173,25 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
 
 def not_identified(found: Calibration) -> tuple[str, ...]:
     """Return what the recordings of a calibration do not tell, a sentence each."""
-    return (*ALWAYS_OPEN, NO_STAGE if found.stage is None else WEAK_STAGE_LINES)
+    left = found.rig.left_out
+    others = (f"sensors that are no accelerometers: {', '.join(left)}; the new configuration has none",) if left else ()
+    several = SEVERAL_MESHES if len(found.rig.drive.meshes) > 1 else ()
+    stage = NO_STAGE if found.stage is None else WEAK_STAGE_LINES
+    return (*ALWAYS_OPEN, *others, *several, stage if found.rig.shows_other_stages else NOT_SOUGHT)
 
 
 def stage_sentence(found: Calibration) -> str:
     """Return what was found of a second stage."""
+    drive = found.rig.drive
+    if not found.rig.shows_other_stages:
+        return f"Simulated: {', '.join(mesh.words for mesh in drive.meshes)}. Other stages were not looked for."
     if found.stage is None:
         return "No second stage was found."
     counts = ", ".join(f"{len(channel.stage)} lines on {channel.name}" for channel in found.channels)
+    words = {shaft.name: shaft.words for shaft in drive.shafts}
     return (
-        f"A second stage: {found.stage.teeth} teeth on the {found.stage.shaft}'s shaft, order "
-        f"{found.stage.order:.4g} of the pinion; {counts}."
+        f"A second stage: {found.stage.teeth} teeth on {words[found.stage.shaft]}, order {found.stage.order:.4g} per "
+        f"turn of {drive.shafts[0].words}; {counts}."
     )
 
 
@@ -194,6 +199,11 @@ NO_STAGE = (
     "a second stage: no comb of whole teeth on either shaft stands out of the lines that errors of the teeth make. One "
     "whose lines are less than about 8 dB above those is not excluded; its lines count as errors of the teeth"
 )
+SEVERAL_MESHES = (
+    "paths of the meshes apart: one path carries the lines of all, in a direction under which all of them fit",
+    "noise that further shafts than the first two modulate: it is steady",
+)
+NOT_SOUGHT = "stages that the configuration does not list: not looked for, their lines count as errors of the teeth"
 WEAK_STAGE_LINES = (
     "lines of the second stage at the gears' own mesh lines, two shaft orders beside them, or less than 6 dB above the "
     "errors of the teeth: they count as these errors"
@@ -244,11 +254,10 @@ def _path_file(sensor: str, number: int) -> str:
     return f"path_{sensor}_{number:02d}.npz"
 
 
-def _write_path(file: Path, grid_hz: np.ndarray, axis: str, channel: ChannelFit, number: int) -> None:
-    draw = channel.paths[number]
-    columns = {"frequency_hz": grid_hz}
-    for weight, (place, direction) in zip(draw.direction, PLACES, strict=True):
-        stem = f"{axis}_from_{place}_{direction}"
+def _write_path(file: Path, found: Calibration, axis: str, draw: PathDraw) -> None:
+    columns = {"frequency_hz": found.grid_hz}
+    for weight, force in zip(draw.direction, found.rig.forces, strict=True):
+        stem = f"{axis}_from_{force.replace('/', '_')}"
         curve = weight * draw.accelerance
         columns |= {f"{stem}_real_m_s2_per_n": curve.real, f"{stem}_imag_m_s2_per_n": curve.imag}
     np.savez(file, allow_pickle=False, **columns)

@@ -6,15 +6,14 @@ per draw of what path and source share. Source: derived.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-import siggen
 from diagnostics.base.seeding import Purpose, generator
+from diagnostics.calibration.drivetrain import Drivetrain
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlocks, jackknife
 from diagnostics.calibration.noise_fit import UNKNOWN_SPREAD_DB, NoiseFit, SensorFit, noise_fit, sensor_fit
 from diagnostics.calibration.order_record import (
@@ -26,7 +25,8 @@ from diagnostics.calibration.order_record import (
     order_record,
 )
 from diagnostics.calibration.own_lines import OwnLine, own_lines
-from diagnostics.calibration.path_draws import CEPSTRUM_POINTS, ChannelLines, PathDraw, drawn_path
+from diagnostics.calibration.path_draws import CEPSTRUM_POINTS, ChannelLines, PathDraw, drawn_path, unlike_db
+from diagnostics.calibration.rig import Rig, check_meshes
 from diagnostics.calibration.second_stage import (
     Multiples,
     SecondStage,
@@ -36,7 +36,7 @@ from diagnostics.calibration.second_stage import (
     stage_lines,
     wave_lines,
 )
-from diagnostics.calibration.source_library import PLACES, SourceLibrary, source_library
+from diagnostics.calibration.source_library import SourceLibrary, source_library
 from siggen.errors import UsageError
 
 GRID_STEPS = 1024
@@ -47,6 +47,9 @@ FEWEST_GROUPS, SURE_SHARE = 2, 0.75
 SPEED_MARGIN = 0.01
 SLOW_TURNS = 5
 LARGEST_RANDOM_RMS = 0.05
+TRIED_DIRECTIONS = 32
+MOST_LINES = 400
+"""Of a channel of a set."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,9 +75,7 @@ class Calibration:
 
     Attributes
     ----------
-    rig : Path
-    config : dict
-        The rig, resolved.
+    rig : Rig
     operating_point : dict
         Speed range of the recordings, torque of the rig.
     random_rms : (float, float)
@@ -84,60 +85,22 @@ class Calibration:
     channels : tuple of ChannelFit
     library : SourceLibrary
     blocks : HealthyBlocks
-    teeth : (int, int)
     stage : SecondStage or None
-        Another pair on one of the shafts, where the recordings show it.
+        A pair beside those of the rig on one of its shafts, where the recordings show it.
     """
 
-    rig: Path
-    config: dict[str, Any]
+    rig: Rig
     operating_point: dict[str, Any]
     random_rms: tuple[float, float]
     grid_hz: np.ndarray
     channels: tuple[ChannelFit, ...]
     library: SourceLibrary
     blocks: HealthyBlocks
-    teeth: tuple[int, int]
     stage: SecondStage | None
 
 
-def rig_teeth(rig: Path) -> tuple[dict[str, Any], tuple[int, int]]:
-    """Return the resolved configuration of a rig, and its teeth.
-
-    Raises
-    ------
-    UsageError
-        If its model has no bearings, it has further meshes, or its gears are drawn.
-    """
-    config = siggen.load_config(rig).canonical()
-    if (machine := config.get("machine")) is not None:
-        raise UsageError(
-            f"{rig}: machine: received the meshes {', '.join(mesh['name'] for mesh in machine['meshes'])}; a "
-            "calibration is of one pair of gears. Write that pair as `gears` and leave `machine` out: lines of another "
-            "stage are then found in the recordings. `siggen-diagnostics baseline --config` takes all meshes"
-        )
-    if stages := config.get("stages"):
-        raise UsageError(
-            f"{rig}: stages: received {', '.join(stage['name'] for stage in stages)}; a calibration is of the pair of "
-            "`gears` alone. Leave `stages` out: lines of another stage are then found in the recordings. "
-            "`siggen-diagnostics baseline --config` takes all meshes"
-        )
-    if config.get("planetary") is not None:
-        raise UsageError(
-            f"{rig}: planetary: received a planetary set; a calibration is of a pair of gears alone. "
-            "`siggen-diagnostics baseline --config` takes such machines"
-        )
-    if config["dynamics"]["model"] == "torsional":
-        raise UsageError(f"{rig}: dynamics.model torsional has no bearing forces; allowed: 6dof, 8dof or casing")
-    gears = config["gears"]
-    teeth = [gears[name]["teeth"] for name in ("pinion", "gear")] if isinstance(gears, dict) else []
-    if len(teeth) != 2 or not all(isinstance(z, int) for z in teeth):
-        raise UsageError(f"{rig}: gears differ within the set; a calibration is of one pair of known teeth")
-    return config, (teeth[0], teeth[1])
-
-
 def calibrated(
-    rig: Path,
+    rig: Rig,
     blocks: HealthyBlocks,
     torque_nm: tuple[float, float] | None,
     gearboxes: int,
@@ -149,7 +112,7 @@ def calibrated(
 
     Parameters
     ----------
-    rig : Path
+    rig : Rig
     blocks : HealthyBlocks
     torque_nm : (float, float), optional
         Of the recordings; otherwise that of the rig.
@@ -162,30 +125,31 @@ def calibrated(
     Raises
     ------
     UsageError
-        If a recording shows no mesh lines, or the rig has no bearings.
+        If a recording shows no lines of a mesh.
     """
-    config, teeth = rig_teeth(rig)
-    point = {"speed_hz": _speeds(blocks), "torque_nm": _torque(config, torque_nm)}
-    records = {name: _records(name, blocks, teeth) for name in blocks.channels}
-    multiples = machine_multiples(records, teeth)
-    stage = second_stage(multiples, teeth)
-    foreign = {name: _foreign(name, multiples, stage, teeth) for name in records}
+    drive = rig.drive
+    point = {"speed_hz": _speeds(blocks), "torque_nm": _torque(rig.config, torque_nm)}
+    records = {name: _records(name, blocks, drive) for name in blocks.channels}
+    check_meshes(rig, records)
+    multiples = machine_multiples(records, drive)
+    stage = second_stage(multiples, drive) if rig.shows_other_stages else None
+    foreign = {name: _foreign(name, multiples, stage, drive) for name in records}
     orders = tuple(dict.fromkeys(order for one in foreign.values() for order in one.orders))
     top = HIGHEST_SHARE * blocks.fs_hz / max(block.speed_hz for block in blocks.blocks)
-    groups = line_groups(teeth, top, orders)
+    groups = line_groups(drive, top, orders)
     seen = {name: _seen(name, blocks, own, groups, foreign[name]) for name, own in records.items()}
     library = source_library(rig, point, blocks.fs_hz, groups, gearboxes, advance)
     draws = _Draws.of(len(blocks.blocks), library.energy_n2.shape[0], paths, seed)
     grid_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, GRID_STEPS + 1)
     channels = tuple(
-        _channel(one, number, blocks, library, draws, grid_hz, teeth, line_groups(teeth, top))
+        _channel(one, number, blocks, library, draws, grid_hz, drive, line_groups(drive, top))
         for number, one in enumerate(seen.values())
     )
-    return Calibration(rig, config, point, _random_rms(blocks), grid_hz, channels, library, blocks, teeth, stage)
+    return Calibration(rig, point, _random_rms(blocks), grid_hz, channels, library, blocks, stage)
 
 
-def _records(name: str, blocks: HealthyBlocks, teeth: tuple[int, int]) -> tuple[OrderRecord, ...]:
-    return tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, teeth) for one in blocks.blocks)
+def _records(name: str, blocks: HealthyBlocks, drive: Drivetrain) -> tuple[OrderRecord, ...]:
+    return tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, drive) for one in blocks.blocks)
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,9 +164,9 @@ class _Foreign:
         return tuple(line.order for line in (*(one.line for one in self.stage), *self.waves))
 
 
-def _foreign(name: str, multiples: Multiples, stage: SecondStage | None, teeth: tuple[int, int]) -> _Foreign:
+def _foreign(name: str, multiples: Multiples, stage: SecondStage | None, drive: Drivetrain) -> _Foreign:
     lines = stage_lines(stage, multiples[stage.shaft][name]) if stage and name in multiples[stage.shaft] else ()
-    return _Foreign(lines, wave_lines(multiples, teeth, name, tuple(one.line.order for one in lines)))
+    return _Foreign(lines, wave_lines(multiples, drive, name, tuple(one.line.order for one in lines)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,7 +207,7 @@ def _seen(
         level, share = group_levels(record, groups)
         hz.append([group.centre * record.speed_hz for group in groups])
         energy.append(10.0 * np.log10(np.maximum(level, 1e-30)))
-        sure.append(int((share[::3] > SURE_SHARE).sum()))
+        sure.append(int((share[[group.is_line for group in groups]] > SURE_SHARE).sum()))
         density = np.interp(points_hz, np.arange(record.floor.size) * record.bin_hz, record.floor / record.bin_hz)
         floors.append(10.0 * np.log10(np.maximum(density, 1e-30)))
     lines = ChannelLines(np.array(hz), np.array(energy), np.array(floors))
@@ -267,28 +231,46 @@ def _channel(
     library: SourceLibrary,
     draws: _Draws,
     grid_hz: np.ndarray,
-    teeth: tuple[int, int],
+    drive: Drivetrain,
     groups: tuple[LineGroup, ...],
 ) -> ChannelFit:
     rng = generator(draws.seed, Purpose.PATHS, 1 + number)
-    directions = rng.standard_normal((len(draws.blocks), len(PLACES)))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    directions = _directions(seen.lines, library, draws, rng)
     gains = path_gains(len(draws.blocks), len(blocks.blocks), rng)
     found = tuple(
         PathDraw(gain * drawn_path(seen.lines, library.level_db(w, chosen), picked, grid_hz, blocks.fs_hz), w)
         for gain, w, chosen, picked in zip(gains, directions, draws.gearboxes, draws.blocks, strict=True)
     )
-    gear_order = teeth[0] / teeth[1]
     return ChannelFit(
         seen.name,
         _levels(seen.records, groups),
         seen.lines,
-        noise_fit(seen.records, blocks.blocks, seen.name, gear_order),
-        (*own_lines(seen.records, teeth), *seen.foreign.waves),
+        noise_fit(seen.records, blocks.blocks, seen.name, drive.gear_order),
+        _strongest((*own_lines(seen.records, drive), *seen.foreign.waves), MOST_LINES - len(seen.foreign.stage)),
         seen.foreign.stage,
         sensor_fit(blocks.blocks, seen.name),
         found,
     )
+
+
+def _directions(lines: ChannelLines, library: SourceLibrary, draws: _Draws, rng: np.random.Generator) -> np.ndarray:
+    """Return the direction of every path, (paths, forces), of unit length.
+
+    One mesh fits any direction with a path of its own. Of several, lines lie side by side, so a few are drawn and the
+    one that leaves least between them is taken.
+    """
+    tried = TRIED_DIRECTIONS if len({group.mesh for group in library.groups}) > 1 else 1
+    found = rng.standard_normal((len(draws.blocks), tried, library.energy_n2.shape[-1]))
+    found /= np.linalg.norm(found, axis=-1, keepdims=True)
+    best = [
+        np.argmin(unlike_db(lines, np.array([library.level_db(w, chosen) for w in directions]), picked))
+        for directions, chosen, picked in zip(found, draws.gearboxes, draws.blocks, strict=True)
+    ]
+    return np.asarray(found[np.arange(len(best)), best])
+
+
+def _strongest(lines: Iterable[OwnLine], most: int) -> tuple[OwnLine, ...]:
+    return tuple(sorted(lines, key=lambda line: -line.amplitude)[:most])
 
 
 def _levels(records: tuple[OrderRecord, ...], groups: tuple[LineGroup, ...]) -> tuple[Fitted, ...]:

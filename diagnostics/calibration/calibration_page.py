@@ -66,10 +66,11 @@ def calibration_page(
     """
     names = found.blocks.channels
     read = found.blocks if held_out is None else held_out
-    real = sample_of(read.blocks, found.teeth)
-    before = simulated_blocks(at_recordings(found.rig, found.operating_point, read.fs_hz), names, size[0], advance)
+    real = sample_of(read.blocks, found.rig.drive.teeth)
+    alike = at_recordings(found.rig.file, found.operating_point, read.fs_hz) | {"sensors": found.rig.sensors}
+    before = simulated_blocks(alike, names, size[0], advance)
     after = simulated_blocks(out, names, size[0], advance)
-    compared = [likeness(real, sample_of(blocks, found.teeth), size[1]) for blocks in (before, after)]
+    compared = [likeness(real, sample_of(blocks, found.rig.drive.teeth), size[1]) for blocks in (before, after)]
     judged = 0 if held_out is None else len(held_out.blocks)
     return write_calibration_page(found, real, compared[0], compared[1], data_folder(out), judged)
 
@@ -88,13 +89,13 @@ def write_calibration_page(
             )
         ]
     parts = [
-        html.heading(f"Calibration of {found.rig.stem}", 1),
+        html.heading(f"Calibration of {found.rig.file.stem}", 1),
         *html.summary(_sentences(before, after, held_out)),
         _likeness_table(found, before, after),
         html.figure_grid(figures),
         html.paragraph(
             "Recordings and simulated records over each other, once a set is generated: `siggen-diagnostics explore "
-            "RECORDING... --teeth Z1,Z2 --beside SET`."
+            f"RECORDING... --config {found.rig.file.name} --beside SET`."
         ),
         html.heading("What gives the set away"),
         *_feature_parts(before, after),
@@ -107,7 +108,7 @@ def write_calibration_page(
         *(html.paragraph(f"{text[:1].upper()}{text[1:]}.") for text in not_identified(found)),
     ]
     path = folder / PAGE
-    path.write_text(html.page(f"Calibration of {found.rig.stem}", parts), encoding="utf-8")
+    path.write_text(html.page(f"Calibration of {found.rig.file.stem}", parts), encoding="utf-8")
     return path
 
 
@@ -174,8 +175,10 @@ def _fitted_table(found: Calibration) -> str:
         noise = channel.noise
         facts: dict[str, Fitted] = {
             "noise in all [dB re 1 (m/s²)²]": noise.level_db,
-            "modulation once per pinion turn": noise.pinion_depth,
-            "modulation once per gear turn": noise.gear_depth,
+            **{
+                f"modulation once per {shaft.name} turn": depth
+                for shaft, depth in zip(found.rig.drive.shafts, noise.depths, strict=False)
+            },
             "random level, standard deviation": noise.level_std,
         }
         facts |= {

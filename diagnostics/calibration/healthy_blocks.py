@@ -3,8 +3,6 @@
 Pieces of a recording have wider lines over a higher floor per line, so levels of weak lines would rise with the number
 of pieces.
 
-Which column of a recording is which channel of the rig.
-
 A number with its interval from leaving recordings out one by one.
 
 Source: standard literature (jackknife); limits by Student's t with as many degrees of freedom as recordings less one.
@@ -17,11 +15,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from diagnostics.recordings.file_channels import file_channels
 from diagnostics.recordings.level_alike import check_levels_alike, level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import shaft_pulses
@@ -67,45 +63,9 @@ def jackknife(values: np.ndarray, statistic: Callable[[np.ndarray], float] = np.
     return Fitted(whole, whole - reach, whole + reach)
 
 
-def rig_channels(
-    config: Mapping[str, Any], source: tuple[Path, int | None], said: Mapping[str, str], tacho: str | None
-) -> tuple[tuple[str, ...], dict[str, str]]:
-    """Return the channels of a rig, and the column of each where it has another name.
-
-    Parameters
-    ----------
-    config : mapping
-        Resolved configuration.
-    source : (Path, int or None)
-        First recording.
-    said : mapping
-        Column by channel, as the user gave it.
-    tacho : str, optional
-
-    Raises
-    ------
-    UsageError
-        If the recording has more or fewer channels than the rig.
-    """
-    names = tuple(f"{sensor['name']}_{axis}" for sensor in config["sensors"] for axis in sensor["axes"])
-    if said:
-        if set(said) != set(names):
-            raise UsageError(f"--channel: received {', '.join(said)}; the rig has the channels {', '.join(names)}")
-        return names, dict(said)
-    found = file_channels(source[0], tacho, source[1])
-    if set(names) <= set(found):
-        return names, {}
-    if len(found) != len(names):
-        raise UsageError(
-            f"{source[0]}: {len(found)} channels ({', '.join(found)}), the rig has {len(names)} ({', '.join(names)}); "
-            "give --channel NAME=COLUMN for each, or a rig with as many sensors (siggen init --sensors)"
-        )
-    return names, dict(zip(names, found, strict=True))
-
-
 @dataclass(frozen=True, slots=True)
 class Block:
-    """One recording: name, channels (n,) [m/s²], rate and pulse times [s] of the pinion."""
+    """One recording: name, channels (n,) [m/s²], rate and pulse times [s] of the first shaft."""
 
     name: str
     channels: Mapping[str, np.ndarray]
@@ -114,7 +74,7 @@ class Block:
 
     @property
     def speed_hz(self) -> float:
-        """Mean speed of the pinion."""
+        """Mean speed of the first shaft."""
         return float((self.pulses_s.size - 1) / (self.pulses_s[-1] - self.pulses_s[0]))
 
 
@@ -149,7 +109,8 @@ def healthy_blocks(
         pulses = shaft_pulses(recording, teeth, speed_range_hz).times_s
         if pulses.size <= FEWEST_TURNS:
             raise UsageError(
-                f"{path}: {pulses.size - 1} whole turns of the pinion; allowed: at least {FEWEST_TURNS}. Record longer"
+                f"{path}: {pulses.size - 1} whole turns of the first shaft; allowed: at least {FEWEST_TURNS}. Record "
+                "longer"
             )
         name = path.name if row is None else f"{path.name}:{row}"
         found.append(Block(name, recording.channels, recording.fs_hz, pulses))

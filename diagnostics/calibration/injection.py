@@ -25,6 +25,8 @@ import pyarrow as pa
 import siggen
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
+from diagnostics.recordings.configured_train import config_train
+from diagnostics.records.gear_train import train_labels
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from siggen.errors import UsageError
 from siggen.keys.column import Role
@@ -188,9 +190,10 @@ def _complete(rows: Sequence[dict[str, Any]], config: Any) -> None:
     torque_nm = 0.5 * (min(drawn) + max(drawn))
     states = dict.fromkeys(["healthy", *(row["state"] for row in rows)])
     numbers = {state: number for number, state in enumerate(states)}
+    teeth = {config.names.column(name): count for name, count in train_labels(config_train(config)).items()}
     for row in rows:
         row["state_id"], row["torque_nm"] = numbers[row["state"]], float(torque_nm)
-        row |= {"teeth_pinion": config.gears.pinion.teeth, "teeth_gear": config.gears.gear.teeth}
+        row.update(teeth)
 
 
 @dataclass(frozen=True, slots=True)

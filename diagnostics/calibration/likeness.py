@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -127,7 +128,8 @@ def _levels(signal: np.ndarray, block: Block, teeth: tuple[int, int]) -> list[fl
 
 def _inside(real: np.ndarray, simulated: np.ndarray) -> np.ndarray:
     """Return whether each value of the recordings lies within 90 % of the gearboxes', flat; NaN where undefined."""
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of what no gearbox has a value of
         low, high = np.nanquantile(simulated, RANGE, axis=0)
         found = ((real >= low) & (real <= high)).astype(np.float64)
     found[~np.isfinite(real) | ~np.isfinite(np.broadcast_to(low, real.shape))] = np.nan

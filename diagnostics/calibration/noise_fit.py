@@ -93,6 +93,11 @@ class NoiseFit:
     gear_depth: Fitted
     level_std: Fitted
 
+    @property
+    def depths(self) -> tuple[Fitted, Fitted]:
+        """How deep the first and the second shaft modulate it."""
+        return self.pinion_depth, self.gear_depth
+
 
 def noise_fit(records: Sequence[OrderRecord], blocks: Sequence[Block], channel: str, gear_order: float) -> NoiseFit:
     """Return the noise of a channel from its spectra and recordings, one of each per block."""

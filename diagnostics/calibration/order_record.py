@@ -1,17 +1,20 @@
-"""OrderRecord: the spectrum of one channel over whole turns of the pinion, its floor, and the energy of its mesh lines.
+"""OrderRecord: the spectrum of one channel over turns of the first shaft, its floor, and the energy of mesh lines.
 
 Hann spectrum, scaled so that the sum over the bins of a line is its mean square. The floor is the median over 41 bins
-beside the lines of both shafts, over ln 2 (exponential distribution of a bin's power). Source: standard literature;
+beside the lines of all shafts, over ln 2 (exponential distribution of a bin's power). Source: standard literature;
 groups of lines derived.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.calibration.drivetrain import Drivetrain, MeshOrder
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 
 FLOOR_BINS, LINE_BINS, MASK_BINS = 41, 2, 2.2
@@ -36,11 +39,11 @@ class OrderRecord:
     floor : (bins,) float64
         Floor of the power per bin.
     free : (bins,) bool
-        Bins beside the lines of both shafts.
+        Bins beside the lines of all shafts.
     revolutions : int
         Bins per order.
     speed_hz : float
-        Mean speed of the pinion.
+        Mean speed of the first shaft.
     """
 
     power: np.ndarray
@@ -77,8 +80,8 @@ def turns_of(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray) -> np.ndarr
     return resample_to_angle(signal, fs_hz, grid).reshape(grid.revolutions, -1)
 
 
-def order_record(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, teeth: tuple[int, int]) -> OrderRecord:
-    """Return the record of a channel (n,) with one pulse [s] per turn of the pinion."""
+def order_record(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, drive: Drivetrain) -> OrderRecord:
+    """Return the record of a channel (n,) with one pulse [s] per turn of the first shaft."""
     from scipy import fft
 
     turns = turns_of(signal, fs_hz, pulses_s)
@@ -87,17 +90,17 @@ def order_record(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, teeth: 
     power = 2.0 * np.square(np.abs(fft.rfft(flat * hann))) / (flat.size * float(np.square(hann).sum()))
     speed_hz = (pulses_s.size - 1) / float(pulses_s[-1] - pulses_s[0])
     kept = min(power.size, int(0.5 * fs_hz / speed_hz * turns.shape[0]))
-    free = free_bins(kept, turns.shape[0], teeth)
+    free = free_bins(kept, turns.shape[0], drive)
     return OrderRecord(power[:kept], _floor(power[:kept], free), free, turns.shape[0], speed_hz)
 
 
-def free_bins(bins: int, revolutions: int, teeth: tuple[int, int]) -> np.ndarray:
-    """Return which bins (bins,) lie beside all orders of both shafts; a gear's orders too dense to pass are ignored."""
+def free_bins(bins: int, revolutions: int, drive: Drivetrain) -> np.ndarray:
+    """Return which bins (bins,) lie beside all orders of all shafts; of slow ones too dense to pass are ignored."""
     order = np.arange(bins) / revolutions
     free = np.abs(order - np.round(order)) * revolutions > MASK_BINS
-    step = teeth[0] / teeth[1]
-    if step * revolutions > 4.0 * MASK_BINS:
-        free &= np.abs(order - np.round(order / step) * step) * revolutions > MASK_BINS
+    for step in (shaft.step for shaft in drive.shafts[1:]):
+        if step * revolutions > 4.0 * MASK_BINS:
+            free &= np.abs(order - np.round(order / step) * step) * revolutions > MASK_BINS
     free[:3] = False
     return np.asarray(free)
 
@@ -122,30 +125,53 @@ def line_places(power: np.ndarray, bins: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, slots=True)
 class LineGroup:
-    """Orders of lines whose mean energy is taken together: a mesh line, or its sidebands of one shaft."""
+    """Orders of lines whose mean energy is taken together: a mesh line, its sidebands of one shaft, low shaft orders.
+
+    `mesh` is the number of the mesh, from 0; `is_line` says whether it is the line itself.
+    """
 
     name: str
     centre: float
     orders: tuple[float, ...]
+    mesh: int = 0
+    is_line: bool = False
 
 
-def line_groups(teeth: tuple[int, int], top_order: float, foreign: tuple[float, ...] = ()) -> tuple[LineGroup, ...]:
-    """Return the groups below an order: of every mesh harmonic the line, pinion sidebands and gear sidebands.
+def line_groups(drive: Drivetrain, top_order: float, foreign: tuple[float, ...] = ()) -> tuple[LineGroup, ...]:
+    """Return the groups below an order: of every mesh harmonic the line, sidebands of its driving and its driven shaft.
 
-    Sidebands at `foreign` orders are left out: lines of another stage are there.
+    Below all of them errors of the teeth have lines at orders of the shafts. Lines at `foreign` orders are left out:
+    they are of another stage. Two meshes of one idler have one line.
     """
-    found = []
-    for h in range(1, MOST_MESH_LINES + 1):
-        mesh = float(h * teeth[0])
-        if mesh + max(PINION_SIDEBANDS) + 1.0 > top_order:
-            break
-        step = teeth[0] / teeth[1]
-        found += [
-            LineGroup(f"mesh {h}", mesh, (mesh,)),
-            LineGroup(f"pinion sidebands of mesh {h}", mesh, _own([mesh + k for k in PINION_SIDEBANDS], foreign)),
-            LineGroup(f"gear sidebands of mesh {h}", mesh, _own([mesh + k * step for k in GEAR_SIDEBANDS], foreign)),
-        ]
-    return tuple(found)
+    found = {group.orders: group for group in _low_groups(drive, foreign)}
+    for number, mesh in enumerate(drive.meshes):
+        for h in range(1, MOST_MESH_LINES + 1):
+            if h * mesh.order + max(PINION_SIDEBANDS) * mesh.shafts[0].step + 1.0 > top_order:
+                break
+            for group in _groups(mesh, number, h, foreign):
+                found.setdefault(group.orders, group)
+    return tuple(found.values())
+
+
+def _groups(mesh: MeshOrder, number: int, h: int, foreign: tuple[float, ...]) -> Iterator[LineGroup]:
+    """Yield the groups of one harmonic of a mesh."""
+    centre, called = h * mesh.order, mesh.called(str(h))
+    yield LineGroup(called, centre, (centre,), number, is_line=True)
+    for shaft, sidebands in zip(mesh.shafts, (PINION_SIDEBANDS, GEAR_SIDEBANDS), strict=True):
+        orders = _own([centre + k * shaft.step for k in sidebands], foreign)
+        yield LineGroup(f"{shaft.name} sidebands of {called}", centre, orders, number)
+
+
+def _low_groups(drive: Drivetrain, foreign: tuple[float, ...]) -> Iterator[LineGroup]:
+    """Yield the multiples of the first two shafts from order 1 to the first sidebands, by quarters of an octave."""
+    top = min(mesh.order - max(GEAR_SIDEBANDS) * mesh.shafts[0].step for mesh in drive.meshes)
+    multiples = {k * shaft.step for shaft in drive.shafts[:2] for k in range(1, math.ceil(max(top, 1.0) / shaft.step))}
+    orders = np.array(sorted(multiples))
+    edges = 2.0 ** (0.25 * np.arange(math.floor(4.0 * math.log2(max(top, 1.0))) + 1))
+    for low, high in itertools.pairwise(edges.tolist()):
+        inside = orders[(orders >= low - SAME_ORDER) & (orders < high - SAME_ORDER)].tolist()
+        if inside:
+            yield LineGroup(f"orders {low:.3g} to {high:.3g}", math.sqrt(low * high), _own(inside, foreign))
 
 
 def _own(orders: list[float], foreign: tuple[float, ...]) -> tuple[float, ...]:

@@ -1,6 +1,6 @@
 """Transfer paths that a channel may have: magnitudes that turn simulated lines into measured ones, of minimum phase.
 
-Only the product of path and source is seen, and in one channel four bearing forces act as one combination w F. So w is
+Only the product of path and source is seen, and in one channel all bearing forces act as one combination w F. So w is
 drawn, and so are the gearboxes of the library and the recordings that a path is fitted to: the family of paths holds
 what is not known. Magnitude: the cepstrally liftered floor, plus a Gaussian kernel over log2 f applied to what lines
 leave beside it. Source: derived; the minimum phase by folding the cepstrum is standard literature.
@@ -23,8 +23,8 @@ USUAL_DB = 10.0
 """Of paths over 1/mass: 16 simulated machines of 10 to 50 kg had 0 to 24 dB, since housings ring."""
 MOST_DB = 30.0
 
-PATH_BYTES = 49_200
-"""Of one path of one sensor: frequencies and four complex curves of 1,025 points as float32 in base64."""
+CURVE_BYTES = 5_467
+"""Of 1,025 numbers as float32 in base64; a path has its frequencies and two of these for every bearing force."""
 MOST_BYTES = 2_800_000
 
 KERNEL_OCTAVES, WIDE_OCTAVES, WIDE_SHARE = 0.12, 1.0, 1e-3
@@ -38,14 +38,17 @@ BENCH_CENTRE_MM, BENCH_HOUSING_KG = 97.5, (8.0, 55.0)
 def housing_mass_kg(config: Mapping[str, Any]) -> Any:
     """Return the mass of a rigid housing, or the range of boxes of plates round the gears, as in a configuration.
 
-    Boxes of 8 to 55 kg stand round gears 97.5 mm apart, of 8 mm of iron to 25 mm of steel; they grow as its cube.
+    Boxes of 8 to 55 kg stand round gears 97.5 mm apart, of 8 mm of iron to 25 mm of steel; they grow as its cube. None
+    for machines of several meshes on the ground.
     """
     if (given := (config.get("housing") or {}).get("mass_kg")) is not None:
         return given
+    if "gears" not in config or config.get("stages"):
+        return None
     gears = config["gears"]
     teeth = gears["pinion"]["teeth"] + gears["gear"]["teeth"]
-    centre_mm = gears.get("centre_distance_mm") or 0.5 * _limits(gears["module_mm"])[1] * teeth
-    size = (_limits(centre_mm)[1] / BENCH_CENTRE_MM) ** 3
+    centre_mm = gears.get("centre_distance_mm") or 0.5 * number_limits(gears["module_mm"])[1] * teeth
+    size = (number_limits(centre_mm)[1] / BENCH_CENTRE_MM) ** 3
     return {"low": BENCH_HOUSING_KG[0] * size, "high": BENCH_HOUSING_KG[1] * size}
 
 
@@ -60,7 +63,7 @@ def path_level_doubt(mass_kg: Any, grid_hz: np.ndarray, accelerance: np.ndarray)
     accelerance : (paths, k) complex128
         m/s² per N.
     """
-    low, high = _limits(mass_kg)
+    low, high = number_limits(mass_kg)
     inside = (grid_hz >= BAND_HZ[0]) & (grid_hz <= BAND_HZ[1])
     found_db = float(np.median(20.0 * np.log10(np.abs(accelerance[:, inside]))))
     level_db = found_db + 10.0 * np.log10(low * high) - USUAL_DB
@@ -74,7 +77,7 @@ def path_level_doubt(mass_kg: Any, grid_hz: np.ndarray, accelerance: np.ndarray)
     )
 
 
-def _limits(number: Any) -> tuple[float, float]:
+def number_limits(number: Any) -> tuple[float, float]:
     """Return the bounds of a number of a configuration, which may be drawn."""
     if not isinstance(number, dict):
         return float(number), float(number)
@@ -83,9 +86,9 @@ def _limits(number: Any) -> tuple[float, float]:
     return float(min(values)), float(max(values))
 
 
-def family_size(wanted: int, sensors: int) -> int:
-    """Return the wanted number of paths, or what fits for so many sensors."""
-    return max(1, min(wanted, MOST_BYTES // (PATH_BYTES * sensors)))
+def family_size(wanted: int, sensors: int, forces: int) -> int:
+    """Return the wanted number of paths, or what fits for so many sensors and bearing forces."""
+    return max(1, min(wanted, MOST_BYTES // (CURVE_BYTES * (1 + 2 * forces) * sensors)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +111,7 @@ class ChannelLines:
 
 @dataclass(frozen=True, slots=True)
 class PathDraw:
-    """One possible path: accelerance [unit/N] (frequencies,) of w F, and the direction w (4,) of unit length."""
+    """One possible path: accelerance [unit/N] (frequencies,) of w F, and the direction w (forces,) of unit length."""
 
     accelerance: np.ndarray
     direction: np.ndarray
@@ -159,6 +162,17 @@ def high_passed(response: np.ndarray, grid_hz: np.ndarray) -> np.ndarray:
     """Return a response that falls as f² below HIGH_PASS_HZ, as that of anything on feet does."""
     s = 1j * grid_hz / HIGH_PASS_HZ
     return np.asarray(response * s**2 / (s**2 + np.sqrt(2.0) * s + 1.0))
+
+
+def unlike_db(lines: ChannelLines, simulated_db: np.ndarray, recordings: np.ndarray) -> np.ndarray:
+    """Return the rms (n,) [dB] of what no smooth path turns levels (n, groups) into those of the recordings."""
+    energy = lines.energy_db[recordings].mean(axis=0)
+    known = np.isfinite(energy)
+    octaves = np.log2(lines.frequency_hz[recordings].mean(axis=0)[known])
+    level = (energy - simulated_db)[:, known].T
+    weight = np.exp(-0.5 * ((octaves[:, None] - octaves) / KERNEL_OCTAVES) ** 2)
+    rest = level - weight @ level / weight.sum(axis=1)[:, None]
+    return np.asarray(np.sqrt(np.mean(rest**2, axis=0)))
 
 
 def drawn_path(

@@ -26,6 +26,7 @@ from math import gcd
 
 import numpy as np
 
+from diagnostics.calibration.drivetrain import Drivetrain, Shaft
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, jackknife
 from diagnostics.calibration.order_record import LEAST_SHARE, LINE_BINS, SAME_ORDER, OrderRecord, line_places
 from diagnostics.calibration.own_lines import LEAST_SPREAD, SHAFT_ORDERS, UNKNOWN_SPREAD, OwnLine
@@ -58,25 +59,23 @@ LINE_EXCESS_DB = 6.0
 HIGHEST_LINE = 20
 
 
-def wave_lines(
-    multiples: Multiples, teeth: tuple[int, int], channel: str, known: tuple[float, ...]
-) -> tuple[OwnLine, ...]:
+def wave_lines(multiples: Multiples, drive: Drivetrain, channel: str, known: tuple[float, ...]) -> tuple[OwnLine, ...]:
     """Return these lines of a channel.
 
     Parameters
     ----------
     multiples : mapping
         By shaft and channel.
-    teeth : (int, int)
+    drive : Drivetrain
     channel : str
     known : tuple of float
         Orders that are taken already: those of a second stage.
     """
     found: dict[float, OwnLine] = {}
-    for shaft, step in (("pinion", 1.0), ("gear", teeth[0] / teeth[1])):
-        if channel not in multiples.get(shaft, {}):
+    for shaft in drive.shafts:
+        if channel not in multiples.get(shaft.name, {}):
             continue
-        own = multiples[shaft][channel]
+        own, step = multiples[shaft.name][channel], shaft.step
         for number in (np.flatnonzero(own.excess_db >= WAVE_EXCESS_DB) + 1).tolist():
             order = number * step
             if number > SHAFT_ORDERS and all(abs(order - other) > SAME_ORDER for other in (*known, *found)):
@@ -95,7 +94,7 @@ class ShaftMultiples:
     usual_db : (k,) float64
         Mean over recordings that errors of the teeth lead to expect.
     excess_db : (k,) float64
-        Mean level over the expected one; NaN beside mesh lines.
+        Mean level over the expected one; NaN at mesh lines and beside them.
     """
 
     level_db: np.ndarray
@@ -103,31 +102,46 @@ class ShaftMultiples:
     excess_db: np.ndarray
 
 
-def shaft_multiples(records: Sequence[OrderRecord], step: float, teeth: int, period: int) -> ShaftMultiples | None:
-    """Return the multiples of a shaft; None where recordings are too short to tell them apart.
+def shaft_multiples(records: Sequence[OrderRecord], shaft: Shaft, drive: Drivetrain) -> ShaftMultiples | None:
+    """Return the multiples of a shaft of a machine; None where recordings are too short to tell them apart.
 
     Parameters
     ----------
     records : sequence of OrderRecord
         Of one channel.
-    step : float
-        Order of the shaft.
-    teeth : int
-        On the shaft.
-    period : int
-        Every which multiple is one of the other shaft too, and holds the errors of both.
     """
-    if step * min(record.revolutions for record in records) < FEWEST_BINS:
+    told = OFF_BINS / min(record.revolutions for record in records)
+    if shaft.step < FEWEST_BINS / OFF_BINS * told:
         return None
-    count = int(min((record.power.size - 4 * LINE_BINS) / record.revolutions for record in records) / step) - 1
+    count = int(min((record.power.size - 4 * LINE_BINS) / record.revolutions for record in records) / shaft.step) - 1
     number = np.arange(1, count + 1)
-    level = np.array([_levels_db(record, number * step) for record in records])
+    level = np.array([_levels_db(record, number * shaft.step) for record in records])
     mean = level.mean(axis=0)
-    mesh = np.abs(number - np.round(number / teeth) * teeth) <= BESIDE_MESH
-    usual = _around(mean, number, mesh, period)
-    above = np.where(mesh, np.nan, mean - usual)
-    usual = usual + _returning(above, number, teeth)
+    mesh = _at_meshes(number, shaft, drive, told)
+    usual = _around(mean, number, mesh, _also_of(number * shaft.step, shaft, drive, told))
+    for teeth in shaft.teeth:
+        usual = usual + _returning(np.where(mesh, np.nan, mean - usual), number, teeth)
     return ShaftMultiples(level, usual, np.where(mesh, np.nan, mean - usual))
+
+
+def _at_meshes(number: np.ndarray, shaft: Shaft, drive: Drivetrain, told: float) -> np.ndarray:
+    """Return which multiples (k,) are mesh lines or beside them by few turns of a shaft of theirs."""
+    found = np.zeros(number.size, dtype=bool)
+    for teeth in shaft.teeth:
+        found |= np.abs(number - np.round(number / teeth) * teeth) <= BESIDE_MESH
+    order = number * shaft.step
+    for mesh in (one for one in drive.meshes if shaft not in one.shafts):
+        beside = order - np.round(order / mesh.order) * mesh.order
+        for step in (one.step for one in mesh.shafts):
+            sideband = np.clip(np.round(beside / step), -BESIDE_MESH, BESIDE_MESH)
+            found |= np.abs(beside - sideband * step) < told
+    return found
+
+
+def _also_of(order: np.ndarray, shaft: Shaft, drive: Drivetrain, told: float) -> np.ndarray:
+    """Return (k, other shafts) of which shafts each order is a multiple too, so that it holds their errors as well."""
+    others = [one.step for one in drive.shafts if one != shaft]
+    return np.stack([np.abs(order - np.round(order / step) * step) < told for step in others], axis=1)
 
 
 def _levels_db(record: OrderRecord, orders: np.ndarray) -> np.ndarray:
@@ -141,12 +155,11 @@ def _levels_db(record: OrderRecord, orders: np.ndarray) -> np.ndarray:
     return np.asarray(10.0 * np.log10(np.maximum(np.maximum(energy, least), 1e-30)))
 
 
-def _around(level_db: np.ndarray, number: np.ndarray, mesh: np.ndarray, period: int) -> np.ndarray:
+def _around(level_db: np.ndarray, number: np.ndarray, mesh: np.ndarray, also_of: np.ndarray) -> np.ndarray:
     """Return the median of the nearest multiples of the same kind (k,), without those at mesh lines and beside it."""
     found = np.full(number.size, math.inf)
-    both = number % period == 0
     for k in range(number.size):
-        alike = np.flatnonzero((both == both[k]) & ~mesh & (np.abs(number - number[k]) > 1))
+        alike = np.flatnonzero((also_of == also_of[k]).all(axis=1) & ~mesh & (np.abs(number - number[k]) > 1))
         if alike.size >= FEWEST_ALIKE:
             nearest = np.argsort(np.abs(alike - k), kind="stable")[:AROUND]
             found[k] = np.median(level_db[alike[nearest]])
@@ -166,7 +179,7 @@ def _returning(above_db: np.ndarray, number: np.ndarray, teeth: int) -> np.ndarr
 
 @dataclass(frozen=True, slots=True)
 class SecondStage:
-    """Teeth on the shaft that both stages share, `pinion` or `gear`, that shaft's order, and the comb's score [dB]."""
+    """Teeth on the shaft that both stages share, its name and order, and the comb's score [dB]."""
 
     shaft: str
     teeth: int
@@ -175,7 +188,7 @@ class SecondStage:
 
     @property
     def order(self) -> float:
-        """Mesh order of the stage per turn of the pinion."""
+        """Mesh order of the stage per turn of the first shaft."""
         return self.teeth * self.step
 
 
@@ -192,22 +205,20 @@ Multiples = Mapping[str, Mapping[str, ShaftMultiples]]
 """By shaft and channel."""
 
 
-def machine_multiples(channels: Mapping[str, Sequence[OrderRecord]], teeth: tuple[int, int]) -> Multiples:
-    """Return the multiples of both shafts in every channel; a shaft is left out where recordings are too short."""
-    common = gcd(*teeth)
-    steps = {"pinion": (1.0, teeth[0]), "gear": (teeth[0] / teeth[1], teeth[1])}
+def machine_multiples(channels: Mapping[str, Sequence[OrderRecord]], drive: Drivetrain) -> Multiples:
+    """Return the multiples of all shafts in every channel; a shaft is left out where recordings are too short."""
     found: dict[str, dict[str, ShaftMultiples]] = {}
-    for shaft, (step, own) in steps.items():
-        each = {name: shaft_multiples(records, step, own, own // common) for name, records in channels.items()}
+    for shaft in drive.shafts:
+        each = {name: shaft_multiples(records, shaft, drive) for name, records in channels.items()}
         known = {name: one for name, one in each.items() if one is not None}
         if known:
-            found[shaft] = known
+            found[shaft.name] = known
     return found
 
 
-def second_stage(multiples: Multiples, teeth: tuple[int, int]) -> SecondStage | None:
-    """Return the stage that the recordings show; None where no comb stands out clearly."""
-    steps = {"pinion": 1.0, "gear": teeth[0] / teeth[1]}
+def second_stage(multiples: Multiples, drive: Drivetrain) -> SecondStage | None:
+    """Return the stage that recordings show; None where no comb stands out clearly."""
+    steps = {shaft.name: shaft.step for shaft in drive.shafts}
     found = [
         SecondStage(shaft, count, steps[shaft], score)
         for shaft, channels in multiples.items()

@@ -11,10 +11,8 @@ import numpy as np
 
 import siggen
 from diagnostics.calibration.order_record import LINE_BINS, LineGroup, turns_of
+from diagnostics.calibration.rig import Rig
 from siggen.errors import UsageError
-
-PLACES = tuple((place, axis) for place in ("pinion_bearing", "gear_bearing") for axis in ("vertical", "horizontal"))
-FORCES = tuple(f"bearing_force_{place}_{axis}_n" for place, axis in PLACES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +22,7 @@ class SourceLibrary:
     Attributes
     ----------
     groups : tuple of LineGroup
-    energy_n2 : (gearboxes, groups, 4, 4) float64
+    energy_n2 : (gearboxes, groups, forces, forces) float64
         w G w is the mean square of the force w F at the lines of a group, mean over its lines.
     """
 
@@ -37,8 +35,13 @@ class SourceLibrary:
         return np.asarray(10.0 * np.log10(np.maximum(energy, 1e-30)).mean(axis=0))
 
 
+def force_columns(rig: Rig) -> list[str]:
+    """Return what internals call the bearing forces of a rig."""
+    return [f"bearing_force_{force.replace('/', '_')}_n" for force in rig.forces]
+
+
 def source_library(
-    rig: Path,
+    rig: Rig,
     operating_point: dict[str, Any],
     fs_hz: float,
     groups: tuple[LineGroup, ...],
@@ -49,8 +52,7 @@ def source_library(
 
     Parameters
     ----------
-    rig : Path
-        Configuration of the machine.
+    rig : Rig
     operating_point : dict
         As in a configuration: speed and torque.
     fs_hz : float
@@ -64,7 +66,7 @@ def source_library(
     Raises
     ------
     UsageError
-        If the model has no bearings, or no gearbox could be simulated.
+        If no gearbox could be simulated.
     """
     config = siggen.load_config(library_configuration(rig, operating_point, fs_hz))
     found = []
@@ -72,19 +74,20 @@ def source_library(
         record = siggen.simulate(config, [number])[0]
         advance()
         if hasattr(record, "channels"):
-            found.append(_energies(record, fs_hz, groups))
+            found.append(_energies(record, force_columns(rig), fs_hz, groups))
     if not found:
-        raise UsageError(f"{rig}: none of {gearboxes} gearboxes could be simulated; see siggen plan {rig}")
+        raise UsageError(f"{rig.file}: none of {gearboxes} gearboxes could be simulated; see siggen plan {rig.file}")
     return SourceLibrary(groups, np.array(found))
 
 
-def library_configuration(rig: Path, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
+def library_configuration(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
     """Return a configuration of healthy gearboxes whose bearing forces are kept, without background and paths."""
+    place = rig.forces[0].split("/")[0]
     return {
-        **at_recordings(rig, operating_point, fs_hz),
+        **at_recordings(rig.file, operating_point, fs_hz),
         "background": None,
-        "sensors": [{"name": "bearing", "place": "pinion_bearing", "bits": None, "range_m_s2": 1e6}],
-        "internals": {"quantities": list(FORCES)},
+        "sensors": [{"name": "bearing", "place": place, "bits": None, "range_m_s2": 1e6}],
+        "internals": {"quantities": force_columns(rig)},
     }
 
 
@@ -100,12 +103,12 @@ def at_recordings(rig: Path, operating_point: dict[str, Any], fs_hz: float) -> d
     }
 
 
-def _energies(record: Any, fs_hz: float, groups: tuple[LineGroup, ...]) -> np.ndarray:
-    """Return (groups, 4, 4) of one record."""
+def _energies(record: Any, forces: list[str], fs_hz: float, groups: tuple[LineGroup, ...]) -> np.ndarray:
+    """Return (groups, forces, forces) of one record."""
     from scipy import fft
 
     pulses = np.asarray(record.tacho_s)
-    turns = [turns_of(record.internals[name].astype(np.float64), fs_hz, pulses) for name in FORCES]
+    turns = [turns_of(record.internals[name].astype(np.float64), fs_hz, pulses) for name in forces]
     flat = np.stack([one.ravel() - one.mean() for one in turns])
     hann = np.hanning(flat.shape[1])
     spectra = fft.rfft(flat * hann, axis=1) * np.sqrt(2.0 / (flat.shape[1] * float(np.square(hann).sum())))
@@ -113,7 +116,7 @@ def _energies(record: Any, fs_hz: float, groups: tuple[LineGroup, ...]) -> np.nd
 
 
 def _group_energy(spectra: np.ndarray, revolutions: int, group: LineGroup) -> np.ndarray:
-    total = np.zeros((len(FORCES), len(FORCES)))
+    total = np.zeros((len(spectra), len(spectra)))
     for order in group.orders:
         centre = round(order * revolutions)
         near = spectra[:, centre - LINE_BINS : centre + LINE_BINS + 1]

@@ -63,7 +63,10 @@ class InjectionOptions:
 @grouped
 def calibrate(
     rig: Annotated[
-        Path, typer.Argument(metavar="RIG", help="Configuration of the machine, as `siggen init` writes it.")
+        Path,
+        typer.Argument(
+            metavar="RIG", help="Configuration of the machine, as `siggen init` writes it; several meshes too."
+        ),
     ],
     healthy: Annotated[
         list[str],
@@ -95,29 +98,32 @@ def calibrate(
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
     from diagnostics.calibration.calibrated_files import check_new, write_calibration
-    from diagnostics.calibration.calibration import calibrated, rig_teeth
+    from diagnostics.calibration.calibration import calibrated
     from diagnostics.calibration.calibration_page import calibration_page
-    from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks, rig_channels
+    from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks
     from diagnostics.calibration.injection import write_injected
     from diagnostics.calibration.path_draws import family_size
+    from diagnostics.calibration.rig import check_speeds, read_rig, rig_channels
 
     check_new(out, injection.inject)
     if page.compared:
         require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
     with terminal_stage("the rig", 1):
-        config, teeth = rig_teeth(rig)
-    names, columns = rig_channels(config, sources[0], recording.columns(), recording.tacho)
+        machine = read_rig(rig)
+    teeth = machine.drive.teeth
+    names, columns = rig_channels(machine, sources[0], recording.columns(), recording.tacho)
     facts, span = recording.facts(columns), recording.speed_range_hz()
     newtons = two_numbers(torque, "--torque", "15,60") if torque else None
     with terminal_stage("healthy recordings", 1) as advance:
         blocks = healthy_blocks(sources, names, facts, teeth, span)
         others = [source for entry in page.held_out or () for source in file_rows(entry)]
         judges = held_out_blocks(others, blocks, facts, teeth, span)
+        check_speeds(machine, (*blocks.blocks, *(judges.blocks if judges else ())))
         advance()
-    family, seed = family_size(draws.paths, len(names)), draws.seed
+    family, seed = family_size(draws.paths, len(names), len(machine.forces)), draws.seed
     with terminal_stage("gearboxes", draws.gearboxes) as advance:
-        found = calibrated(rig, blocks, newtons, draws.gearboxes, family, seed, advance)
+        found = calibrated(machine, blocks, newtons, draws.gearboxes, family, seed, advance)
     write_calibration(found, out)
     siggen.load_config(out)  # what would be refused is said now
     _tell(found)
@@ -140,17 +146,18 @@ def _tell(found: Calibration) -> None:
     from diagnostics.calibration.path_draws import housing_mass_kg, path_level_doubt
 
     for fit in found.channels:
-        noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)
+        noise, depths = fit.noise, [depth.value for depth in fit.noise.depths]
         typer.echo(
             f"{fit.name}: noise {noise.level_db.value:.1f} dB re 1 (m/s2)^2, shaft depths {depths[0]:.2f} and "
             f"{depths[1]:.2f}, {len(fit.own)} lines beside the mesh, {len(fit.paths)} paths"
         )
     if len(found.blocks.blocks) < FEWEST_RECORDINGS:
         typer.echo(f"recordings: {len(found.blocks.blocks)}; {TOO_FEW}", err=True)
-    if found.stage is not None:
+    if found.stage is not None or not found.rig.shows_other_stages:
         typer.echo(stage_sentence(found))
     for text in not_identified(found):
         typer.echo(f"not identified: {text}", err=True)
     paths = np.array([draw.accelerance for channel in found.channels for draw in channel.paths])
-    if doubt := path_level_doubt(housing_mass_kg(found.config), found.grid_hz, paths):
+    mass_kg = housing_mass_kg(found.rig.config)
+    if mass_kg is not None and (doubt := path_level_doubt(mass_kg, found.grid_hz, paths)):
         typer.echo(doubt, err=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import siggen
 from diagnostics.records.gear_train import GEARS, Mesh, gear_train, teeth_columns
@@ -29,6 +30,11 @@ def configured_train(file: Path) -> tuple[Mesh, ...]:
     config = siggen.load_config(file)
     if config.gears.pairs:
         raise UsageError(f"{file}: gears: received gears that differ within a set; allowed: one pair of known teeth")
+    return config_train(config)
+
+
+def config_train(config: Any) -> tuple[Mesh, ...]:
+    """Return the meshes of a configuration of one gearbox of known teeth."""
     pinion, gear = config.gears.pinion.teeth, config.gears.gear.teeth
     if (planetary := config.planetary) is not None:
         places = tuple(float(degrees) / 360.0 for degrees in planetary.positions_deg)

@@ -18,6 +18,7 @@ from diagnostics.calibration.calibrated_files import write_calibration
 from diagnostics.calibration.calibration import calibrated
 from diagnostics.calibration.healthy_blocks import HealthyBlocks, healthy_blocks
 from diagnostics.calibration.likeness import Likeness, likeness, sample_of, simulated_blocks
+from diagnostics.calibration.rig import read_rig
 from diagnostics.calibration.source_library import at_recordings
 from diagnostics.recordings.measured_recording import RecordingFacts
 from siggen.rig.rig import Rig
@@ -55,7 +56,7 @@ def before_and_after(folder: Path, changes: dict[str, Any]) -> tuple[Likeness, L
     rig, mine = folder / "rig.yaml", folder / "mine.yaml"
     rig.write_text(rig_text(Rig(TEETH, 3.0, 20.0, (33.0, 36.0), (20.0, 50.0)), "rig", "bench"), encoding="utf-8")
     fitted = HealthyBlocks(blocks.blocks[:FITTED], blocks.channels, blocks.fs_hz)
-    found = calibrated(rig, fitted, None, GEARBOXES, PATHS, 0, lambda: None)
+    found = calibrated(read_rig(rig), fitted, None, GEARBOXES, PATHS, 0, lambda: None)
     write_calibration(found, mine)
     real = sample_of(blocks.blocks[FITTED:], TEETH)
     sources = (at_recordings(rig, found.operating_point, FS_HZ), mine)

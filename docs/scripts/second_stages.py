@@ -17,12 +17,14 @@ import numpy as np
 from hidden_machine import CHANNELS, FS_HZ, REFERENCES, TEETH
 
 import siggen
+from diagnostics.calibration.drivetrain import pair
 from diagnostics.calibration.healthy_blocks import healthy_blocks
 from diagnostics.calibration.order_record import OrderRecord, order_record
 from diagnostics.calibration.second_stage import SecondStage, machine_multiples, second_stage, stage_lines
 from diagnostics.recordings.measured_recording import RecordingFacts
 
 MACHINES, LATER = 12, 9
+PAIR = pair(TEETH)
 POINT = {"speed_hz": 34.0, "torque_nm": 40.0}
 NO_STAGE = {"background": {"second_stage": None}}
 
@@ -35,7 +37,7 @@ def records_of(
     config = siggen.load_config({**base, "states": [{"name": "healthy"}], **changes})
     records: list[Any] = siggen.simulate(config, range(repeats))
     spectra = [
-        {name: order_record(x.astype(float), FS_HZ, np.asarray(one.tacho_s), TEETH) for name, x in one.channels.items()}
+        {name: order_record(x.astype(float), FS_HZ, np.asarray(one.tacho_s), PAIR) for name, x in one.channels.items()}
         for one in records
     ]
     return {name: [one[name] for one in spectra] for name in spectra[0]}, records[-1].labels
@@ -46,7 +48,7 @@ def held(stage: SecondStage, channels: Mapping[str, Sequence[OrderRecord]]) -> l
     parts = [
         {name: own[part] for name, own in channels.items()} for part in (slice(REFERENCES), slice(REFERENCES, None))
     ]
-    first, later = (machine_multiples(part, TEETH)[stage.shaft] for part in parts)
+    first, later = (machine_multiples(part, PAIR)[stage.shaft] for part in parts)
     found = []
     for name in channels:
         truth = {one.name: one.level_db.value for one in stage_lines(stage, later[name])}
@@ -60,8 +62,8 @@ def recorded(folder: Path) -> SecondStage | None:
     """Return what the recordings of a hidden machine show."""
     sources = [(folder / f"run{k}.npz", None) for k in range(REFERENCES)]
     blocks = healthy_blocks(sources, CHANNELS, RecordingFacts(FS_HZ, {}, tacho="tacho"), TEETH, None).blocks
-    each = {name: [order_record(one.channels[name], FS_HZ, one.pulses_s, TEETH) for one in blocks] for name in CHANNELS}
-    return second_stage(machine_multiples(each, TEETH), TEETH)
+    each = {name: [order_record(one.channels[name], FS_HZ, one.pulses_s, PAIR) for one in blocks] for name in CHANNELS}
+    return second_stage(machine_multiples(each, PAIR), PAIR)
 
 
 def told(stage: SecondStage | None) -> str:
@@ -80,7 +82,7 @@ def main() -> None:
         channels, labels = records_of(seed, REFERENCES + LATER, {})
         first = {name: own[:REFERENCES] for name, own in channels.items()}
         plain = records_of(seed, REFERENCES, NO_STAGE)[0]
-        stage, without = (second_stage(machine_multiples(one, TEETH), TEETH) for one in (first, plain))
+        stage, without = (second_stage(machine_multiples(one, PAIR), PAIR) for one in (first, plain))
         inside = held(stage, channels) if stage else []
         every += inside
         teeth, force_n = labels["second_stage_order"] * TEETH[1] / TEETH[0], labels["second_stage_force_n"]

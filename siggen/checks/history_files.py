@@ -10,13 +10,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from siggen.config.data_file import data_file_bytes, shortened_path
-from siggen.config.load_history import COLUMNS, MOST_ROWS, wrong_row
+from siggen.config.life import MOST_H, MOST_SPEED_HZ, MOST_TORQUE_NM
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 
 KEY = "life.history"
+UNTIL, TORQUE, SPEED = COLUMNS = ("until_h", "torque_nm", "speed_hz")
+"""Hour until which a row lasts, and its load."""
+LARGEST = {UNTIL: MOST_H, TORQUE: MOST_TORQUE_NM, SPEED: MOST_SPEED_HZ}
+MOST_ROWS = 10_000
 ALLOWED = f"allowed: a CSV or Parquet file with the columns {', '.join(COLUMNS)}, 1 to {MOST_ROWS} rows of numbers"
-HARMLESS = {column: [1.0] for column in COLUMNS}
+HARMLESS = [[1.0, 1.0]]
 """What stands for a file that cannot be used, so that nothing else is said of it."""
 
 
@@ -49,12 +53,13 @@ def with_history_file(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[str
     name = str(history["file"])
     problems: list[Problem] = []
     try:
-        numbers = _numbers(_rows(folder / name))
+        blocks = _blocks(_rows(folder / name))
     except _Refusal as refused:
-        numbers = HARMLESS
+        blocks = HARMLESS
         problems = [Problem(f"{KEY}.file", f"{shortened_path(name)}{refused.received}", refused.allowed)]
-    rest = {key: value for key, value in history.items() if key != "file"}
-    return {**raw, "life": {**life, "history": {**rest, **numbers}}}, problems
+    if more := [key for key in history if key != "file"]:
+        problems.append(Problem(f"{KEY}.{more[0]}", "a key beside file", "allowed: file alone, or a list of blocks"))
+    return {**raw, "life": {**life, "history": blocks}}, problems
 
 
 def _rows(file: Path) -> _Rows:
@@ -91,7 +96,8 @@ def _parquet_rows(content: bytes) -> _Rows:
     return _Rows(names, rows, [f"row {number}" for number in range(1, len(rows) + 1)])
 
 
-def _numbers(found: _Rows) -> dict[str, list[float]]:
+def _blocks(found: _Rows) -> list[list[float]]:
+    """Return hours, torque [N m] and speed [Hz] of every row."""
     for column in COLUMNS:
         if column not in found.names:
             hint = nearest(column, [name for name in found.names if name not in COLUMNS])
@@ -99,16 +105,24 @@ def _numbers(found: _Rows) -> dict[str, list[float]]:
     if not 1 <= len(found.rows) <= MOST_ROWS:
         many = f"more than {MOST_ROWS}" if found.rows else "no"
         raise _Refusal(f" with {many} rows", f"{ALLOWED}; join rows of one load")
-    numbers = {c: [_number(row[c], c, at) for row, at in zip(found.rows, found.places, strict=True)] for c in COLUMNS}
-    wrong = wrong_row(*(tuple(numbers[column]) for column in COLUMNS))
-    if wrong is not None:
-        raise _Refusal(f", {found.places[wrong.row]}: {wrong.column} {wrong.received}", wrong.allowed)
-    return numbers
+    blocks: list[list[float]] = []
+    before = 0.0
+    for row, place in zip(found.rows, found.places, strict=True):
+        until, *load = (_number(row[column], column, place) for column in COLUMNS)
+        if until <= before:
+            later = f"above {before:g}, the hour before: a row lasts until its hour" if blocks else "above 0"
+            raise _Refusal(f", {place}: {UNTIL} {until:g}", f"allowed: {later}")
+        blocks.append([until - before, *load])
+        before = until
+    return blocks
 
 
 def _number(value: Any, column: str, place: str) -> float:
     try:
-        return float(value)
+        number = float(value)
     except (TypeError, ValueError):
         shown = "nothing" if value in (None, "") else f"'{str(value)[:60]}'"
         raise _Refusal(f", {place}: {column} {shown}", "allowed: a number") from None
+    if not 0.0 <= number <= LARGEST[column]:
+        raise _Refusal(f", {place}: {column} {number:g}", f"allowed: from 0 to {LARGEST[column]:g}")
+    return number

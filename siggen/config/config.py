@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from siggen.config.background import Background
 from siggen.config.changes import Change
+from siggen.config.consistency import places_of
 from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears
 from siggen.config.housing import Housing, PlateHousing, RigidHousing
@@ -32,6 +33,7 @@ from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
 from siggen.life.pitting import EXAMPLE
+from siggen.sensors.places import Places
 from siggen.sensors.registry import SensorSection
 
 IDENTITY_VERSION = 2
@@ -189,6 +191,13 @@ class Config(Section):
     def changes_of(self, state_id: int) -> tuple[tuple[int, Change], ...]:
         """Return the keys that a state changes, those of its milder states too, each with the state that says so."""
         return () if self.life is not None else changes_of(self.states, state_id)
+
+    @property
+    def places(self) -> Places:
+        """Where sensors may stand and what presses on the housing, in words of the short form."""
+        found = places_of(dict(self))
+        assert found is not None, "only sections that are wrong have none"
+        return found
 
     def canonical(self) -> dict[str, Any]:
         """Return the configuration with all defaults, as plain mappings and lists; parsing it gives an equal one."""

@@ -91,13 +91,13 @@ ON_BODY = ("base", "second_stage", "auxiliary_drive")
 
 
 def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    places = _places(sections)
+    places = places_of(sections)
     for index, sensor in sections.get("sensors", {}).items() if places is not None else ():
         for problem in sensor.model_problems(places):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 
-def _places(sections: Mapping[str, Any]) -> Places | None:
+def places_of(sections: Mapping[str, Any]) -> Places | None:
     """Return what there is for sensors; None where sections that say so are wrong themselves."""
     if not {"dynamics", "stages"} <= sections.keys():
         return None
@@ -117,7 +117,7 @@ def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> I
     sensors, written = sections.get("sensors", {}), raw.get("sensors")
     if isinstance(written, (list, tuple)) and len(written) > len(sensors):  # one may be missing that is wrong itself
         return
-    places = _places(sections)
+    places = places_of(sections)
     for index, sensor in sensors.items() if places is not None else ():
         for problem in sensor.beside_problems({one.name: one for one in sensors.values()}, places):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)

@@ -4,26 +4,35 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import AfterValidator, Field
 
-from siggen.config.load_history import COLUMNS, LoadHistory
+from siggen.errors import Problem
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within
-from siggen.keys.problems import ONE, SEVERAL
+from siggen.keys.problems import received_text, refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
 from siggen.life.pitting import Pitting
 
-Hours = Annotated[Real, Field(gt=0, le=1e7)]
-Block = tuple[Hours, Annotated[Real, Field(ge=0, le=100)]]
-History = Annotated[
-    Annotated[LoadHistory, Tag(ONE)] | Annotated[tuple[Block, ...], Tag(SEVERAL)],
-    Discriminator(lambda given: SEVERAL if isinstance(given, (list, tuple)) else ONE),
-    AllowedText(
-        "a list of blocks [hours above 0, torque from 0 to 100 over that of the first operating point], or file: with "
-        f"the columns {', '.join(COLUMNS)}"
-    ),
-]
+MOST_H = 1e7
+Hours = Annotated[Real, Field(gt=0, le=MOST_H)]
+MOST_RATIO, MOST_TORQUE_NM, MOST_SPEED_HZ = 100.0, 1e8, 1e5
+
+
+def _block(block: tuple[float, ...]) -> tuple[float, ...]:
+    """Return a block that may be, or raise a refusal."""
+    most = {2: (MOST_H, MOST_RATIO), 3: (MOST_H, MOST_TORQUE_NM, MOST_SPEED_HZ)}.get(len(block), ())
+    inside = len(block) == len(most) and all(0.0 <= one <= limit for one, limit in zip(block, most, strict=True))
+    if not (inside and block and block[0] > 0.0):
+        raise refusal([Problem("", received_text(list(block)), f"allowed: {BLOCK.allowed_text}")])
+    return block
+
+
+BLOCK = AllowedText(
+    f"[hours above 0, torque from 0 to {MOST_RATIO:g} over that of the first operating point], or [hours, torque in "
+    "N m, speed in Hz] of the pinion shaft, both 0 or more"
+)
+Block = Annotated[tuple[Real, ...], AfterValidator(_block), BLOCK]
 
 
 NAME = "inspection_{:03d}"
@@ -41,7 +50,7 @@ class Life(Section):
     scale: Annotated[Number, Within(above=0, most=1e6)] = Field(
         default=1.0, description="all times of the law are this much longer; drawn for each gearbox"
     )
-    history: History = Field(
+    history: tuple[Block, ...] = Field(
         default=(),
         description="blocks of load that repeat, or `file:` of a table; empty: the first operating point",
     )
@@ -55,6 +64,11 @@ class Life(Section):
         default=0.15,
         description="chance that a gearbox is taken out at an age drawn between 0 and the last inspection",
     )
+
+    @property
+    def follows_point(self) -> bool:
+        """Whether the first operating point loads gears between inspections."""
+        return not self.history or any(len(block) == 2 for block in self.history)
 
     @staticmethod
     def name_of(inspection: int) -> str:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from siggen.config.life import Life
-from siggen.config.load_history import LoadHistory
 from siggen.errors import Problem
 from siggen.keys.number import bounds, number_text
 
@@ -26,12 +25,11 @@ def life_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Ite
 
 def _loads(sections: Mapping[str, Any], life: Life) -> Iterator[Problem]:
     """Yield loads under which no tooth ever pits, or the back flanks would."""
-    if isinstance(life.history, LoadHistory):  # which says itself what torque it may have
-        return
-    if life.history and not any(torque > 0.0 for _, torque in life.history):
-        yield Problem("life.history", "no block with a torque above 0", "allowed: one at least, or teeth never fail")
+    if life.history and not any(min(block) > 0.0 for block in life.history):
+        received = "no block with torque and speed above 0"
+        yield Problem("life.history", received, "allowed: one at least, or teeth never fail")
     points = sections.get("operating_points", ())
-    if points and bounds(points[0].torque_nm)[0] <= 0.0:
+    if life.follows_point and points and bounds(points[0].torque_nm)[0] <= 0.0:
         received = f"{number_text(points[0].torque_nm)} with a section life"
         allowed = "allowed: above 0, the torque between inspections, by which the front flanks wear"
         yield Problem("operating_points.0.torque_nm", received, allowed)

@@ -74,6 +74,11 @@ class Names:
         """Return where a sensor stands in the user's words."""
         return self.places.get(word, word)
 
+    def force(self, name: str) -> str:
+        """Return a bearing force, given as place/axis, in the user's words."""
+        place, axis = name.split("/")
+        return f"{self.place(place)}/{axis}"
+
     def short_path(self, path: str) -> str:
         """Return a key of the user as the short form has it, such as one that a state changes."""
         for short, own in self.paths:

@@ -11,7 +11,6 @@ from typing import Literal
 
 from siggen.config import Config, Gears, State
 from siggen.config.life import JITTER, Life
-from siggen.config.load_history import LoadHistory
 from siggen.faults.registry import HEALTHY
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
@@ -111,10 +110,11 @@ def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:
 
 def _blocks(life: Life, speed_hz: float, torque_nm: float) -> tuple[Block, ...]:
     """Return the blocks of load; without a history that of an operating point all the time."""
-    if isinstance(life.history, LoadHistory):
-        return life.history.blocks(life.reference_torque_nm)
-    ratio = torque_nm / life.reference_torque_nm
-    return tuple(Block(hours, speed_hz, ratio * torque) for hours, torque in life.history or ((1.0, 1.0),))
+    ratio, found = torque_nm / life.reference_torque_nm, []
+    for hours, torque, *speed in life.history or ((1.0, 1.0),):
+        own = (speed[0], torque / life.reference_torque_nm) if speed else (speed_hz, ratio * torque)
+        found.append(Block(hours, *own))
+    return tuple(found)
 
 
 def _observed(life: Life, uniform: Callable[[str], float], failure_h: float) -> tuple[tuple[float, ...], float, Event]:

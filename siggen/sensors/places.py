@@ -91,6 +91,12 @@ class Places:
         return self.bearings if self.helical else ()
 
     @property
+    def pressed(self) -> tuple[str, ...]:
+        """Bearing forces as place/axis, those along the shafts behind all others."""
+        across = (f"{place}/{axis}" for place in self.bearings for axis in ("vertical", "horizontal"))
+        return (*across, *(f"{place}/axial" for place in self.pressed_along))
+
+    @property
     def moved_along(self) -> tuple[str, ...]:
         """Places that move along the shafts: on a housing that gives way, and shafts on the ground."""
         on_ground = self.pressed_along if self.model in {"6dof", "8dof"} else ()

@@ -50,8 +50,10 @@ if TYPE_CHECKING:
 IDS = ("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split")
 LABELS = (
     *("fault", "severity", "faulty_gear", "damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm"),
-    *("mesh_stiffness_loss", "teeth_pinion", "teeth_gear", "speed_hz", "torque_nm"),
+    *("mesh_stiffness_loss", "speed_hz", "torque_nm"),
 )
+TEETH = "teeth_"
+"""Begins the labels of all gears' teeth."""
 GROUP_ROWS = 16
 
 Row = Mapping[str, Any]
@@ -69,8 +71,8 @@ def write_recorded_set(
     folder : Path
         New or empty.
     rows : sequence of mapping
-        By ascending `record_id`, those of a split together: IDS, LABELS, the columns of `origin`, `signals` with one
-        (n,) [m/s²] per channel, and `tacho_s`. Signals are cut to the shortest.
+        By ascending `record_id`, those of a split together: IDS, LABELS, teeth of all gears, the columns of `origin`,
+        `signals` with one (n,) [m/s²] per channel, and `tacho_s`. Signals are cut to the shortest.
     origin : pyarrow.Schema
         Further columns, which say where a row comes from, with `role` in the metadata of each.
     facts : mapping
@@ -123,7 +125,7 @@ def _schema(config: Config, origin: pa.Schema, samples: int) -> pa.Schema:
     own = record_schema(config)
     signals = [own.field(channel.column).with_type(list_of(pa.float32(), samples)) for channel in channels(config)]
     metadata = {**schema_metadata(config), "duration_s": repr(samples / float(config.fs_hz))}
-    labels = [own.field(name) for name in (*IDS, *LABELS)]
+    labels = [own.field(name) for name in (*IDS, *LABELS, *(name for name in own.names if name.startswith(TEETH)))]
     return pa.schema([*labels, *origin, *signals, TACHO_COLUMN.field()], metadata=metadata)
 
 

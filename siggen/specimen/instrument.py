@@ -145,9 +145,10 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     named = partial(_named, config.seed, specimen.specimen_id)
     grid = frequencies(blocks.memory, config.fs_hz)
     along = moved_along(specimen)
+    in_file = {force: config.names.force(force) for force in config.places.pressed}
     channels, ways = [], {}
     for sensor in specimen.sensors:
-        paths = _Paths(housing, grid, sensor_loading(config, specimen, housing, sensor, grid), along)
+        paths = _Paths(housing, grid, sensor_loading(config, specimen, housing, sensor, grid), along, in_file)
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
             channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, paths)
@@ -198,12 +199,16 @@ def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
 
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing, a grid of frequencies (k,), what the mass of a sensor does to its place, motions along the shafts."""
+    """A housing, a grid of frequencies (k,), what the mass of a sensor does to its place, motions along the shafts.
+
+    `in_file`: bearing forces -> their names in files of measured responses.
+    """
 
     housing: SpecimenHousing | None
     grid: FloatArray
     loading: Loading | None
     along: tuple[str, ...]
+    in_file: Mapping[str, str]
 
 
 def _channel(
@@ -217,8 +222,8 @@ def _channel(
     forces = INPUTS if housing is None else housing.forces
     if isinstance(sensor.through, MeasuredPath):
         weights = sensor.weights(axis, draw)
-        accelerance = beyond = _measured(sensor, weights, draw, grid)
-        forces = INPUTS
+        forces, accelerance = _measured(sensor, weights, draw, paths)
+        beyond = accelerance
     elif housing is not None and motions:
         coupled, others = slice(housing.coupled), slice(housing.coupled, None)
         beyond = housing.shown_accelerance(motions, forces, grid, others)
@@ -262,11 +267,16 @@ def path_number(sensor: Sensor, uniform: Callable[[str], float]) -> int:
     return min(int(uniform("path.number") * len(family)), len(family) - 1) if len(family) > 1 else 0
 
 
-def _measured(sensor: Sensor, weights: Mapping[str, float], draw: AxisDraws, grid: FloatArray) -> ComplexArray:
-    """Return the accelerance (inputs, k) from bearing forces that was measured."""
+def _measured(
+    sensor: Sensor, weights: Mapping[str, float], draw: AxisDraws, paths: _Paths
+) -> tuple[tuple[str, ...], ComplexArray]:
+    """Return bearing forces, and the accelerance (forces, k) from them that was measured."""
     assert isinstance(sensor.through, MeasuredPath)
     response = decoded_response(sensor.through.family[path_number(sensor, draw.uniform)])
-    return reduce(np.add, (weight * response.accelerance(d, INPUTS, grid) for d, weight in weights.items()))
+    known = {force for _, force in response.curves}
+    forces = {force: own for force, own in paths.in_file.items() if own in known}
+    rows = (weight * response.accelerance(d, (*forces.values(),), paths.grid) for d, weight in weights.items())
+    return tuple(forces), reduce(np.add, rows)
 
 
 def _band_rms(accelerance: ComplexArray, grid: FloatArray) -> float:

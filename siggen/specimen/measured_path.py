@@ -2,7 +2,8 @@
 
 A file has the column frequency_hz, and for every axis of the sensor and every bearing force two columns named
 <axis>_from_<place>_<direction>_<part>_<unit>: real and imag in m_s2_per_n, or magnitude in m_s2_per_n and phase in rad
-or deg. The sensor's name and _ may stand before them; then those of other sensors are passed over.
+or deg. Places are those of sensors, in the user's words. Forces along the shafts may be left out: nothing passes then.
+The sensor's name and _ may stand before them; then those of other sensors are passed over.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import io
 import re
 import zipfile
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -21,7 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.config.consistency import places_of
 from siggen.config.data_file import data_file_bytes, shortened_path
+from siggen.config.names import Names
 from siggen.errors import Problem
 from siggen.keys.problems import received_text
 from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
@@ -31,11 +35,12 @@ UNIT = "m_s2_per_n"
 UNITS = {"real": (UNIT,), "imag": (UNIT,), "magnitude": (UNIT,), "phase": ("rad", "deg")}
 """Units that the parts of a complex number may have."""
 COLUMN = re.compile(
-    r"^(vertical|horizontal|axial)_from_((?:pinion|gear)_bearing)_(vertical|horizontal)_(real|imag|magnitude|phase)_?(.*)$"
+    r"^(vertical|horizontal|axial)_from_([a-z][a-z0-9_]*_bearing)_(vertical|horizontal|axial)"
+    r"_(real|imag|magnitude|phase)_?(.*)$"
 )
 FREQUENCY = "frequency_hz"
 INPUTS = tuple(f"{place}/{axis}" for place in ("pinion_bearing", "gear_bearing") for axis in ("vertical", "horizontal"))
-"""Bearing forces of every model that has bearings."""
+"""Bearing forces of every model that has bearings: those of the first two shafts."""
 MOST_NUMBERS = 400_000
 """Numbers that a response may have: they become part of the configuration, 11 bytes each."""
 
@@ -98,42 +103,54 @@ def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, lis
     return {"file": [one["file"] for one in found], "response": short}
 
 
-def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
+def response_problems(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
     """Yield what makes the measured responses of valid sections unusable for their records."""
-    fs_hz = sections.get("fs_hz")
-    if fs_hz is None:
+    fs_hz, places = sections.get("fs_hz"), places_of(sections)
+    if fs_hz is None or places is None:
         return
+    forces = tuple(map(names.force, places.pressed))
     for index, sensor in sections.get("sensors", {}).items():
         if isinstance(sensor.through, MeasuredPath):
+            wanted = _Wanted(sensor.axes, forces, fs_hz)
             for number, text in enumerate(sensor.through.family):
                 keys = (f"file.{number}", f"response.{number}") if sensor.through.is_family else ("file", "response")
                 file, numbers = (f"sensors.{index}.path.{key}" for key in keys)
-                yield from _text_problems(text, sensor.axes, (fs_hz, MEMORY_S), file, numbers)
+                yield from _text_problems(text, wanted, file, numbers)
 
 
-def _text_problems(
-    text: str, axes: tuple[str, ...], limits: tuple[float, float], where: str, numbers: str
-) -> Iterator[Problem]:
-    """Yield what is wrong with one response; `limits` are the sampling rate [Hz] and the history kept for it [s]."""
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """What a response must hold: axes of its sensor, forces in the user's words, band by the sampling rate [Hz]."""
+
+    axes: tuple[str, ...]
+    forces: tuple[str, ...]
+    fs_hz: float
+
+
+def _text_problems(text: str, wanted: _Wanted, where: str, numbers: str) -> Iterator[Problem]:
+    """Yield what is wrong with one response."""
     try:
         response = decoded_response(text)
     except ResponseRefusal as refused:
         yield Problem(numbers, refused.received, refused.allowed)
         return
-    wrong = [Problem(where, *found) for found in grid_problems(response.frequency_hz, limits[0])]
-    yield from wrong or _curves_problems(response, axes, limits[1], where)
+    wrong = [Problem(where, *found) for found in grid_problems(response.frequency_hz, wanted.fs_hz)]
+    yield from wrong or _curves_problems(response, wanted, where)
 
 
-def _curves_problems(
-    response: FrequencyResponse, axes: tuple[str, ...], memory_s: float, where: str
-) -> Iterator[Problem]:
-    for key in ((axis, name) for axis in axes for name in INPUTS):
+def _curves_problems(response: FrequencyResponse, wanted: _Wanted, where: str) -> Iterator[Problem]:
+    if strange := sorted({force for _, force in response.curves} - {*wanted.forces}):
+        known = ", ".join(dict.fromkeys(force.split("/")[0] for force in wanted.forces))
+        yield Problem(where, f"a force {strange[0]}", f"allowed: forces of {known}")
+        return
+    for key in ((axis, name) for axis in wanted.axes for name in wanted.forces):
         label = f"{key[0]}_from_{key[1].replace('/', '_')}"
         if key not in response.curves:
-            allowed = "allowed: two columns for every axis and bearing force; zeros where nothing passes"
-            yield Problem(where, f"no columns {label}_...", allowed)
+            if not key[1].endswith("/axial"):
+                allowed = "allowed: two columns for every axis and bearing force; zeros where nothing passes"
+                yield Problem(where, f"no columns {label}_...", allowed)
             continue
-        for received, allowed in curve_problems(response, *key, memory_s):
+        for received, allowed in curve_problems(response, *key, MEMORY_S):
             yield Problem(where, f"{received} in {label}", allowed)
 
 
@@ -227,7 +244,7 @@ def _meaning(column: str) -> tuple[tuple[str, str], str, str]:
     """Return (direction, input), part and unit that a column's name says."""
     found = COLUMN.match(column)
     if found is None:
-        allowed = f"allowed: {FREQUENCY}, and columns such as vertical_from_pinion_bearing_vertical_real_{UNIT}"
+        allowed = f"allowed: {FREQUENCY}, and columns such as vertical_from_PLACE_bearing_vertical_real_{UNIT}"
         raise ResponseRefusal(f"the column {column}", allowed)
     direction, place, axis, part, unit = found.groups()
     if unit not in UNITS[part]:

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
+from siggen.config.names import NO_NAMES, Names
+from siggen.config.stages import turned_teeth
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -26,15 +28,16 @@ MODES_PER_MEMORY = 0.8
 
 @dataclass(frozen=True, slots=True)
 class PathCurves:
-    """Channels with a path over frequencies (k,), modes of the housing, mesh frequencies [Hz] by operating point."""
+    """Channels with a path over frequencies (k,), modes of the housing, by operating point mesh frequencies [Hz]."""
 
     specimen_id: int
     frequency_hz: FloatArray
     channels: tuple[ChannelInstrument, ...]
     housing: SpecimenHousing | None
-    mesh_hz: tuple[float, ...]
+    mesh_hz: tuple[tuple[float, ...], ...]
     mesh_harmonics: int
     memory_s: float = 0.0
+    names: Names = NO_NAMES
 
     @property
     def table(self) -> pa.Table:
@@ -43,7 +46,7 @@ class PathCurves:
         columns = {"frequency_hz": self.frequency_hz[::step]}
         for channel in self.channels:
             for name, curve in zip(channel.forces, _rows(channel), strict=True):
-                stem = f"{channel.name}_from_{name.replace('/', '_')}"
+                stem = f"{channel.name}_from_{self.names.force(name).replace('/', '_')}"
                 columns |= {
                     f"{stem}_real_m_s2_per_n": curve.real[::step],
                     f"{stem}_imag_m_s2_per_n": curve.imag[::step],
@@ -81,15 +84,18 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
             "no sensor stands on a housing that gives way or has a measured path: dynamics.model: casing has one"
         )
     housing = specimen_housing(config, specimen)
+    behind = map(float, turned_teeth(specimen.gears, specimen.stages))
+    meshing = (float(specimen.gears.pinion.teeth), *behind)
     points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
     return PathCurves(
         specimen_id=specimen_id,
         frequency_hz=frequencies(instrument.length, config.fs_hz),
         channels=channels,
         housing=housing if any(c.path_modes for c in channels) else None,
-        mesh_hz=tuple(point.speed_hz * specimen.gears.pinion.teeth for point in points),
+        mesh_hz=tuple(tuple(point.speed_hz * teeth for teeth in meshing) for point in points),
         mesh_harmonics=config.mesh_harmonics,
         memory_s=settle_s(config, specimen),
+        names=config.names,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,7 +29,7 @@ def path_figure(found: PathCurves) -> Figure:
     shown = found.frequency_hz >= LOWEST_HZ
     for panel, channel in zip(panels, found.channels, strict=True):
         for name, row in zip(channel.forces, channel.accelerance, strict=True):  # type: ignore[arg-type]
-            label = name.replace("_bearing/", ", ")
+            label = found.names.force(name).replace("_bearing/", ", ")
             panel.loglog(found.frequency_hz[shown], np.abs(row[shown]), lw=0.9, label=label)
         panel.set_title(channel.name, loc="left", fontsize="medium")
         panel.grid(alpha=0.3)
@@ -43,9 +44,9 @@ def path_figure(found: PathCurves) -> Figure:
 
 
 def _mark_mesh(panel: Axes, found: PathCurves) -> None:
-    for index, mesh_hz in enumerate(found.mesh_hz[: len(POINT_COLOURS)]):
-        for harmonic in range(1, found.mesh_harmonics + 1):
-            panel.axvline(harmonic * mesh_hz, color=POINT_COLOURS[index], lw=0.6, ls=":", zorder=0)
+    for colour, meshes in zip(POINT_COLOURS, found.mesh_hz, strict=False):
+        for mesh_hz, harmonic in product(meshes, range(1, found.mesh_harmonics + 1)):
+            panel.axvline(harmonic * mesh_hz, color=colour, lw=0.6, ls=":", zorder=0)
 
 
 def save_path_figure(found: PathCurves, path: Path) -> None:

@@ -76,5 +76,5 @@ def test_a_file_that_is_missing_or_never_loads_is_refused(tmp_path: Path) -> Non
         ConfigError, match=r"life\.history\.file: received none\.csv, which cannot be read \(No such file"
     ):
         load_config(written(tmp_path, GOOD), ["life.history.file=none.csv"])
-    with pytest.raises(ConfigError, match=r"life\.history: received no row with torque and speed above 0"):
+    with pytest.raises(ConfigError, match=r"life\.history: received no block with torque and speed above 0"):
         load_config(written(tmp_path, "until_h,torque_nm,speed_hz\n1,60,0\n2,0,30\n"))

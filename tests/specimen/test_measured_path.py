@@ -15,12 +15,14 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.config import Config, parse, parse_yaml, yaml_text
+from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response, simulate
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.measured_path import INPUTS
+from tests.config.mill import mill
 from tests.config.minimal import minimal
 from tests.sensing.resonances import accelerance
 
@@ -79,22 +81,53 @@ def signal(config: Config) -> np.ndarray:
     return result.channels["lid_vertical"]
 
 
+def passed(config: Config, response: Response, residues: dict[str, tuple[float, ...]]) -> np.ndarray:
+    """Return the bearing forces of a record through two resonances each, (n,)."""
+    length = 2**16  # nothing wraps round
+    hz = np.arange(length // 2 + 1) * config.fs_hz / length
+    total = np.zeros(hz.size, dtype=complex)
+    for name, residue in residues.items():
+        whole = np.concatenate([response.history.bearing_force_n[name], response.bearing_force_n[name]])
+        assert 2 * whole.size < length
+        values = whole - response.history.bearing_force_n[name].mean()
+        total += accelerance(hz, (400.0, 1700.0), residue) * np.fft.rfft(values, length)
+    return np.asarray(np.fft.irfft(total, length)[whole.size - config.samples : whole.size])
+
+
 def test_forces_of_all_bearings_pass_a_response_from_a_file(tmp_path: Path) -> None:
     save(columns(), tmp_path / "lid.npz")
     config = load_config(written(tmp_path, {"file": "lid.npz"}))
     specimen = draw_specimen(config, 0)
     response, _ = record_response(config, specimen, specimen_state(config, specimen, 0), planned_record(config, 0))
-    length = 2**16  # nothing wraps round
-    hz = np.arange(length // 2 + 1) * config.fs_hz / length
-    total = np.zeros(hz.size, dtype=complex)
-    for name in INPUTS:
-        whole = np.concatenate([response.history.bearing_force_n[name], response.bearing_force_n[name]])
-        assert 2 * whole.size < length
-        values = whole - response.history.bearing_force_n[name].mean()
-        total += accelerance(hz, (400.0, 1700.0), RESIDUES[name]) * np.fft.rfft(values, length)
-    expected = np.fft.irfft(total, length)[whole.size - config.samples : whole.size]
+    expected = passed(config, response, RESIDUES)
     # 1 Hz between the lines of the file, and a response that ends at half the sampling rate
     assert np.abs(signal(config) - expected).max() < 3e-3 * expected.std()
+
+
+def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path: Path) -> None:
+    places = {"pinion_bearing": "input_bearing", "gear_bearing": "middle_bearing", "slow_bearing": "output_bearing"}
+    forces = {
+        f"{short}/{axis}": f"{own}_{axis}" for short, own in places.items() for axis in ("vertical", "horizontal")
+    }
+    residues = {name: (0.01 * (k + 1), 0.02 - 0.01 * k) for k, name in enumerate(forces)}
+    found = {"frequency_hz": GRID}
+    for name, own in forces.items():
+        curve = accelerance(GRID, (400.0, 1700.0), residues[name])
+        found |= {f"vertical_from_{own}_{part}_m_s2_per_n": getattr(curve, part) for part in ("real", "imag")}
+    save(found, tmp_path / "lid.npz")
+    sensor = {**SENSOR, "path": {"file": "lid.npz"}}
+    (tmp_path / "set.yaml").write_text(yaml_text(mill(sensors=[sensor], fs_hz=25600.0, duration_s=0.1)))
+    config = load_config(tmp_path / "set.yaml")
+    specimen = draw_specimen(config, 0)
+    response, _ = record_response(config, specimen, specimen_state(config, specimen, 0), planned_record(config, 0))
+    # 1 Hz between the lines of the file, and a response that ends at half the sampling rate
+    expected = passed(config, response, residues)
+    assert np.abs(signal(config) - expected).max() < 3e-3 * expected.std()
+    save(columns(), tmp_path / "lid.npz")
+    with pytest.raises(
+        ConfigError, match="a force gear_bearing/horizontal; allowed: forces of input_bearing, middle_b"
+    ):
+        load_config(tmp_path / "set.yaml")
 
 
 @pytest.mark.parametrize("name", ["lid.csv", "lid.parquet", "polar_deg.csv", "polar_rad.parquet"])

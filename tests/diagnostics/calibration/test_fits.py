@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diagnostics.calibration.calibration import path_gains
+from diagnostics.calibration.drivetrain import pair
 from diagnostics.calibration.healthy_blocks import Block, healthy_blocks, jackknife
 from diagnostics.calibration.noise_fit import noise_fit, smallest_step
 from diagnostics.calibration.order_record import order_record
@@ -17,6 +18,7 @@ from diagnostics.recordings.measured_recording import RecordingFacts
 
 FS_HZ, TEETH, SAMPLES = 25_600.0, (18, 47), 102_400
 TIME_S = np.arange(SAMPLES) / FS_HZ
+PAIR = pair(TEETH)
 
 
 def block(signal: np.ndarray, speed_hz: float) -> Block:
@@ -48,7 +50,7 @@ def test_a_path_between_dense_lines_follows_them_and_far_from_lines_the_floor() 
 def test_a_floor_is_found_beside_strong_lines_and_lines_with_their_energy() -> None:
     noise = np.random.default_rng(1).standard_normal(SAMPLES) * 0.1
     signal = noise + 3.0 * np.sin(2 * np.pi * 18 * 30.0 * TIME_S) + np.sin(2 * np.pi * 18 * 60.0 * TIME_S)
-    record = order_record(signal, FS_HZ, block(signal, 30.0).pulses_s, TEETH)
+    record = order_record(signal, FS_HZ, block(signal, 30.0).pulses_s, PAIR)
     density = 0.1 * np.sqrt(2.0 / FS_HZ)
     middle = record.density[
         (np.arange(record.floor.size) * record.bin_hz > 200) & (np.arange(record.floor.size) * record.bin_hz < 11e3)
@@ -66,7 +68,7 @@ def test_noise_gives_back_its_density_depth_and_level() -> None:
         strength = 1.0 + 0.4 * np.cos(2 * np.pi * speed * TIME_S)
         signal = rng.standard_normal(SAMPLES) * np.sqrt(strength)
         blocks.append(block(signal, speed))
-        records.append(order_record(signal, FS_HZ, blocks[-1].pulses_s, TEETH))
+        records.append(order_record(signal, FS_HZ, blocks[-1].pulses_s, PAIR))
     fit = noise_fit(records, blocks, "c", TEETH[0] / TEETH[1])
     inside = (fit.frequency_hz > 100.0) & (fit.frequency_hz < 11_000.0)
     decibels = 20.0 * np.log10(fit.density[inside] / np.sqrt(2.0 / FS_HZ))
@@ -83,8 +85,8 @@ def test_an_order_and_a_tone_are_told_apart_where_speeds_differ() -> None:
     for speed in (30.0, 31.3, 32.9):
         signal = 0.05 * rng.standard_normal(SAMPLES)
         signal += np.sin(2 * np.pi * 4.35 * speed * TIME_S) + 0.5 * np.sin(2 * np.pi * 777.7 * TIME_S)
-        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, TEETH))
-    strong = [line for line in own_lines(records, TEETH) if line.amplitude > 0.1]
+        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, PAIR))
+    strong = [line for line in own_lines(records, PAIR) if line.amplitude > 0.1]
     assert [(round(line.order, 2), round(line.frequency_hz)) for line in strong] == [(4.35, 0), (0.0, 778)]
     assert [line.amplitude for line in strong] == pytest.approx([1.0, 0.5], rel=0.05)
 
@@ -96,8 +98,8 @@ def test_lines_of_the_teeth_are_left_to_the_simulation_and_low_orders_of_shafts_
     for speed in (30.0, 31.3, 32.9):
         signal = 0.05 * rng.standard_normal(SAMPLES)
         signal += sum(np.sin(2 * np.pi * order * speed * TIME_S) for order in (*kept, *of_teeth))
-        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, TEETH))
-    strong = sorted(line.order for line in own_lines(records, TEETH) if line.amplitude > 0.1)
+        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, PAIR))
+    strong = sorted(line.order for line in own_lines(records, PAIR) if line.amplitude > 0.1)
     assert strong == pytest.approx(sorted(kept), abs=1e-3)
 
 
@@ -105,9 +107,9 @@ def test_noise_alone_gives_hardly_a_line() -> None:
     records = []
     for seed, speed in enumerate((30.0, 31.3, 32.9)):
         signal = np.random.default_rng(seed).standard_normal(SAMPLES)
-        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, TEETH))
+        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, PAIR))
     # 50,000 bins x exp(-10) each: 2 in one recording, hardly one in two at the same place
-    assert len(own_lines(records, TEETH)) <= 1
+    assert len(own_lines(records, PAIR)) <= 1
 
 
 def test_the_step_of_a_converter_is_found_and_none_where_there_is_none() -> None:
@@ -162,9 +164,9 @@ def test_one_recording_stays_whole_and_what_it_cannot_tell_is_drawn_wide(tmp_pat
     (one,) = found.blocks
     assert one.channels["c"].size == SAMPLES
     assert one.speed_hz == pytest.approx(30.0, rel=1e-3)
-    record = order_record(one.channels["c"], FS_HZ, one.pulses_s, TEETH)
+    record = order_record(one.channels["c"], FS_HZ, one.pulses_s, PAIR)
     noise = noise_fit([record], found.blocks, "c", TEETH[0] / TEETH[1])
     assert not np.isfinite(noise.level_db.low)
     # half to twice the power, and half to twice the amplitude of a line: stated, not fitted
     assert noise.spread_db == pytest.approx(10.0 * np.log10(2.0), abs=0.02)
-    assert own_lines([record], TEETH)[0].spread == 2.0
+    assert own_lines([record], PAIR)[0].spread == 2.0

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnostics.calibration.drivetrain import pair
 from diagnostics.calibration.order_record import OrderRecord, line_groups, order_record
 from diagnostics.calibration.second_stage import machine_multiples, second_stage, stage_lines, wave_lines
 
@@ -50,7 +51,7 @@ def _record(
         for phasor in phasors[::-1]:
             total = (total + phasor) * turn
         signal += total.real
-    return order_record(signal, FS_HZ, np.arange(0.0, SAMPLES / FS_HZ, 1.0 / speed_hz), teeth)
+    return order_record(signal, FS_HZ, np.arange(0.0, SAMPLES / FS_HZ, 1.0 / speed_hz), pair(teeth))
 
 
 @pytest.mark.parametrize(
@@ -59,8 +60,8 @@ def _record(
     ids=["on the gear's shaft", "on the pinion's shaft", "errors of the pinion at every second order of the gear"],
 )
 def test_shaft_teeth_and_levels_of_a_stage_are_found_again(teeth: tuple[int, int], comb: Comb) -> None:
-    multiples = machine_multiples(records(1, teeth, comb), teeth)
-    found = second_stage(multiples, teeth)
+    multiples = machine_multiples(records(1, teeth, comb), pair(teeth))
+    found = second_stage(multiples, pair(teeth))
     assert found is not None
     assert (found.shaft, found.teeth) == comb[:2]
     for channel in ("one", "two"):
@@ -75,12 +76,13 @@ def test_shaft_teeth_and_levels_of_a_stage_are_found_again(teeth: tuple[int, int
 @pytest.mark.parametrize("teeth", [(18, 47), (20, 40)])
 def test_errors_of_the_teeth_pass_for_no_stage(teeth: tuple[int, int]) -> None:
     for seed in range(10, 16):
-        assert second_stage(machine_multiples(records(seed, teeth, None), teeth), teeth) is None
+        assert second_stage(machine_multiples(records(seed, teeth, None), pair(teeth)), pair(teeth)) is None
 
 
 def test_a_stage_among_the_errors_is_not_named() -> None:
     # a line of 0.02 is one of the errors' own
-    assert second_stage(machine_multiples(records(1, (18, 47), ("gear", 21, 0.02)), (18, 47)), (18, 47)) is None
+    multiples = machine_multiples(records(1, (18, 47), ("gear", 21, 0.02)), pair((18, 47)))
+    assert second_stage(multiples, pair((18, 47))) is None
 
 
 def test_a_drive_near_a_multiple_of_a_shaft_is_no_stage_of_that_shaft() -> None:
@@ -88,7 +90,7 @@ def test_a_drive_near_a_multiple_of_a_shaft_is_no_stage_of_that_shaft() -> None:
     # half a bin beside the multiple, its harmonics further
     drive = [(25.02, 0.5 / np.arange(1.0, 6.0))]
     channels = {name: [_record(speed, drive, (18, 47), rng) for speed in SPEEDS_HZ] for name in ("one", "two")}
-    assert second_stage(machine_multiples(channels, (18, 47)), (18, 47)) is None
+    assert second_stage(machine_multiples(channels, pair((18, 47))), pair((18, 47))) is None
 
 
 def test_a_wave_on_the_flanks_is_a_line_of_its_own_with_what_it_adds_to_the_errors() -> None:
@@ -101,18 +103,18 @@ def test_a_wave_on_the_flanks_is_a_line_of_its_own_with_what_it_adds_to_the_erro
     for name, plain in channels.items():
         waves = [_record(speed, [(step, number)], teeth, rng) for speed in SPEEDS_HZ]
         channels[name] = [replace(one, power=one.power + wave.power) for one, wave in zip(plain, waves, strict=True)]
-    multiples = machine_multiples(channels, teeth)
-    assert second_stage(multiples, teeth) is None
-    (found,) = [line for line in wave_lines(multiples, teeth, "one", ()) if line.amplitude > 0.4]
+    multiples = machine_multiples(channels, pair(teeth))
+    assert second_stage(multiples, pair(teeth)) is None
+    (found,) = [line for line in wave_lines(multiples, pair(teeth), "one", ()) if line.amplitude > 0.4]
     assert found.order == pytest.approx(29 * step)
     assert found.amplitude == pytest.approx(0.8, rel=0.05)
-    assert all(line.order != found.order for line in wave_lines(multiples, teeth, "one", (found.order,)))
+    assert all(line.order != found.order for line in wave_lines(multiples, pair(teeth), "one", (found.order,)))
 
 
 def test_sidebands_at_lines_of_a_stage_are_no_measure_of_the_path() -> None:
     step = 18 / 47
     foreign = 18.0 + 2 * step
-    groups = {group.name: group for group in line_groups((18, 47), 100.0, (foreign,))}
+    groups = {group.name: group for group in line_groups(pair((18, 47)), 100.0, (foreign,))}
     assert foreign not in groups["gear sidebands of mesh 1"].orders
     assert len(groups["gear sidebands of mesh 1"].orders) == 7
     assert len(groups["gear sidebands of mesh 2"].orders) == 8

@@ -1,0 +1,101 @@
+"""Drivetrain: shafts and meshes of the machine that is calibrated, by their orders, named as its user names them.
+
+Orders are turns, or teeth that mesh, per turn of the first shaft. Shafts and meshes stand in the order of power.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from diagnostics.records.gear_train import GEARS, Mesh
+
+
+@dataclass(frozen=True, slots=True)
+class Shaft:
+    """One shaft: name, turns per turn of the first one, teeth of its gears."""
+
+    name: str
+    turns: Fraction
+    teeth: tuple[int, ...]
+
+    @property
+    def step(self) -> float:
+        """Its turns as a number."""
+        return float(self.turns)
+
+    @property
+    def words(self) -> str:
+        """What a sentence calls it."""
+        return f"the {self.name}'s shaft" if self.name in GEARS else f"the {self.name} shaft"
+
+
+@dataclass(frozen=True, slots=True)
+class MeshOrder:
+    """One mesh: name, empty for the first of the short form, order, and the shafts of its driver and driven gear."""
+
+    name: str
+    order: float
+    shafts: tuple[Shaft, Shaft]
+
+    def called(self, what: str) -> str:
+        """Return the name of its line or of a group of its lines."""
+        return f"mesh {self.name} {what}" if self.name else f"mesh {what}"
+
+    @property
+    def words(self) -> str:
+        """What a sentence calls it, with its teeth."""
+        driver, driven = self.shafts
+        name = f" {self.name}" if self.name else ""
+        return f"mesh{name} ({driver.teeth[-1]}/{driven.teeth[0]} teeth)"
+
+
+@dataclass(frozen=True, slots=True)
+class Drivetrain:
+    """All shafts and meshes of a machine."""
+
+    shafts: tuple[Shaft, ...]
+    meshes: tuple[MeshOrder, ...]
+
+    @property
+    def teeth(self) -> tuple[int, int]:
+        """Of the first mesh."""
+        return self.shafts[0].teeth[-1], self.shafts[1].teeth[0]
+
+    @property
+    def gear_order(self) -> float:
+        """Turns of the second shaft."""
+        return self.shafts[1].step
+
+
+def drivetrain(train: Sequence[Mesh], shafts: Sequence[str] = (), meshes: Sequence[str] = ()) -> Drivetrain:
+    """Return the shafts and meshes of a gearbox.
+
+    Parameters
+    ----------
+    train : sequence of Mesh
+    shafts, meshes : sequence of str
+        The user's names; those of the short form without.
+    """
+    further = [mesh.name for mesh in train[1:]]
+    named, called = shafts or (*GEARS, *further), meshes or ("", *further)
+    turns = [Fraction(1)]
+    teeth: list[tuple[int, ...]] = [train[0].teeth[:1]]
+    for number, mesh in enumerate(train):
+        turns.append(turns[-1] * Fraction(*mesh.teeth))
+        teeth.append((mesh.teeth[1], *(one.teeth[0] for one in train[number + 1 : number + 2])))
+    found = tuple(Shaft(*one) for one in zip(named, turns, teeth, strict=True))
+    orders = (float(found[number].turns * mesh.teeth[0]) for number, mesh in enumerate(train))
+    return Drivetrain(
+        found,
+        tuple(
+            MeshOrder(name, order, (found[number], found[number + 1]))
+            for number, (name, order) in enumerate(zip(called, orders, strict=True))
+        ),
+    )
+
+
+def pair(teeth: tuple[int, int]) -> Drivetrain:
+    """Return the drivetrain of one pair of gears."""
+    return drivetrain((Mesh("", teeth),))
