@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING
 
@@ -13,11 +14,17 @@ if TYPE_CHECKING:
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+LABELLED = (1, 2, 4, 10)
+"""Multiples of a power that have labels, where matplotlib gives some: all of its own overlap in flat panels."""
+
+
 class PowerLabels(LogFormatterSciNotation):
     """Powers of ten with raised digits, at the places where matplotlib would write a formula."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
         """Return the label of one tick: 10⁻², 2×10³, or nothing."""
+        if x > 0.0 and round(x / 10.0 ** math.floor(math.log10(x))) not in LABELLED:
+            return ""
         formula = super().__call__(x, pos)
         text = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(RAISED), formula)
         return re.sub(r"\\mathdefault|[${}]", "", text.replace(r"\times", "×"))

@@ -139,9 +139,10 @@ def _text_problems(text: str, wanted: _Wanted, where: str, numbers: str) -> Iter
 
 
 def _curves_problems(response: FrequencyResponse, wanted: _Wanted, where: str) -> Iterator[Problem]:
-    if strange := sorted({force for _, force in response.curves} - {*wanted.forces}):
+    if strange := sorted(key for key in response.curves if key[1] not in wanted.forces):
         known = ", ".join(dict.fromkeys(force.split("/")[0] for force in wanted.forces))
-        yield Problem(where, f"a force {strange[0]}", f"allowed: forces of {known}")
+        axis, force = strange[0]
+        yield Problem(where, f"columns {axis}_from_{force.replace('/', '_')}_...", f"allowed: forces of {known}")
         return
     for key in ((axis, name) for axis in wanted.axes for name in wanted.forces):
         label = f"{key[0]}_from_{key[1].replace('/', '_')}"

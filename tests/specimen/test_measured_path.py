@@ -86,11 +86,11 @@ def passed(config: Config, response: Response, residues: dict[str, tuple[float, 
     length = 2**16  # nothing wraps round
     hz = np.arange(length // 2 + 1) * config.fs_hz / length
     total = np.zeros(hz.size, dtype=complex)
-    for name, residue in residues.items():
+    for name, each in residues.items():
         whole = np.concatenate([response.history.bearing_force_n[name], response.bearing_force_n[name]])
         assert 2 * whole.size < length
         values = whole - response.history.bearing_force_n[name].mean()
-        total += accelerance(hz, (400.0, 1700.0), residue) * np.fft.rfft(values, length)
+        total += accelerance(hz, (400.0, 1700.0), each) * np.fft.rfft(values, length)
     return np.asarray(np.fft.irfft(total, length)[whole.size - config.samples : whole.size])
 
 
@@ -112,7 +112,7 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
     residues = {name: (0.01 * (k + 1), 0.02 - 0.01 * k) for k, name in enumerate(forces)}
     found = {"frequency_hz": GRID}
     for name, own in forces.items():
-        curve = accelerance(GRID, (400.0, 1700.0), residue)
+        curve = accelerance(GRID, (400.0, 1700.0), residues[name])
         found |= {f"vertical_from_{own}_{part}_m_s2_per_n": getattr(curve, part) for part in ("real", "imag")}
     save(found, tmp_path / "lid.npz")
     sensor = {**SENSOR, "path": {"file": "lid.npz"}}
@@ -125,7 +125,7 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
     assert np.abs(signal(config) - expected).max() < 3e-3 * expected.std()
     save(columns(), tmp_path / "lid.npz")
     with pytest.raises(
-        ConfigError, match="a force gear_bearing/horizontal; allowed: forces of input_bearing, middle_b"
+        ConfigError, match=r"columns vertical_from_gear_bearing_horizontal_...; allowed: forces of input"
     ):
         load_config(tmp_path / "set.yaml")
 
