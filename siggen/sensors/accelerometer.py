@@ -135,7 +135,11 @@ class Accelerometer(SourceKeys, Sensor):
             yield from self._position_problems(places.model)
             return
         if not places.bearings:
-            yield Problem("path", "a measured path", "allowed: null in a planetary set, which has no bearing forces")
+            yield Problem(
+                "path",
+                "a measured path",
+                "allowed: null in a planetary set, whose forces are those of sun, carrier and ring",
+            )
         if self.cross_axis != 0.0:
             allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
             yield Problem("cross_axis", str(self.cross_axis), allowed)

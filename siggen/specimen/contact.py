@@ -111,7 +111,7 @@ def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points
     return replace(healthy, pair_stiffness_n_per_m=stiffness, table_of_pair=table_of_pair(pair, kinds))
 
 
-@lru_cache(maxsize=2)  # states of a specimen share them
+@lru_cache(maxsize=8)  # states of a specimen share them, of every mesh
 def _healthy_tables(pair: GearPair, options: StiffnessOptions, points: int) -> MeshTables:
     return mesh_tables(pair, (), options, points=points)
 

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.config.names import NO_NAMES, Names
+from siggen.config.planetary import pitches_per_turn
 from siggen.config.stages import turned_teeth
+from siggen.dynamics.structure.planetary import RING_TURNING
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -47,10 +49,8 @@ class PathCurves:
         for channel in self.channels:
             for name, curve in zip(channel.forces, _rows(channel), strict=True):
                 stem = f"{channel.name}_from_{self.names.force(name).replace('/', '_')}"
-                columns |= {
-                    f"{stem}_real_m_s2_per_n": curve.real[::step],
-                    f"{stem}_imag_m_s2_per_n": curve.imag[::step],
-                }
+                unit = "m_s2_per_nm" if name == RING_TURNING else "m_s2_per_n"
+                columns |= {f"{stem}_real_{unit}": curve.real[::step], f"{stem}_imag_{unit}": curve.imag[::step]}
         return pa.table(columns)
 
     @property
@@ -62,7 +62,8 @@ class PathCurves:
 
     def peak(self, channel: ChannelInstrument) -> tuple[float, float]:
         """Return the largest accelerance [m/s²/N] from any bearing force, and its frequency [Hz]."""
-        largest = np.abs(_rows(channel)).max(axis=0)
+        forces = [name != RING_TURNING for name in channel.forces]  # the ring's moment is none
+        largest = np.abs(_rows(channel)[forces]).max(axis=0)
         place = int(largest.argmax())
         return float(largest[place]), float(self.frequency_hz[place])
 
@@ -85,8 +86,10 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
         )
     housing = specimen_housing(config, specimen)
     behind = map(float, turned_teeth(specimen.gears, specimen.stages))
-    meshing = (float(specimen.gears.pinion.teeth), *behind)
+    meshing: tuple[float, ...] = (float(specimen.gears.pinion.teeth), *behind)
     points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
+    if config.planetary is not None:
+        meshing = (pitches_per_turn(specimen.gears.pinion.teeth, config.planetary.ring_teeth),)
     return PathCurves(
         specimen_id=specimen_id,
         frequency_hz=frequencies(instrument.length, config.fs_hz),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from siggen.dynamics.structure.planetary import RING_TURNING
 from siggen.views.path_curves import PathCurves
 from siggen.views.picture_file import save_figure
 
@@ -29,7 +30,9 @@ def path_figure(found: PathCurves) -> Figure:
     shown = found.frequency_hz >= LOWEST_HZ
     for panel, channel in zip(panels, found.channels, strict=True):
         for name, row in zip(channel.forces, channel.accelerance, strict=True):  # type: ignore[arg-type]
-            label = found.names.force(name).replace("_bearing/", ", ")
+            if name == RING_TURNING:  # per N m
+                continue
+            label = found.names.force(name).replace("_bearing/", ", ").replace("/", ", ")
             panel.loglog(found.frequency_hz[shown], np.abs(row[shown]), lw=0.9, label=label)
         panel.set_title(channel.name, loc="left", fontsize="medium")
         panel.grid(alpha=0.3)

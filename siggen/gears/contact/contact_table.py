@@ -113,7 +113,7 @@ def contact_table(
     return table
 
 
-@lru_cache(maxsize=2)  # states of a specimen share the healthy columns
+@lru_cache(maxsize=8)  # states of a specimen share the healthy columns of every mesh
 def _healthy(
     pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, points: int, lead_m: tuple[float, ...]
 ) -> tuple[ContactTable, KindRow]:
