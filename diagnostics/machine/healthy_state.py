@@ -111,8 +111,8 @@ def pieces_of(
     if duration_s * pulses.speed_hz < FEWEST_TURNS:
         raise UsageError(
             f"{recording.path}: pieces of {duration_s:.3g} s, as long as the shortest recording, hold "
-            f"{duration_s * pulses.speed_hz:.1f} turns of the pinion; allowed: at least {FEWEST_TURNS}. Use longer "
-            "recordings, or leave the shortest out"
+            f"{duration_s * pulses.speed_hz:.1f} turns of the first shaft; allowed: at least {FEWEST_TURNS}. Use "
+            "longer recordings, or leave the shortest out"
         )
     return record_pieces(slow, pulses, first.teeth, duration_s, IndicatorSettings(), train=train), pulses
 

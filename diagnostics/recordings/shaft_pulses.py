@@ -76,8 +76,8 @@ def shaft_pulses(
         found = ShaftPulses(recording.tacho_s, "tacho")
     elif speed_range_hz is None:
         raise UsageError(
-            f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, or the range the pinion "
-            "can have run in with --speed-range LOW,HIGH"
+            f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, or the range the first "
+            "shaft can have run in with --speed-range LOW,HIGH"
         )
     else:
         try:
@@ -89,7 +89,8 @@ def shaft_pulses(
     if min(turns, turns * teeth[0] / teeth[1]) < FEWEST_REVOLUTIONS:
         needed = int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, teeth[1] / teeth[0])))
         raise UsageError(
-            f"{recording.path}: {turns} whole pinion revolutions; averages of both shafts need {needed}. Record longer."
+            f"{recording.path}: {turns} whole turns of the first shaft; averages of both shafts need {needed}. Record "
+            "longer."
         )
     return found
 

@@ -94,7 +94,7 @@ def _pulse_problem(record: Recording, ratio: float) -> str:
     if min(turns, turns / ratio) >= FEWEST_REVOLUTIONS:
         return ""
     shafts = "averages" if ratio == 1.0 else "averages of both shafts"
-    what = "turns of the sun against the carrier" if is_planetary(record.labels) else "pinion revolutions"
+    what = "turns of the sun against the carrier" if is_planetary(record.labels) else "turns of the first shaft"
     return (
         f"{turns} whole {what} between pulses; {shafts} over at least {FEWEST_REVOLUTIONS} "
         f"revolutions need {int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, ratio)))}. Use longer records (duration_s) or a "

@@ -67,7 +67,7 @@ def _uncertain(found: SpeedFound, speed_range_hz: tuple[float, float]) -> str:
     rival, share = found.rivals[0] if found.rivals else (0.0, 0.0)
     if share > found.certainty and not low <= rival <= high:
         return (
-            f"the lines fit {rival:.4g} Hz of pinion speed best, outside of {low:g} to {high:g} Hz "
+            f"the lines fit {rival:.4g} Hz of the first shaft best, outside of {low:g} to {high:g} Hz "
             f"({found.speed_hz:.4g} Hz inside). Check range and teeth, or give a tacho."
         )
     if share > 0.1 * found.certainty and share + found.certainty > CONTESTED:
@@ -77,7 +77,7 @@ def _uncertain(found: SpeedFound, speed_range_hz: tuple[float, float]) -> str:
             "tacho."
         )
     return (
-        f"no lines of these shafts stand above the noise within {low:g} to {high:g} Hz of pinion speed (best "
+        f"no lines of these shafts stand above the noise within {low:g} to {high:g} Hz of the first shaft (best "
         f"{found.speed_hz:.4g} Hz, certain to {found.certainty:.0%}; allowed is {CERTAIN:.0%}). Check range and teeth, "
         "give a longer recording or a tacho."
     )

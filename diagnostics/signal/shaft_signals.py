@@ -164,7 +164,7 @@ def record_shafts(
     pinion_turns, gear_turns = (steps // (z * samples_per_tooth) for z in teeth)
     needed = np.array([revolutions_needed(k, teeth[1], teeth[0]) for k in range(1, sidebands + 1)])
     resolved = needed <= gear_turns
-    note = "" if pinion_turns else "no whole pinion revolution between two pulses"
+    note = "" if pinion_turns else "no whole turn of the first shaft between two pulses"
     pinion = Shaft("pinion", teeth[0], pinion_turns, np.ones(sidebands, dtype=bool), note)
     return pinion, Shaft("gear", teeth[1], gear_turns, resolved, _resolution_note(resolved, needed, gear_turns))
 

@@ -125,7 +125,7 @@ def speed_search(
         for one in _tried(curve, speed_range_hz)
     ]
     if not tried:
-        raise UsageError(f"{FEWEST_TURNS} turns of the pinion or fewer were found; record longer, or give a tacho")
+        raise UsageError(f"{FEWEST_TURNS} turns of the first shaft or fewer were found; record longer, or give a tacho")
     for one in _distinct(tried)[:FOLLOWED]:
         tried += [again for curve in _followed(sight, one) for again in _tried(curve, speed_range_hz)]
     sharp = _sharpest(tried)

@@ -149,8 +149,8 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "nan": (samples(not_a_number), ("channel bearing_vertical", "not finite", "3"), ALL),
     "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ONE),
     "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range_m_s2"), ONE),
-    "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole pinion revolution", "duration_s"), ALL),
-    "no pulses": (column("tacho_s", []), ("0 whole pinion revolution", "--speed-range"), ONE),
+    "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole turns of the first shaft", "duration_s"), ALL),
+    "no pulses": (column("tacho_s", []), ("0 whole turns of the first shaft", "--speed-range"), ONE),
     "pulses backwards": (column("tacho_s", [0.1, 0.05, 0.2, 0.3]), ("not finite and increasing", "tacho_s"), ONE),
     "unknown teeth": (
         column("teeth_gear", None, ("data", "metadata")), ("received 18, nan", "correct the columns"), ALL,

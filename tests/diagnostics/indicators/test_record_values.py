@@ -83,7 +83,7 @@ def test_without_an_angle_only_the_raw_indicators_are_defined(pulses: int) -> No
         "rms__a", "kurtosis__a", "crest_factor__a", "spectral_kurtosis_maximum__a",
     }  # fmt: skip
     assert found.values.keys() == features_of(1.0).values.keys()
-    assert "no whole pinion revolution" in found.notes
+    assert "no whole turn of the first shaft" in found.notes
 
 
 def test_fm4_of_a_perfect_record_is_undefined_when_the_angle_is_exact() -> None:

@@ -140,7 +140,7 @@ def test_parts_cover_the_range_and_hold_one_harmonic_each() -> None:
 def test_without_tacho_and_range_and_with_too_few_turns_the_file_is_named() -> None:
     with pytest.raises(UsageError, match=r"run.npz: neither tacho nor speed"):
         shaft_pulses(recording(30.0), TEETH, None)
-    with pytest.raises(UsageError, match=r"run.npz: 4 whole pinion revolutions; averages of both shafts need 6"):
+    with pytest.raises(UsageError, match=r"run.npz: 4 whole turns of the first shaft; averages of both shafts need 6"):
         shaft_pulses(recording(30.0, np.arange(5) / 30.0), TEETH, None)
     with pytest.raises(UsageError, match="speed range"):
         shaft_pulses(recording(30.0), TEETH, (40.0, 30.0))
