@@ -135,9 +135,9 @@ def _publish(folder: Path, out: Path) -> None:
 
 
 def _explore(folder: Path, out: Path) -> None:
-    from diagnostics.explore.explorer import ExplorerOptions, write_explorer
+    from diagnostics.explore.set_page import LookOptions, write_set_page
 
-    write_explorer(siggen.open(folder), out.with_suffix(".html"), ExplorerOptions(limit=3))
+    write_set_page(siggen.open(folder), out.with_suffix(".html"), LookOptions(limit=3))
 
 
 def _report(folder: Path, _out: Path) -> None:

@@ -7,7 +7,6 @@ import importlib.util
 from siggen.errors import UsageError
 
 EXTRA_OF = {
-    "jinja2": "diagnostics",
     "sklearn": "diagnostics",
     "matplotlib": "diagnostics",
     "skops": "diagnostics",

@@ -1,4 +1,4 @@
-"""`siggen-diagnostics explore`: one page on which the records of a set are chosen, zoomed and compared."""
+"""`siggen-diagnostics explore`: records of a set, or recordings, as the report shows them, without a judgement."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ import typer
 from diagnostics.base.beside import beside as path_beside
 from diagnostics.base.progress import Stage
 from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
-from diagnostics.cli.set_options import Open, OwnIndicators, opened
+from diagnostics.cli.set_options import AmountOptions, Open, OwnIndicators, opened
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.explore.measured_page import ShownRecording
+    from diagnostics.explore.set_page import LivesOf, LookOptions
     from diagnostics.machine.recording_indicators import RecordingIndicators
     from diagnostics.recordings.measured_recording import RecordingFacts
     from diagnostics.records.gear_train import Mesh
+    from siggen.dataset.reading import Dataset
 
 MACHINE_FILE = "machine.json"
 """What the folder of a machine holds; its reader is slow to import."""
@@ -95,20 +97,6 @@ def _read(
 
 
 @dataclass(frozen=True, slots=True)
-class AmountOptions:
-    """How much the page holds."""
-
-    limit: Annotated[
-        int, typer.Option(min=1, help="Most records on the page; whole gearboxes beyond it are left out.")
-    ] = 100
-    full: Annotated[
-        bool,
-        typer.Option("--full", help="Keep every sample: up to 30 MB instead of 5 MB for 100 records of two channels."),
-    ] = False
-    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1
-
-
-@dataclass(frozen=True, slots=True)
 class SetOptions:
     """For sets only."""
 
@@ -126,8 +114,8 @@ class SetOptions:
         bool,
         typer.Option(
             "--serve",
-            help="Serve the page to this machine alone (127.0.0.1), with every sample of the record you look at, until "
-            "Ctrl+C. Writes no file.",
+            help="Serve the page to this machine alone (127.0.0.1) until Ctrl+C, with every sample of every record. "
+            "Writes no file.",
         ),
     ] = False
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of --serve; 0 takes a free one.")] = 0
@@ -180,14 +168,9 @@ def explore(
     gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
-    """Write one HTML page to look at the records of a set, or at recordings; it opens from disk, without a network.
+    """Look at recordings, or at the records of a set at once: the page of `report` without its judgement.
 
-    A table to filter and sort; for the chosen record its signal, order and envelope spectra, averages by tooth and
-    damaged flanks, laid over the healthy record of the same gearbox; indicators, and a scatter of any two.
-
-    The folder of a machine knows how its recordings are read.
-
-    Example: siggen-diagnostics explore data/quickstart --out quickstart.html
+    It opens from disk, without a network. The folder of a machine knows how its recordings are read.
 
     Example: siggen-diagnostics explore data/quickstart --model data/quickstart_report --serve --open
 
@@ -225,16 +208,19 @@ def _refuse_set_options(options: SetOptions) -> None:
 def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: SetOptions, show: bool) -> Path | None:
     """Serve the page of a set, or write it and return where."""
     from diagnostics.base.progress import terminal_stage
-    from diagnostics.explore.explorer import ExplorerOptions, explorer_of, write_explorer
+    from diagnostics.explore.set_page import LookOptions, write_set_page
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.records.named_set import open_set
+    from diagnostics.report.life_pictures import lives_of
+    from diagnostics.scoring.truth import is_lives
 
     own, dataset = load_indicators(of_set.indicator), open_set(folder)
-    options = ExplorerOptions(**asdict(amount), served=of_set.serve, model=of_set.model, own=own)
+    options = LookOptions(**asdict(amount), served=of_set.serve, model=of_set.model, own=own)
+    adds = lives_of if is_lives(dataset) else None
     if of_set.serve:
-        _serve(*explorer_of(dataset, options, terminal_stage), dataset, of_set.port, show)
+        _serve(dataset, options, of_set.port, adds, show=show)
         return None
-    return write_explorer(dataset, out or path_beside(dataset.path, "_explore.html"), options, terminal_stage)
+    return write_set_page(dataset, out or path_beside(dataset.path, "_explore.html"), options, terminal_stage, adds)
 
 
 def _recordings_page(
@@ -260,19 +246,26 @@ def _recordings_page(
     if compared.beside is None:
         return write_recordings_page(name, shown, path, full=amount.full, stage=terminal_stage)
     from diagnostics.explore.beside_page import write_beside_page
-    from diagnostics.explore.explorer import ExplorerOptions
+    from diagnostics.explore.set_page import LookOptions
     from diagnostics.records.named_set import open_set
 
-    options = ExplorerOptions(**asdict(amount))
+    options = LookOptions(**asdict(amount))
     return write_beside_page(name, shown, open_set(compared.beside), path, options, terminal_stage)
 
 
-def _serve(page: str, records: object, dataset: object, port: int, show: bool) -> None:
+def _serve(dataset: Dataset, options: LookOptions, port: int, adds: LivesOf | None, *, show: bool) -> None:
     """Serve until Ctrl+C."""
-    from diagnostics.explore.server import page_server
+    import numpy as np
 
+    from diagnostics.base.progress import terminal_stage
+    from diagnostics.explore.look import look_page
+    from diagnostics.explore.server import DETAIL, LIFE, page_server
+    from diagnostics.explore.set_page import set_look, set_name
+
+    look = set_look(dataset, options, terminal_stage, adds)
+    page, records = look_page(f"Records of {set_name(dataset)}", look), np.asarray(look.source.labels["record_id"])
     try:
-        server = page_server(page, dataset, records, port)  # type: ignore[arg-type]
+        server = page_server(page, dataset, records, {DETAIL: look.detail, LIFE: look.life}, port)
     except OSError as error:
         raise UsageError(f"--port {port}: {error.strerror}; allowed: a free port, or 0 for any") from error
     address = f"http://{server.server_address[0]!s}:{server.server_port}/"

@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
-from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, opened
+from diagnostics.cli.set_options import OwnIndicators, RankingOptions
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
-    from diagnostics.indicators.own_indicator import OwnIndicator
     from diagnostics.recordings.measured_recording import RecordingFacts
-    from siggen.dataset.reading import Dataset
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,22 +28,9 @@ class ComputingOptions:
 
 
 @dataclass(frozen=True, slots=True)
-class RankingOptions:
-    """How indicators of a set are ranked."""
+class TableOptions(RankingOptions):
+    """How indicators of a set are ranked, and of which records."""
 
-    false_alarms: Annotated[
-        float,
-        typer.Option(min=0.001, max=0.5, help="Rate of false alarms: share of healthy records above the threshold."),
-    ] = 0.05
-    state: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME",
-            help="A damaged state to judge. May be given several times. Default: all. Sizes and trends are meaningful "
-            "within one kind of damage only.",
-            show_default=False,
-        ),
-    ] = None
     leave_out: Annotated[
         bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
     ] = False
@@ -70,19 +55,18 @@ def indicators(
             "--out",
             "-o",
             metavar="FOLDER | FILE",
-            help="Folder for the report, DIR_indicators unless told; a .parquet or .csv file takes the table alone.",
+            help="Folder, DIR_indicators unless told; a .parquet or .csv file takes the values of a set alone.",
             show_default=False,
         ),
     ] = None,
     computing: ComputingOptions,
-    ranking: RankingOptions,
-    page: PageOptions,
+    ranking: TableOptions,
     gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
     """Compute all indicators: of a set, ranked by how well they separate damage; or of measured recordings.
 
-    Writes indicators.html and tables.
+    Of a set it writes the values and the ranking as tables; `report` shows both. Of recordings also indicators.html.
 
     Example: siggen-diagnostics indicators data/quickstart --workers 4
 
@@ -92,22 +76,18 @@ def indicators(
     """
     span = recording.speed_range_hz()
     if gears.given or file_rows(targets[0])[0][0].is_file():
-        _refuse_options_of_sets(computing, ranking, page)
+        _refuse_options_of_sets(computing, ranking)
         _of_recordings(targets, gears, recording.facts(), span, out, computing.as_json)
         return
     directory = _one_set(targets, computing)
     if out is not None and out.suffix in (".parquet", ".csv"):
         _table_alone(directory, out, computing.indicator, computing.workers)
         return
-    path = _ranking_report(directory, out, span, computing, ranking, explore=page.explore)
-    typer.echo(str(path))
-    if page.show:
-        opened(path)
+    _ranked_tables(directory, out, span, computing, ranking)
 
 
-def _refuse_options_of_sets(computing: ComputingOptions, ranking: RankingOptions, page: PageOptions) -> None:
+def _refuse_options_of_sets(computing: ComputingOptions, ranking: TableOptions) -> None:
     of_sets = {"--indicator": computing.indicator, "--state": ranking.state, "--leave-out": ranking.leave_out}
-    of_sets["--explore"] = page.explore
     if ignored := [option for option, given in of_sets.items() if given]:
         raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
 
@@ -121,53 +101,42 @@ def _one_set(targets: list[str], computing: ComputingOptions) -> Path:
     return Path(targets[0])
 
 
-def _ranking_report(
+def _ranked_tables(
     directory: Path,
     out: Path | None,
     span: tuple[float, float] | None,
     computing: ComputingOptions,
-    ranking: RankingOptions,
-    *,
-    explore: bool,
-) -> Path:
-    """Write the ranking of a set's indicators, and the explorer where it is wanted; return the page."""
+    ranking: TableOptions,
+) -> None:
+    """Write values and ranking of a set's indicators, and say which are best."""
     from diagnostics.base.beside import beside
-    from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.indicators.ranking_table import ranking_table
     from diagnostics.indicators.settings import IndicatorSettings
     from diagnostics.indicators.table import record_table
-    from diagnostics.records.named_set import open_set
+    from diagnostics.records.named_set import open_set, words_of
     from diagnostics.records.record_classes import refuse_lives
     from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
-    from diagnostics.report.indicator_report import write_indicator_report
+    from diagnostics.report.indicator_evaluation import evaluated, findings, write_evaluation
     from diagnostics.statistics.assessment import AssessmentSettings
 
-    require_packages("the report of indicators", "matplotlib")
     own, states = load_indicators(computing.indicator), ranking.state or ()
     dataset = open_set(directory)
     refuse_lives(dataset)
     check_states(dataset)
     chosen_states(dataset, states)
-    settings = IndicatorSettings(speed_range_hz=span)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
+        settings = IndicatorSettings(speed_range_hz=span)
         everything = record_table(dataset, settings, own, workers=computing.workers, advance=advance)
     table = ranking_table(everything, dataset, states=states, leave_out=ranking.leave_out)
-    folder = out or beside(dataset.path, "_indicators")
     judged = AssessmentSettings(seed=ranking.seed, false_alarms=ranking.false_alarms)
-    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=EXPLORER * explore)
-    if explore:
-        _explorer(dataset, folder, computing.workers, own)
-    return path
-
-
-def _explorer(dataset: Dataset, folder: Path, workers: int, own: tuple[OwnIndicator, ...]) -> None:
-    from diagnostics.base.progress import terminal_stage
-    from diagnostics.explore.explorer import ExplorerOptions, write_explorer
-
-    write_explorer(dataset, folder / EXPLORER, ExplorerOptions(workers=workers, own=own), terminal_stage)
+    found = evaluated(table, judged, terminal_stage)
+    path = write_evaluation(dataset, found, out or beside(dataset.path, "_indicators"), values=True)
+    for sentence in findings(dataset, found)[1:]:
+        typer.echo(words_of(dataset)(sentence))
+    typer.echo(str(path))
 
 
 def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: int) -> None:

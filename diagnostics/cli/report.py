@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.set_options import EXPLORER, OwnIndicators, ReportOptions, Seed, TrainingOptions, opened
+from diagnostics.cli.set_options import OwnIndicators, ReportOptions, Seed, TrainingOptions, opened
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
@@ -45,17 +45,18 @@ def report(
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Train classifiers on a set, judge them on gearboxes that they have not seen, and write report.html and models.
+    """Write the page of a set: which damage is found, how sure that is, and all its records; and train models.
 
-    Beside the page: metrics.json, tables and figures. Of gearboxes that run to failure: how well baselines tell their
-    remaining life.
+    Classifiers are judged on gearboxes that they have not seen. The page opens from disk, without a network. Of
+    gearboxes that run to failure it says how well baselines tell their remaining life. Beside it lie metrics.json,
+    evaluation.csv with all indicators, figures and models.
 
     Example: siggen-diagnostics report data/quickstart --studies
 
     Example: siggen-diagnostics report data/quickstart --models-only --out models --test data/other_gears
     """
     if models_only:
-        of_page = {"--explore": pages.explore, "--open": pages.show, "--predictions": pages.predictions}
+        of_page = {"--open": pages.show, "--predictions": pages.predictions, "--state": pages.state}
         _refuse(of_page, "--models-only writes no page")
     from diagnostics.base.beside import beside
     from diagnostics.base.extras import missing_packages, require_packages
@@ -64,6 +65,7 @@ def report(
 
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
+    from diagnostics.explore.set_page import LookOptions
     from diagnostics.records.record_classes import check_kind
     from diagnostics.report.life_report import write_life_report
     from diagnostics.scoring.truth import is_lives
@@ -78,10 +80,11 @@ def report(
     options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
     if is_lives(dataset):
         of_states = {"--models-only": models_only, "--test": second, "--studies": training.studies}
-        of_pages = {"--explore": pages.explore, "--predictions": pages.predictions}
+        of_pages = {"--predictions": pages.predictions, "--state": pages.state}
         _refuse({**of_states, "--indicator": own, **of_pages}, "for sets of states; this one has lives")
         folder = out or beside(dataset.path, "_report")
-        path = write_life_report(dataset, folder, seed, terminal_stage, network=training.cnn)
+        amount = LookOptions(pages.limit, pages.full, workers=pages.workers)
+        path = write_life_report(dataset, folder, seed, terminal_stage, network=training.cnn, amount=amount)
     else:
         folder = out or beside(dataset.path, "_models" if models_only else "_report")
         if models_only:
@@ -109,32 +112,20 @@ def _page(
     own: tuple[OwnIndicator, ...],
     pages: ReportOptions,
 ) -> Path:
-    """Write the report, and the page to explore beside it where it is wanted; return the report's path."""
+    """Write the report and return its path."""
     from diagnostics.base.progress import terminal_stage
-    from diagnostics.report.report import write_report
-    from diagnostics.report.your_scores import Beside
+    from diagnostics.report.report import PageOptions, write_report
 
     dataset, second = sets
-    name = EXPLORER if pages.explore else ""
-    path = write_report(
-        dataset,
-        folder,
-        seed,
-        network=options,
-        other=second,
-        own=own,
-        beside=Beside(name, pages.predictions),
-        stage=terminal_stage,
+    page = PageOptions(
+        predictions=pages.predictions,
+        states=pages.state or (),
+        false_alarms=pages.false_alarms,
+        limit=pages.limit,
+        full=pages.full,
+        workers=pages.workers,
     )
-    if pages.explore:
-        from diagnostics.explore.explorer import ExplorerOptions, write_explorer
-        from diagnostics.report.examples import reported_gearboxes
-
-        model = folder / "models"
-        known = model if (model / "model.json").is_file() else None
-        first = reported_gearboxes(dataset)
-        write_explorer(dataset, folder / name, ExplorerOptions(model=known, own=own, first=first), terminal_stage)
-    return path
+    return write_report(dataset, folder, seed, network=options, other=second, own=own, page=page, stage=terminal_stage)
 
 
 def _models(

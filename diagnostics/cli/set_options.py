@@ -9,7 +9,6 @@ from typing import Annotated
 
 import typer
 
-EXPLORER = "explorer.html"
 Open = Annotated[bool, typer.Option("--open", help="Open the page in your browser.")]
 
 Classes = Annotated[
@@ -33,20 +32,45 @@ OwnIndicators = Annotated[
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class PageOptions:
-    """Further pages."""
+@dataclass(frozen=True)  # no slots: two of these have one heir
+class AmountOptions:
+    """How much of the records a page holds."""
 
-    explore: Annotated[
+    limit: Annotated[
+        int, typer.Option(min=1, help="Most records whose signals the page holds, of whole gearboxes; all are listed.")
+    ] = 100
+    full: Annotated[
         bool,
-        typer.Option("--explore", help=f"Also write {EXPLORER}, to which records and numbers of the page then lead."),
+        typer.Option("--full", help="Keep every sample: up to 30 MB instead of 5 MB for 100 records of two channels."),
     ] = False
-    show: Open = False
+    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1
 
 
-@dataclass(frozen=True, slots=True)
-class ReportOptions(PageOptions):
-    """Further pages, and the user's predictions."""
+@dataclass(frozen=True)
+class RankingOptions:
+    """How indicators of a set are ranked."""
+
+    false_alarms: Annotated[
+        float,
+        typer.Option(
+            "--false-alarms", min=0.001, max=0.5, help="Share of healthy records above the threshold of an indicator."
+        ),
+    ] = 0.05
+    state: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--state",
+            metavar="NAME",
+            help="A damaged state to rank indicators by. May be given several times. Default: all. Sizes and trends "
+            "are meaningful within one kind of damage only.",
+            show_default=False,
+        ),
+    ] = None
+
+
+@dataclass(frozen=True)
+class ReportOptions(RankingOptions, AmountOptions):
+    """How features are ranked, what the page holds, and how it is opened."""
 
     predictions: Annotated[
         Path | None,
@@ -57,6 +81,7 @@ class ReportOptions(PageOptions):
             show_default=False,
         ),
     ] = None
+    show: Open = False
 
 
 def opened(target: Path | str) -> None:

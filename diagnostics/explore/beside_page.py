@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.chosen_records import chosen_records, missing_parts
-from diagnostics.explore.explorer import ExplorerOptions, explorer_page
+from diagnostics.explore.look import look_of, look_page
 from diagnostics.explore.measured_page import ShownRecording, missing_sentences, recordings_source
 from diagnostics.explore.packed import packed_floats, unpacked_floats
-from diagnostics.explore.payload import PageSource, page_payload, set_source
+from diagnostics.explore.payload import PageSource, Shown
+from diagnostics.explore.set_page import LookOptions, set_name
+from diagnostics.explore.set_source import set_source
 from diagnostics.indicators.table import record_table
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
@@ -60,16 +61,22 @@ def beside_source(measured: PageSource, simulated: PageSource) -> PageSource:
     return PageSource(
         labels=labels,
         overlay=[*measured.overlay, *(None if other is None else ours + other for other in simulated.overlay)],
-        records=lambda: itertools.chain(_renamed(measured, named, numbers), simulated.records()),
+        kept=np.concatenate([np.arange(ours), ours + simulated.kept]),
+        records=lambda wanted: itertools.chain(
+            _renamed(measured, named, numbers), simulated.records(wanted[wanted < first])
+        ),
         channels=simulated.channels,
         fs_hz=simulated.fs_hz,
         duration_s=max(measured.duration_s, simulated.duration_s),
         indicators=_indicators(measured, simulated, named),
         damage=simulated.damage,
-        flanks=[*({} for _ in range(ours)), *simulated.flanks],
+        flanks=lambda row: simulated.flanks(row - ours) if row >= ours else {},
         quantities=simulated.quantities,
         held=simulated.held,
-        internals=lambda detail, fine: [*({} for _ in range(ours)), *simulated.internals(detail, fine[ours:])],
+        internals=lambda wanted, detail, fine: [
+            *({} for _ in range(ours)),
+            *simulated.internals(wanted[ours:], detail, fine[ours:]),
+        ],
         beside=nearest_of_the_others(labels, ours, theirs),
     )
 
@@ -143,7 +150,7 @@ def nearest_of_the_others(labels: Mapping[str, np.ndarray], ours: int, theirs: i
 
 
 def _renamed(measured: PageSource, named: Mapping[str, str], numbers: Mapping[int, int]) -> Iterator[Recording]:
-    for record in measured.records():
+    for record in measured.records(measured.labels["record_id"]):
         channels = {named[name]: signal for name, signal in record.channels.items()}
         yield replace(
             record, channels=channels, labels={**record.labels, "record_id": numbers[int(record.labels["record_id"])]}
@@ -172,7 +179,7 @@ def write_beside_page(
     shown: Sequence[ShownRecording],
     dataset: Dataset,
     path: Path,
-    options: ExplorerOptions | None = None,
+    options: LookOptions | None = None,
     stage: Stage = silent_stage,
 ) -> Path:
     """Write the page of recordings beside a set and return its path.
@@ -187,7 +194,7 @@ def write_beside_page(
         The simulated set.
     path : Path
         The HTML file.
-    options : ExplorerOptions, optional
+    options : LookOptions, optional
         Limit (of simulated records), detail, workers.
     stage : Stage
         Told of every record.
@@ -195,32 +202,19 @@ def write_beside_page(
     Raises
     ------
     UsageError
-        If Jinja2 is not installed, or recordings and set differ in rate, teeth or number of channels.
+        If recordings and set differ in rate, teeth or number of channels.
     """
-    require_packages("the page to explore recordings", "jinja2")
-    chosen = options or ExplorerOptions()
+    chosen = options or LookOptions()
     measured = recordings_source(shown)
     labels = dataset.labels(columns=["record_id", "specimen_id"])
     with stage("indicators", labels.num_rows) as advance:
         table = record_table(dataset, own=chosen.own, workers=chosen.workers, advance=advance)
-    rows = chosen_records({"specimen_id": np.asarray(labels.column("specimen_id"))}, chosen.limit)
-    simulated = set_source(dataset, table, rows)
-    source = beside_source(measured, simulated)
-    payload = page_payload(source, stage, full=chosen.full)
-    payload["served"] = False
-    facts = {
-        "name": f"{name} beside {dataset.manifest.get('name') or dataset.path.name}",
-        "identity": str(dataset.manifest.get("identity", ""))[:12],
-        "seen": "",
-        "records": len(shown) + labels.num_rows,
-        "healthy": int(np.count_nonzero(simulated.labels["fault"] == HEALTHY)),
-        "missing": _missing(shown, measured, simulated),
-        "served": False,
-        "columns": COLUMNS,
-        "filters": FILTERS,
-    }
+    kept = chosen_records({"specimen_id": np.asarray(labels.column("specimen_id"))}, chosen.limit)
+    simulated = set_source(dataset, table, kept)
+    said = Shown(COLUMNS, FILTERS, _missing(shown, measured, simulated))
+    look = look_of(beside_source(measured, simulated), said, stage, full=chosen.full)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(explorer_page(facts, payload), encoding="utf-8")
+    path.write_text(look_page(f"Recordings of {name} beside {set_name(dataset)}", look), encoding="utf-8")
     return path
 
 
@@ -229,7 +223,6 @@ def _missing(shown: Sequence[ShownRecording], measured: PageSource, simulated: P
     named = {ours: theirs for ours, theirs in channel_mapping(measured, simulated).items() if ours != theirs}
     taken = [f"The recordings' channel {ours} is shown as {theirs} of the set." for ours, theirs in named.items()]
     labels = {name: simulated.labels[name] for name in ("fault", "specimen_id")}
-    of_the_set = missing_parts(
-        labels, simulated.overlay, bool(simulated.damage), bool(simulated.quantities), named=True
-    )
+    damaged = bool((labels["fault"] != HEALTHY).any())
+    of_the_set = missing_parts(labels, simulated.overlay, damaged, bool(simulated.quantities), named=True)
     return [*taken, *missing_sentences(sum(one.healthy for one in shown)), *of_the_set]

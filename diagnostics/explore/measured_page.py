@@ -11,10 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.explore.explorer import explorer_page
-from diagnostics.explore.payload import PageSource, packed_indicators, page_payload
+from diagnostics.explore.look import look_of, look_page
+from diagnostics.explore.payload import PageSource, Shown, packed_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
 from diagnostics.records.gear_train import names_of, train_labels
@@ -66,15 +65,12 @@ def recordings_source(shown: Sequence[ShownRecording]) -> PageSource:
     return PageSource(
         labels=_labels(shown),
         overlay=nearest_healthy(shown),
-        records=lambda: _records(shown),
+        kept=np.arange(len(shown)),
+        records=lambda _numbers: _records(shown),
         channels=tuple(first.recording.channels),
         fs_hz=first.recording.fs_hz,
         duration_s=max(one.found.recording.duration_s for one in shown),
         indicators=packed_indicators(names, values, IndicatorSettings(), named=names_of(first.train)),
-        damage={},
-        flanks=[{} for _ in shown],
-        quantities=[],
-        internals=lambda _detail, _fine: [{} for _ in shown],
         measured=True,
         named=names_of(first.train),
     )
@@ -149,25 +145,12 @@ def write_recordings_page(
     Raises
     ------
     UsageError
-        If Jinja2 is not installed, or the recordings differ in rate or channels.
+        If the recordings differ in rate or channels.
     """
-    require_packages("the page to explore recordings", "jinja2")
-    payload = page_payload(recordings_source(shown), stage, full=full)
-    payload["served"] = False
-    healthy = sum(one.healthy for one in shown)
-    facts = {
-        "name": name,
-        "identity": "",
-        "seen": "",
-        "records": len(shown),
-        "healthy": healthy,
-        "missing": missing_sentences(healthy),
-        "served": False,
-        "columns": COLUMNS,
-        "filters": FILTERS,
-    }
+    missing = missing_sentences(sum(one.healthy for one in shown))
+    look = look_of(recordings_source(shown), Shown(COLUMNS, FILTERS, missing), stage, full=full)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(explorer_page(facts, payload), encoding="utf-8")
+    path.write_text(look_page(f"Recordings of {name}", look), encoding="utf-8")
     return path
 
 

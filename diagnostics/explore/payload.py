@@ -1,6 +1,6 @@
-"""Everything that the page's program needs of a set, as one value that JSON can hold.
+"""Everything that the page's program needs of a set or of recordings, as values that JSON can hold.
 
-Transmission error, mesh force and mesh stiffness of records, where a set stores what no sensor sees.
+Of all records their labels and indicators; of some of them, or of one at a time, signals, spectra and damage too.
 """
 
 from __future__ import annotations
@@ -11,75 +11,19 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.compute as pc
 
 from diagnostics.base.progress import Stage
-from diagnostics.explore.chosen_records import overlaid_records
 from diagnostics.explore.detail import Detail, page_detail
-from diagnostics.explore.flanks import flank_size, outlines
 from diagnostics.explore.packed import packed_floats
-from diagnostics.explore.record_views import PageAxes, highest_order, order_axis, packed_wave, record_views
+from diagnostics.explore.page_labels import packed_labels, packed_rows
+from diagnostics.explore.record_views import PageAxes, highest_order, order_axis, record_views
 from diagnostics.indicators.registry import indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.indicators.table import RecordTable
-from diagnostics.records.channel_quantities import RECORDED, ShownQuantity, channel_quantities
-from diagnostics.records.gear_train import GEARS, PAIR, GearNames
-from diagnostics.records.named_set import words_of
-from diagnostics.records.planetary_members import as_pair, teeth_labels
-from diagnostics.records.recording import Recording, gear_names, recordings
-from siggen.dataset.reading import Dataset
+from diagnostics.records.channel_quantities import RECORDED, ShownQuantity
+from diagnostics.records.gear_train import PAIR, GearNames
+from diagnostics.records.recording import Recording
 
-WAVES_SHOWN = {
-    "transmission_error_m": ("Transmission error", "µm", 1e6),
-    "mesh_force_n": ("Mesh force", "N", 1.0),
-    "mesh_stiffness_n_per_m": ("Mesh stiffness", "N/µm", 1e-6),
-}
-"""Title, shown unit and factor of the quantities that the page draws, of those that a set may store."""
-
-SHOWN = (
-    *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
-    *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
-)
-OF_PLANETS = {"sun": "pinion", "planet": "gear"}
-"""Which section of the configuration describes a member of a planetary set."""
-
-
-def shown_internals(dataset: Dataset) -> list[dict[str, str]]:
-    """Return name, title and shown unit of the stored quantities that the page draws; none for a set without them."""
-    stored = {column.name for column in getattr(dataset, "internal_columns", ())}
-    return [
-        {"name": name, "title": title, "unit": unit} for name, (title, unit, _) in WAVES_SHOWN.items() if name in stored
-    ]
-
-
-def internal_waves(
-    dataset: Dataset, ids: np.ndarray, detail: Detail, fine: list[tuple[int, int]]
-) -> list[dict[str, Any]]:
-    """Return the packed quantities of every record by name; empty for records that the set stores none of.
-
-    Parameters
-    ----------
-    dataset : siggen Dataset
-    ids : (n,) int64
-        Records of the page.
-    detail : Detail
-        How many points.
-    fine : list of (int, int)
-        Stretch of every record that is kept whole, as of its signals.
-    """
-    found: list[dict[str, Any]] = [{} for _ in ids]
-    names = [quantity["name"] for quantity in shown_internals(dataset)]
-    place = {int(record): row for row, record in enumerate(ids)}
-    if not names:
-        return found
-    for batch in dataset.internals(columns=["record_id", *names], batch_rows=16):
-        for line, record in enumerate(batch.column("record_id").to_pylist()):
-            row = place.get(record)
-            if row is not None:
-                series = {name: WAVES_SHOWN[name][2] * np.asarray(batch.column(name)[line].values) for name in names}
-                found[row] = {name: packed_wave(values, detail, fine[row]) for name, values in series.items()}
-    return found
+Columns = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,23 +33,29 @@ class PageSource:
     Attributes
     ----------
     labels : dict of str to (n,)
-        Those of `SHOWN` that are known, and others for the table.
+        What the page needs of every record.
+    further : dict of str to (n,)
+        What records can be chosen and drawn by besides.
     overlay : list of int or None
         Row of the healthy record that each is laid over.
+    kept : (m,) int
+        Rows whose signals the page holds.
     records : callable
-        Yields the records in any order; `record_id` in their labels says which.
+        Yields records by their numbers, in any order; `record_id` in their labels says which.
     channels : tuple of str
     fs_hz, duration_s : float
     indicators : list of dict
         Name, channel, title, definition and packed values of each.
-    damage : dict of str to list
-        Outlines by record; empty where unknown.
-    flanks : list of dict
-        Size of the flanks of each record's gears, None where unknown.
+    damage : callable
+        Returns outlines by record, of these numbers; nothing where unknown.
+    flanks : callable
+        Returns the size of the flanks of the gears of a row, None where unknown.
     quantities : list of dict
         What the source stores of what no sensor sees.
     internals : callable
-        Returns these by record, for a detail and the stretches that are kept whole.
+        Returns these of records by their numbers, for a detail and the stretches that are kept whole.
+    life : callable, optional
+        Returns figure and caption of a gearbox over its life.
     measured : bool
         Whether these are recordings of one machine.
     beside : list of int or None, optional
@@ -114,121 +64,60 @@ class PageSource:
         What channels hold; those of recordings are not named.
     named : GearNames
         Shafts whose averages are shown.
-    called : mapping of str to str
-        The user's names of gears, by the program's.
+    called, titles : mapping of str to str
+        The user's names of gears and of labels, by the program's.
     """
 
     labels: dict[str, np.ndarray]
     overlay: list[int | None]
-    records: Callable[[], Iterable[Recording]]
+    kept: np.ndarray
+    records: Callable[[np.ndarray], Iterable[Recording]]
     channels: tuple[str, ...]
     fs_hz: float
     duration_s: float
     indicators: list[dict[str, Any]]
-    damage: dict[str, list[dict[str, Any]]]
-    flanks: list[dict[str, Any]]
-    quantities: list[dict[str, str]]
-    internals: Callable[[Detail, list[tuple[int, int]]], list[dict[str, Any]]]
+    further: dict[str, np.ndarray] = field(default_factory=dict)
+    damage: Callable[[np.ndarray], Mapping[int, list[dict[str, Any]]]] = lambda _numbers: {}
+    flanks: Callable[[int], dict[str, Any]] = lambda _row: {}
+    quantities: Sequence[dict[str, str]] = ()
+    internals: Callable[[np.ndarray, Detail, list[tuple[int, int]]], list[dict[str, Any]]] = (
+        lambda numbers, _detail, _fine: [{} for _ in numbers]
+    )
+    life: Callable[[int], dict[str, str]] | None = None
     measured: bool = False
     beside: list[int | None] | None = None
     held: Mapping[str, ShownQuantity] = field(default_factory=dict)
     named: GearNames = PAIR
     called: Mapping[str, str] = field(default_factory=dict)
+    titles: Mapping[str, str] = field(default_factory=dict)
 
     def holds(self, channel: str) -> ShownQuantity:
         """Return what a channel holds."""
         return self.held.get(channel, RECORDED)
 
 
-def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSource:
-    """Return the chosen rows of a set.
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """How a page lists records: columns of the table and filters (key and title), and sentences on what is missing.
 
-    Parameters
-    ----------
-    dataset : siggen Dataset
-    table : RecordTable
-        Indicators of the whole set.
-    rows : (n,) int64
-        Rows of the table that the page shows.
+    `seen` says of how many records a model knows the gearbox; `code` computes an indicator, which it calls COLUMN;
+    `ranked` are indicators, the best first.
     """
-    labels = chosen_labels(dataset, rows)
-    return PageSource(
-        labels=labels,
-        overlay=overlaid_records(labels),
-        records=lambda: recordings(dataset),
-        channels=tuple(channel.name for channel in dataset.channels),
-        fs_hz=dataset.fs_hz,
-        duration_s=dataset.duration_s,
-        indicators=_indicators(table, rows, dataset),
-        held=channel_quantities(dataset),
-        named=table.named,
-        damage=_damage(dataset, labels["record_id"]),
-        called=dict(words_of(dataset).names.gears),
-        flanks=[_flanks(dataset, labels, k) for k in range(rows.size)],
-        quantities=shown_internals(dataset),
-        internals=lambda detail, fine: internal_waves(dataset, labels["record_id"], detail, fine),
-    )
+
+    columns: Columns
+    filters: Columns
+    missing: Sequence[str] = ()
+    seen: str = ""
+    code: str = ""
+    ranked: Sequence[str] = ()
 
 
-def page_payload(source: PageSource, stage: Stage, *, full: bool) -> dict[str, Any]:
-    """Return labels, indicators and packed signals.
-
-    Parameters
-    ----------
-    source : PageSource
-    stage : Stage
-        Told of every record.
-    full : bool
-        Whether all samples are wanted.
-    """
-    labels = source.labels
-    axes = _axes(source, full=full)
-    signals = _signals(source, axes, stage)
-    fine = [next(iter(found["channels"].values()))["wave"]["fine"] for found in signals]
-    return {
-        "fs_hz": source.fs_hz,
-        "samples": round(source.fs_hz * source.duration_s),
-        "channels": list(source.channels),
-        "held": {name: source.holds(name)._asdict() for name in source.channels},
-        "order_step": axes.orders.step,
-        "envelope_step": axes.envelope_orders.step,
-        "steps_per_tooth": axes.detail.steps_per_tooth,
-        "records": [{name: _plain(values[k]) for name, values in labels.items()} for k in range(len(signals))],
-        "overlay": source.overlay,
-        "damage": source.damage,
-        "flanks": source.flanks,
-        "indicators": source.indicators,
-        "signals": signals,
-        "quantities": source.quantities,
-        "internals": source.internals(axes.detail, fine),
-        "measured": source.measured,
-        "shafts": list(source.named.shafts),
-        "called": dict(source.called),
-        "beside": source.beside,
-    }
-
-
-def chosen_labels(dataset: Dataset, rows: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the labels that the page uses, (rows,) each; those that the set lacks are left out."""
-    found = dataset.labels()
-    columns = dict(zip(found.column_names, found.columns, strict=True))
-    if gear_names(dataset).is_planetary:
-        columns = as_pair(columns)
-    further = (f"teeth_{mesh}_{gear}" for mesh in gear_names(dataset).meshes for gear in GEARS)
-    present = [name for name in (*SHOWN, *teeth_labels(), *further) if name in columns]
-    return {name: np.asarray(columns[name].to_pylist())[rows] for name in present}
-
-
-def _plain(value: Any) -> Any:
-    plain = value.item() if isinstance(value, np.generic) else value
-    return plain if not isinstance(plain, float) or np.isfinite(plain) else None
-
-
-def _axes(source: PageSource, *, full: bool) -> PageAxes:
-    labels = source.labels
+def page_axes(source: PageSource, *, full: bool) -> PageAxes:
+    """Return points and orders that all records of a page share; `full` asks for all samples."""
+    labels, kept = source.labels, max(source.kept.size, 1)
     samples, teeth = round(source.fs_hz * source.duration_s), labels["teeth_pinion"].astype(np.int64)
     both = int((teeth + labels["teeth_gear"]).max())
-    detail = page_detail(teeth.size * (len(source.channels) + len(source.quantities)), samples, both, full=full)
+    detail = page_detail(kept * (len(source.channels) + len(source.quantities)), samples, both, full=full)
     revolutions = int(labels["speed_hz"].max() * source.duration_s)
     last = max(highest_order(int(z), source.fs_hz, float(labels["speed_hz"].min())) for z in np.unique(teeth))
     return PageAxes(
@@ -238,37 +127,66 @@ def _axes(source: PageSource, *, full: bool) -> PageAxes:
     )
 
 
-def _damage(dataset: Dataset, ids: np.ndarray) -> dict[str, list[dict[str, Any]]]:
-    """Return the outlines of damage by record, empty for a set without a table of damage."""
-    if not hasattr(dataset, "damage"):
-        return {}
-    table, short = dataset.damage(), {own: gear for gear, own in words_of(dataset).names.gears}
-    kept = table.filter(pc.is_in(table.column("record_id"), value_set=pa.array(ids.tolist(), pa.int64()))).to_pylist()
-    by_record: dict[str, list[dict[str, Any]]] = {}
-    for row in kept:
-        row["gear"] = short.get(row["gear"], row["gear"])
-        by_record.setdefault(str(row["record_id"]), []).append(row)
-    return {record: outlines(found) for record, found in by_record.items()}
-
-
-def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[str, Any]:
-    names, known = words_of(dataset).names, gear_names(dataset)
-    every = [*GEARS, *(f"{mesh}.{gear}" for mesh in known.meshes for gear in GEARS)]
+def page_head(source: PageSource, axes: PageAxes, shown: Shown, *, served: bool = False) -> dict[str, Any]:
+    """Return what the page reads when it opens: labels and indicators of all records, and what they are called."""
+    titles = {**source.titles, **dict((*shown.columns, *shown.filters))}
     return {
-        gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear.replace('.', '_')}"][row]), names)
-        for gear, section in (OF_PLANETS.items() if known.is_planetary else zip(every, every, strict=True))
+        "fs_hz": source.fs_hz,
+        "samples": round(source.fs_hz * source.duration_s),
+        "channels": list(source.channels),
+        "held": {name: source.holds(name)._asdict() for name in source.channels},
+        "order_step": axes.orders.step,
+        "envelope_step": axes.envelope_orders.step,
+        "steps_per_tooth": axes.detail.steps_per_tooth,
+        "count": int(source.labels["record_id"].size),
+        "needed": list(source.labels),
+        "labels": packed_labels({**source.labels, **source.further}, titles),
+        "overlay": packed_rows(source.overlay),
+        "beside": None if source.beside is None else packed_rows(source.beside),
+        "indicators": source.indicators,
+        "quantities": list(source.quantities),
+        "measured": source.measured,
+        "shafts": list(source.named.shafts),
+        "called": dict(source.called),
+        "served": served,
+        "table": shown.columns,
+        "filters": shown.filters,
+        "missing": list(shown.missing),
+        "seen": shown.seen,
+        "code": shown.code,
+        "ranked": list(shown.ranked),
+        "lives": source.life is not None,
     }
 
 
-def _indicators(table: RecordTable, rows: np.ndarray, dataset: Dataset) -> list[dict[str, Any]]:
-    """Return the indicators of a set in the user's names."""
-    names, words, held = table.names(), words_of(dataset), channel_quantities(dataset)
-    found = packed_indicators(names, table.values(names)[rows], table.settings, table.own, held, table.named)
-    return [
-        {**one, "name": words.column(one["name"])}
-        | {key: words.about(one["name"].rpartition("__")[0], one[key]) for key in ("title", "definition")}
-        for one in found
-    ]
+def page_details(source: PageSource, axes: PageAxes, rows: np.ndarray, stage: Stage) -> dict[int, dict[str, Any]]:
+    """Return signals, spectra, averages, damage and flanks by row.
+
+    Parameters
+    ----------
+    source : PageSource
+    axes : PageAxes
+        Of the page.
+    rows : (m,) int
+    stage : Stage
+        Told of every record.
+    """
+    numbers, starts = source.labels["record_id"][rows], source.labels.get("start_angle_rad")
+    row_of = dict(zip((int(number) for number in numbers), (int(row) for row in rows), strict=True))
+    views: dict[int, dict[str, Any]] = {}
+    with stage("signals and spectra", len(row_of)) as advance:
+        for record in source.records(numbers):
+            row = row_of.get(int(record.labels["record_id"]))
+            if row is not None:
+                start = None if starts is None or starts[row] is None else float(starts[row])
+                views[row] = record_views(record, axes, start)
+                advance()
+    fine = [next(iter(views[int(row)]["channels"].values()))["wave"]["fine"] for row in rows]
+    damage, internals = source.damage(numbers), source.internals(numbers, axes.detail, fine)
+    return {
+        row: {**views[row], "damage": damage.get(number, []), "flanks": source.flanks(row), "internals": inner}
+        for (number, row), inner in zip(row_of.items(), internals, strict=True)
+    }
 
 
 def packed_indicators(
@@ -291,19 +209,4 @@ def packed_indicators(
                 "definition": definitions.get(base, "your own indicator"),
             }
             found.append({"name": name, "channel": channel, **facts, "data": packed_floats(column)})
-    return found
-
-
-def _signals(source: PageSource, axes: PageAxes, stage: Stage) -> list[dict[str, Any]]:
-    place = {int(record): k for k, record in enumerate(source.labels["record_id"])}
-    starts = source.labels.get("start_angle_rad")
-    found: list[dict[str, Any]] = [{} for _ in place]
-    with stage("signals and spectra", len(place)) as advance:
-        for record in source.records():
-            row = place.get(int(record.labels["record_id"]))
-            if row is not None:
-                found[row] = record_views(
-                    record, axes, None if starts is None or starts[row] is None else float(starts[row])
-                )
-                advance()
     return found

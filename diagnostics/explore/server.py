@@ -1,7 +1,9 @@
-"""The page from a server on this machine alone, which adds every sample of the record that is looked at."""
+"""The page from a server on this machine alone, which adds the record that is looked at, with every sample."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
@@ -12,10 +14,12 @@ import numpy as np
 from siggen.dataset.reading import Dataset
 
 LOOPBACK = "127.0.0.1"
-WAVE = "/wave"
+WAVE, DETAIL, LIFE = "/wave", "/detail", "/life"
 
 
-def page_server(page: str, dataset: Dataset, records: np.ndarray, port: int = 0) -> ThreadingHTTPServer:
+def page_server(
+    page: str, dataset: Dataset, records: np.ndarray, answers: Mapping[str, Callable[[int], Any]], port: int = 0
+) -> ThreadingHTTPServer:
     """Return a server of a page and of the signals behind it; nobody but this machine reaches it.
 
     Parameters
@@ -24,6 +28,8 @@ def page_server(page: str, dataset: Dataset, records: np.ndarray, port: int = 0)
     dataset : siggen Dataset
     records : (n,) int
         Records that it may give.
+    answers : mapping of str to callable
+        What the page asks for by a number below that of the records, such as `/detail?number=3`, and what JSON holds.
     port : int
         0 takes a free one; `server_address` says which.
     """
@@ -40,6 +46,8 @@ def page_server(page: str, dataset: Dataset, records: np.ndarray, port: int = 0)
                 self._send(page.encode("utf-8"), "text/html; charset=utf-8")
             elif place.path == WAVE:
                 self._wave(parse_qs(place.query))
+            elif place.path in answers:
+                self._answer(answers[place.path], parse_qs(place.query).get("number", [""])[0])
             else:
                 self.send_error(HTTPStatus.NOT_FOUND)
 
@@ -50,6 +58,12 @@ def page_server(page: str, dataset: Dataset, records: np.ndarray, port: int = 0)
                 return
             signal = np.asarray(dataset.record(int(record))[columns[channel]], dtype="<f4")
             self._send(signal.tobytes(), "application/octet-stream")
+
+        def _answer(self, of: Callable[[int], Any], number: str) -> None:
+            if not number.isdecimal() or int(number) >= len(records):
+                self.send_error(HTTPStatus.NOT_FOUND)
+                return
+            self._send(json.dumps(of(int(number)), allow_nan=False).encode("utf-8"), "application/json")
 
         def _send(self, body: bytes, kind: str) -> None:
             self.send_response(HTTPStatus.OK)

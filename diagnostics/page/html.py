@@ -9,17 +9,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
+from diagnostics.page.live import STILL, Live
 from diagnostics.page.security_policy import HINT_SCRIPT, SORT_SCRIPT, security_policy
 
 STYLE = """
 :root{color-scheme:light;--ink:#1c2733;--soft:#566573;--line:#dde3e8;--band:#f5f7f9;--accent:#1f6f8b;
 --paper:#fff;--warm:#fff7e6}
-@media screen and (prefers-color-scheme:dark){:root{color-scheme:dark;--ink:#e6ebef;--soft:#a9b6c1;--line:#3a4650;
---band:#1f272e;--accent:#7cc4dd;--paper:#14191d;--warm:#33291a}}
+@media screen and (prefers-color-scheme:dark){:root:not(.print){color-scheme:dark;--ink:#e6ebef;--soft:#a9b6c1;
+--line:#3a4650;--band:#1f272e;--accent:#7cc4dd;--paper:#14191d;--warm:#33291a}}
 *{box-sizing:border-box}
 body{margin:0;font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;color:var(--ink);
 background:var(--paper)}
-main{max-width:1120px;margin:0 auto;padding:1.2rem 1rem 4rem}
+main{max-width:1280px;margin:0 auto;padding:1.2rem 1rem 4rem}
 h1{font-size:1.55rem;line-height:1.25;margin:.4rem 0 1rem;overflow-wrap:anywhere}
 h2{font-size:1.2rem;margin:2.4rem 0 .6rem;padding-top:.8rem;border-top:1px solid var(--line)}
 p,li{max-width:46rem;overflow-wrap:anywhere}
@@ -56,7 +57,10 @@ table.text th,table.text td{text-align:left;white-space:normal;min-width:7rem}
 .printed{display:none}
 a{color:var(--accent)}th a{color:inherit;text-decoration-color:var(--soft)}
 .answer{display:grid;grid-template-columns:minmax(0,1fr) minmax(0,1.1fr);gap:1.2rem;align-items:start}
-.answer p{margin:0 0 .7rem;max-width:none}.answer figure{margin:0}
+.answer h2{font-size:.95rem;margin:0 0 .2rem;padding:0;border:0;color:var(--soft);font-weight:600}
+.answer>div p{margin:0 0 1.1rem;max-width:none;font-size:1.16rem;line-height:1.45}.answer p b{color:var(--accent)}
+.answer figure{margin:0}
+summary{cursor:pointer;font-weight:600;min-height:24px;margin:.6rem 0}
 .contents ul{display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;list-style:none;margin:1rem 0 0;padding:.6rem 0;
 border:solid var(--line);border-width:1px 0}
 .contents li{max-width:none}
@@ -115,6 +119,7 @@ WIDER = 14
 """Columns beyond which it also needs limits on lines of their own."""
 
 TURNS = re.compile("[\u202a-\u202e\u2066-\u2069]")
+BOLD, BOLDER = re.compile(r"\*\*(.+?)\*\*"), r"<b>\1</b>"
 PLAIN_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
 NUMBERED = (("Figure", "<figcaption>"), ("Table", '<p class="caption">'))
 
@@ -147,16 +152,18 @@ class Cell:
     name: str = ""
 
 
-def page(title: str, parts: Sequence[str]) -> str:
-    """Return the whole page, its figures and tables numbered."""
+def page(title: str, parts: Sequence[str], live: Live = STILL) -> str:
+    """Return the whole page, its figures and tables numbered; `live` is what a program of its own draws on it."""
     script = HINT_SCRIPT + SORT_SCRIPT
+    scripts = [script, *([live.script] if live.script else [])]
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"{security_policy([script])}"
-        f"<title>{without_turns(escape(title))}</title><style>{style_sheet(PRINTED_ROWS)}</style></head>\n<body><main>\n"
+        f"{security_policy(scripts, asks_its_server=live.served)}"
+        f"<title>{without_turns(escape(title))}</title>"
+        f"<style>{style_sheet(PRINTED_ROWS)}{live.style}</style></head>\n<body><main>\n"
         + numbered("\n".join(parts))
-        + f"\n</main><script>{script}</script></body></html>\n"
+        + f"\n</main>{live.data_elements()}{''.join(f'<script>{one}</script>' for one in scripts)}</body></html>\n"
     )
 
 
@@ -200,12 +207,19 @@ def answer(sentences: Sequence[tuple[str, str]], figure: str) -> str:
     Parameters
     ----------
     sentences : sequence of (str, str)
-        Question in a few words, and its answer.
+        Question in a few words, and its answer, in which `**` stands about what is set in bold.
     figure : str
         A block of `figure_block`, or nothing.
     """
-    said = "".join(f"<p><b>{inline(question)}.</b> {inline(text)}</p>" for question, text in sentences)
+    said = "".join(
+        f"<h2>{inline(question)}</h2><p>{BOLD.sub(BOLDER, inline(text))}</p>" for question, text in sentences
+    )
     return f'<section class="answer" aria-label="Answer"><div>{said}</div>{figure}</section>'
+
+
+def folded(title: str, blocks: Sequence[str]) -> str:
+    """Return blocks below a title that opens them."""
+    return f'<details class="folded"><summary>{inline(title)}</summary>{"".join(blocks)}</details>'
 
 
 def paragraph(text: str, style: str = "") -> str:

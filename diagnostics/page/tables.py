@@ -1,12 +1,12 @@
 """Tables of a report: what the set holds, scores with intervals, every feature's separability.
 
-Links from tables and figures of a page to the records behind them, on the page to explore beside it.
+Links from tables and figures of a page to the records behind them, further up on the same page.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 from urllib.parse import quote, urlencode
@@ -17,62 +17,57 @@ from diagnostics.page.html import Cell, inline, link, table
 from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import BOOSTING, TITLES
-from diagnostics.statistics.separability import Separability
 from diagnostics.training.training import Training
 
 MOST_LINKS = 20
 """Below a figure; more would be longer than its caption."""
 
 
-def explorer_link(explorer: str, **chosen: object) -> str:
-    """Return where the page to explore shows records that fit, such as `explorer.html#state=severe`; nothing without.
+def records_link(**chosen: object) -> str:
+    """Return where this page shows records that fit, such as `#state=severe`.
 
     Parameters
     ----------
-    explorer : str
-        Name of the page beside this one, or nothing.
     chosen
         What its records have to be: `record`, `state`, `predicted`, `split`, `named` ...; `indicator` is shown of them.
     """
-    if not explorer:
-        return ""
-    return f"{explorer}#{urlencode({name: str(value) for name, value in chosen.items()}, quote_via=quote)}"
+    return f"#{urlencode({name: str(value) for name, value in chosen.items()}, quote_via=quote)}"
 
 
-def linked_cell(cell: Cell, explorer: str, **chosen: object) -> Cell:
-    """Return a cell that leads to the records behind it; unchanged without a page to explore."""
-    return replace(cell, link=explorer_link(explorer, **chosen)) if explorer else cell
+def linked_cell(cell: Cell, **chosen: object) -> Cell:
+    """Return a cell that leads to the records behind it."""
+    return replace(cell, link=records_link(**chosen))
 
 
 def records_line(title: str, links: Mapping[str, str]) -> str:
     """Return a line below a figure that leads to records, by what each link is called; nothing without links."""
-    shown = {name: target for name, target in links.items() if target}
-    if not shown:
+    if not links:
         return ""
-    said = ", ".join(link(name, target) for name, target in list(shown.items())[:MOST_LINKS])
+    said = ", ".join(link(name, target) for name, target in list(links.items())[:MOST_LINKS])
     return f'<p class="behind">{inline(title)}: {said}</p>'
 
 
-def state_links(explorer: str, states: Iterable[str]) -> dict[str, str]:
+def state_links(states: Iterable[str]) -> dict[str, str]:
     """Return where the records of every state are, by its name."""
-    return {name: explorer_link(explorer, state=name) for name in states}
+    return {name: records_link(state=name) for name in states}
 
 
-def indicator_links(explorer: str, titles: Mapping[str, str]) -> dict[str, str]:
+def indicator_links(titles: Mapping[str, str]) -> dict[str, str]:
     """Return where records are shown over each of these columns, by its title; titles come by column."""
-    return {title: explorer_link(explorer, indicator=column) for column, title in titles.items()}
+    return {title: records_link(indicator=column) for column, title in titles.items()}
 
 
-def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...], explorer: str = "") -> str:
+def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
     """Return records by state and split, and specimens by split; counts lead to their records."""
     splits = [name for name in ("train", "validation", "test") if (labels["split"] == name).any()]
     rows = [
         [
             Cell(state),
             *(
-                linked_cell(Cell(str(count), value=float(count)), explorer if count else "", state=state, split=name)
+                linked_cell(cell, state=state, split=name) if count else cell
                 for name in splits
                 for count in (int(((labels["state"] == state) & (labels["split"] == name)).sum()),)
+                for cell in (Cell(str(count), value=float(count)),)
             ),
         ]
         for state in classes
@@ -144,29 +139,6 @@ def _details(name: str, details: dict[str, Any]) -> str:
 def strength_text(name: str, strength: float) -> str:
     """Return what was chosen on validation specimens."""
     return f"{strength:g} rounds" if name == BOOSTING else f"C = {strength:g}"
-
-
-def separability_html(found: list[Separability], named: Callable[[str], Cell], explorer: str = "") -> str:
-    """Return all features, strongest first, each in the cell that names it; an AUC leads to its records."""
-    states = list(dict.fromkeys(state for entry in found for state in entry.auc))
-    rows = [
-        [
-            named(entry.feature),
-            *(
-                linked_cell(interval_cell(entry.auc[state]), explorer, state=state, indicator=entry.feature)
-                for state in states
-            ),
-            interval_cell(entry.spearman, sign=True),
-            Cell(f"{100.0 * entry.defined_share:.0f}", value=entry.defined_share),
-        ]
-        for entry in found
-    ]
-    head = ["Feature", *(f"AUC, {state}" for state in states), "Spearman, damaged area", "Defined [%]"]
-    caption = (
-        "Every feature by itself, strongest first: AUC of each state against healthy, rank correlation with the "
-        "damaged area and share of records in which it is defined. The 95 % limits come from resampled specimens."
-    )
-    return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
 def interval_cell(found: Interval, *, sign: bool = False) -> Cell:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from diagnostics.page.html import Cell, table
-from diagnostics.page.tables import explorer_link
+from diagnostics.page.tables import records_link
 from diagnostics.page.wording import capitalised
 from diagnostics.records.record_classes import STATE
 from diagnostics.statistics.scores import Scores
 
 
 def confusion_table(
-    scores: Scores, title: str, records: str = "test records", explorer: str = "", kind: str = STATE
+    scores: Scores, title: str, records: str = "test records", kind: str = STATE, *, linked: bool = False
 ) -> str:
     """Return the confusion matrix of one classifier.
 
@@ -23,28 +23,28 @@ def confusion_table(
         Of the classifier.
     records : str
         Which records are counted.
-    explorer : str
-        Page to explore with the predictions of this classifier; its records are behind every count.
     kind : str
         What a class is: `state` or `fault`.
+    linked : bool
+        Whether the page shows the predictions of this classifier, so that a count leads to its records.
     """
     classes, counts = scores.classes, scores.confusion
     share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
     rows = [
         [
             Cell(true),
-            *(_count(explorer, true, classes[k], int(counts[row, k]), share[row, k]) for k in range(len(classes))),
+            *(_count(true, classes[k], int(counts[row, k]), share[row, k], linked=linked) for k in range(len(classes))),
         ]
         for row, true in enumerate(classes)
     ]
     caption = (
         f"{capitalised(title)}: true {kind} in rows, named {kind} in columns; {records}, and their "
-        f"share of the true {kind}.{' A count leads to its records.' if explorer else ''}"
+        f"share of the true {kind}.{' A count leads to its records.' if linked else ''}"
     )
     return table([f"True {kind}", *classes], rows, caption=caption)
 
 
-def _count(explorer: str, true: str, named: str, count: int, share: float) -> Cell:
-    link = explorer_link(explorer, split="test", **{"class": true}, predicted=named) if count else ""
+def _count(true: str, named: str, count: int, share: float, *, linked: bool) -> Cell:
+    link = records_link(split="test", **{"class": true}, predicted=named) if count and linked else ""
     hint = f"records of {true} that are named {named}" if link else ""
     return Cell(str(count), f"{share:.0%}" if count else "", float(count), link, hint, float(share))

@@ -107,10 +107,10 @@ def detection_table(found: tuple[Judged, ...], caption: str) -> str:
     return table(["Classifier", "all damage", *states], rows, caption=caption, sortable=True)
 
 
-def detector_table(found: Detectors, explorer: str = "") -> str:
+def detector_table(found: Detectors) -> str:
     """Return all detectors, those beside a healthy record below those without; nothing without any.
 
-    AUC and alarms of a state lead to its records on the page to explore.
+    AUC and alarms of a state lead to its records.
     """
     every = list({id(one): one for side in (found.alone, found.referenced) for one in side.values()}.values())
     if not every:
@@ -126,11 +126,11 @@ def detector_table(found: Detectors, explorer: str = "") -> str:
         *(f"Alarms, {name} [%]" for name in states),
         *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
     ]
-    rows = [_row(detector, states, kinds, explorer, shams=shams) for detector in every]
+    rows = [_row(detector, states, kinds, shams=shams) for detector in every]
     return table(head, rows, caption=CAPTION + (SHAM_CAPTION if shams else ""), sortable=True)
 
 
-def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str, *, shams: bool) -> list[Cell]:
+def _row(detector: Detector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
     beside = "beside a healthy record" if detector.referenced else ""
     basis = in_a_sentence(detector.basis) if detector.basis else picked(detector.picks)
     small = ", ".join(part for part in (basis, beside) if part)
@@ -138,7 +138,7 @@ def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str,
     shown = {"indicator": detector.basis} if detector.basis else {}
 
     def behind(cell: Cell, state: str) -> Cell:
-        return linked_cell(cell, explorer, state=state, **shown)
+        return linked_cell(cell, state=state, **shown)
 
     return [
         Cell(detector.title, small),

@@ -19,7 +19,7 @@ from diagnostics.indicators.registry import mesh_words
 from diagnostics.page.provenance import without_path
 from diagnostics.page.sideband_marks import PASSING, draw_marks, mark_handles, order_words, sideband_places, turn_words
 from diagnostics.page.style import SLANTED, new_figure, state_colours, state_ticks
-from diagnostics.page.tables import explorer_link, indicator_links, records_line, state_links
+from diagnostics.page.tables import indicator_links, records_line, records_link, state_links
 from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.gear_train import Mesh
 from diagnostics.records.state_classes import HEALTHY
@@ -50,7 +50,8 @@ DECADES_SHOWN = 5.0
 TALLEST_IN = 9.5
 """A figure of half a page's width that is taller does not fit a sheet."""
 
-BEHIND_COLOUR = "#b9c4cd"
+BEHIND_COLOUR, LOWEST = "#b9c4cd", 1e-12
+"""Of the healthy record behind a damaged one, and where its area begins, below every figure."""
 
 FIRST_HARMONICS = (1, 2)
 INDICATORS_SHOWN = 4
@@ -134,10 +135,10 @@ def spectrum_figure(examples: ExampleSet, colours: dict[str, str], harmonic: int
     rows = len(examples.examples)
     figure, axes = new_figure(rows, 1, height_in=_height_in(1.0, 1.25, rows), sharex=True, sharey=True)
     top = max(
-        _around(example.spectrum, examples, harmonic)[1].max() for example in examples.examples if example.spectrum
+        around(example.spectrum, examples, harmonic)[1].max() for example in examples.examples if example.spectrum
     )
     for axis, example in zip(axes[:, 0], examples.examples, strict=True):
-        _draw_spectrum(axis, example, examples, harmonic, colours[example.state])
+        draw_spectrum(axis, example, examples, harmonic, colours[example.state])
         axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
     axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
     axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
@@ -145,33 +146,37 @@ def spectrum_figure(examples: ExampleSet, colours: dict[str, str], harmonic: int
     words = f"{order_words(examples.mesh)} of {examples.turns_hz:.3g} Hz"
     axes[-1, 0].set_xlabel(f"Offset from {mesh_hz:.0f} Hz [{words}]")
     figure.supylabel(f"Amplitude [{examples.unit}]", fontsize=10)
-    _add_legend(axes[0, 0], examples.mesh)
+    add_legend(axes[0, 0], examples.mesh)
     return figure
 
 
-def _around(spectrum: OrderSpectrum, examples: ExampleSet, harmonic: int) -> tuple[np.ndarray, np.ndarray]:
+def around(spectrum: OrderSpectrum, examples: ExampleSet, harmonic: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return offset from a mesh harmonic [orders] and amplitude, (n,) each."""
     centre = harmonic * examples.teeth[0]
     near = np.abs(spectrum.order - centre) <= ORDERS_SHOWN
     return spectrum.order[near] - centre, spectrum.amplitude_m_s2[near]
 
 
-def _draw_spectrum(axis: Any, example: Example, examples: ExampleSet, harmonic: int, colour: str) -> None:
+def draw_spectrum(axis: Any, example: Example, examples: ExampleSet, harmonic: int, colour: str) -> None:
+    """Draw a record around a mesh harmonic over the healthy one, its sidebands marked."""
     healthy = examples.healthy
-    if healthy and healthy.spectrum and example is not healthy:
-        axis.semilogy(*_around(healthy.spectrum, examples, harmonic), color=BEHIND_COLOUR, linewidth=0.8)
     axis.set_yscale("log")
+    if healthy and healthy.spectrum and example is not healthy:
+        offset, amplitude = around(healthy.spectrum, examples, harmonic)
+        axis.fill_between(offset, amplitude, np.full_like(amplitude, LOWEST), color=BEHIND_COLOUR, linewidth=0)
     if example.spectrum is None:
         return
-    offset, amplitude = _around(example.spectrum, examples, harmonic)
+    offset, amplitude = around(example.spectrum, examples, harmonic)
     axis.semilogy(offset, amplitude, color=colour)
     places = sideband_places(examples.mesh, harmonic, SIDEBANDS)
     draw_marks(axis, (offset, amplitude), places, 1.5 / example.spectrum.revolutions)
 
 
-def _add_legend(axis: Any, mesh: Mesh) -> None:
+def add_legend(axis: Any, mesh: Mesh) -> None:
+    """Say above an axis what marks and colours mean."""
     from matplotlib.lines import Line2D
 
-    handles = [*mark_handles(mesh), Line2D([], [], color=BEHIND_COLOUR, linewidth=1.5, label="healthy")]
+    handles = [*mark_handles(mesh), Line2D([], [], color=BEHIND_COLOUR, linewidth=6, label="healthy")]
     axis.legend(
         handles=handles,
         loc="lower right",
@@ -207,16 +212,15 @@ def draw(
     training: Training | None,
     found: list[Separability],
     studies: Studies | None = None,
-    explorer: str = "",
 ) -> Drawing:
-    """Draw everything the report shows; figures lead to records on the page to explore, where there is one."""
+    """Draw what the report shows of signals, damage, scores and studies; figures lead to records."""
     healthy = {state for state in classes if (matrix.labels["fault"][matrix.labels["state"] == state] == HEALTHY).all()}
     colours = state_colours(classes, healthy)
     drawing = Drawing()
-    _draw_vibration(drawing, dataset, colours, explorer)
-    _draw_damage(drawing, dataset, classes, colours, explorer)
+    _draw_vibration(drawing, dataset, colours)
+    _draw_damage(drawing, dataset, classes, colours)
     if training:
-        _draw_scores(drawing, training, explorer)
+        _draw_scores(drawing, training)
     if studies:
         figure = score_figures.learning_curve_figure(studies.curve)
         caption = (
@@ -231,7 +235,7 @@ def draw(
             "The strongest single indicators of different definitions, on all specimens.",
         )
         titles = {entry.feature: column_title(entry.feature) for entry in shown}
-        drawing.behind["indicators"] = records_line("All records by", indicator_links(explorer, titles))
+        drawing.behind["indicators"] = records_line("All records by", indicator_links(titles))
     return drawing
 
 
@@ -243,14 +247,14 @@ def distinct_features(found: list[Separability], count: int) -> list[Separabilit
     return list(chosen.values())[:count]
 
 
-def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str], explorer: str) -> None:
+def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str]) -> None:
     examples = example_set(dataset)
     which = (
         f"specimen {examples.specimen_id}, channel {examples.channel}, {examples.speed_hz:.3g}\u00a0Hz, "
         f"{examples.torque_nm:.3g}\u00a0N\u00a0m"
     )
     figure = waveform_figure(examples, colours)
-    shown = {each.state: explorer_link(explorer, record=each.record_id) for each in examples.examples}
+    shown = {each.state: records_link(record=each.record_id) for each in examples.examples}
     behind = records_line("Records", shown)
     drawing.behind["waveforms"] = behind
     drawing.vibration["waveforms"] = (
@@ -261,7 +265,7 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
     if not spectra:
         drawing.notes.append(f"No order spectra: the example records hold no whole {turn_words(examples.mesh)}.")
         return
-    for harmonic in sorted({*FIRST_HARMONICS, _strongest(spectra[0], examples.mesh)}):
+    for harmonic in sorted({*FIRST_HARMONICS, strongest(spectra[0], examples.mesh)}):
         figure = spectrum_figure(examples, colours, harmonic)
         window = f"Hann, {spectra[0].revolutions} x one {turn_words(examples.mesh)}"
         caption = f"Order spectrum ({window}) around mesh harmonic {harmonic}: {which}."
@@ -275,7 +279,7 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
         drawing.behind[f"spectrum_h1_{mesh.name}"] = behind
 
 
-def _strongest(spectrum: OrderSpectrum, mesh: Mesh) -> int:
+def strongest(spectrum: OrderSpectrum, mesh: Mesh) -> int:
     """Return the mesh harmonic with the largest line, of a planetary set where passing planets move it to."""
     teeth = mesh.teeth[0]
     if mesh.planets is None:
@@ -285,14 +289,12 @@ def _strongest(spectrum: OrderSpectrum, mesh: Mesh) -> int:
     return 1 + int(np.argmax(spectrum.amplitude_m_s2[np.searchsorted(spectrum.order, orders)]))
 
 
-def _draw_damage(
-    drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], colours: dict[str, str], explorer: str
-) -> None:
+def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], colours: dict[str, str]) -> None:
     losses, meaning = loss_of_specimens(dataset)
     figure = stiffness_loss_figure(losses, classes, colours)
     caption = f"Largest relative loss of mesh stiffness against healthy, from the labels: {meaning}."
     drawing.damage["stiffness_loss"] = (figure, caption)
-    drawing.behind["stiffness_loss"] = records_line("Records", state_links(explorer, classes))
+    drawing.behind["stiffness_loss"] = records_line("Records", state_links(classes))
     try:
         import siggen
 
@@ -306,15 +308,15 @@ def _draw_damage(
         return
     caption = f"Specimen 0 in every state while the damaged teeth mesh: {meaning}."
     drawing.damage["stiffness"] = (figure, caption)
-    records = {"specimen 0": explorer_link(explorer, specimen_id=0)}
+    records = {"specimen 0": records_link(specimen_id=0)}
     drawing.behind["stiffness"] = records_line("Records", records)
 
 
-def _draw_scores(drawing: Drawing, training: Training, explorer: str) -> None:
+def _draw_scores(drawing: Drawing, training: Training) -> None:
     specimens = training.judged[0].scores.specimens
     caption = f"Scores on {specimens} test specimens, with 95 % intervals from resampled specimens. Dashed: chance."
     drawing.scores["scores"] = (score_figures.score_figure(training), caption)
-    named = {f"{said} named": explorer_link(explorer, split="test", named=said) for said in ("wrongly", "rightly")}
+    named = {f"{said} named": records_link(split="test", named=said) for said in ("wrongly", "rightly")}
     drawing.behind["scores"] = records_line("Test records", named)
     caption = "Permutation control: training with shuffled labels (dots) must give values around 0.5."
     drawing.scores["permuted"] = (score_figures.permutation_figure(training), caption)

@@ -15,16 +15,23 @@ from diagnostics.statistics.indicator_result import IndicatorResult
 
 ARROWS = {1: "rises", -1: "falls"}
 BEHIND = " A number leads to the records behind it."
+OF_HISTORY = ("na4", "nb4")
+"""Indicators with a history are of several records: none stands in the list of records."""
 
 
-def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...], explorer: str = "") -> str:
+def _behind(cell: Cell, column: str, **chosen: object) -> Cell:
+    """Return a cell that leads to the records that it is about."""
+    return cell if column.startswith(OF_HISTORY) else linked_cell(cell, indicator=column, **chosen)
+
+
+def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
     """Return all indicators, best between other specimens first, with the AUC of every state."""
     head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
         [
             term_cell(r.column), Cell(str(rank), value=rank), interval_cell(r.score_others),
             *(
-                linked_cell(interval_cell(r.others[state].separation), explorer, state=state, indicator=r.column)
+                _behind(interval_cell(r.others[state].separation), r.column, state=state)
                 for state in states
             ),
             Cell(ARROWS[r.direction]),
@@ -32,26 +39,23 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...], expl
         for rank, r in enumerate(found, start=1)
     ]  # fmt: skip
     caption = "Ranking between different specimens: AUC against healthy with 95 % limits. The score is their mean."
-    return table(head, rows, caption=caption + (BEHIND if explorer else ""), sortable=True, tall=True)
+    return table(head, rows, caption=caption + BEHIND, sortable=True, tall=True)
 
 
-def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], explorer: str = "") -> str:
+def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...]) -> str:
     """Return the heat map: separation of every state in both designs, best first, empty without rows."""
     head = ["Indicator", *(f"{state}, {design}" for design in ("others", "same") for state in states)]
     cells = [
         [
             term_cell(name),
-            *(
-                linked_cell(_separation(value), explorer, state=state, indicator=name)
-                for value, state in zip(values, 2 * states, strict=True)
-            ),
+            *(_behind(_separation(value), name, state=state) for value, state in zip(values, 2 * states, strict=True)),
         ]
         for name, values in rows.items()
     ]
     caption = (
         f"Separation of each state from healthy by the best {len(cells)} indicators, median over channels. 1 (dark) is "
         "perfect, 0.5 (white) is chance. Others: AUC between specimens. Same: share of pairs of one specimen that move "
-        f"in the direction of the indicator.{BEHIND if explorer else ''}"
+        f"in the direction of the indicator.{BEHIND}"
     )
     return table(head, cells, caption=caption, sortable=True, tall=True) if cells else ""
 
@@ -168,15 +172,12 @@ def p_cell(p_value: float) -> Cell:
     return Cell("< 0.001" if p_value < 0.001 else f"{p_value:.3f}", value=p_value)
 
 
-def sensitivity_html(found: Sequence[IndicatorResult], explorer: str = "") -> str:
+def sensitivity_html(found: Sequence[IndicatorResult]) -> str:
     """Return the heat map of what explains each indicator in healthy records."""
     rows = [
         [
             term_cell(r.column),
-            *(
-                linked_cell(_share(r.sensitivity.get(cause, math.nan)), explorer, indicator=r.column)
-                for cause in CAUSES
-            ),
+            *(_behind(_share(r.sensitivity.get(cause, math.nan)), r.column) for cause in CAUSES),
         ]
         for r in found
     ]

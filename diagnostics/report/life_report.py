@@ -12,31 +12,50 @@ import pyarrow as pa
 from diagnostics.audit.life_leaks import Leak, life_leaks
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.explore.look import Look
+from diagnostics.explore.set_page import LookOptions, set_look
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import origin_sentence, provenance
-from diagnostics.page.wording import counted
+from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.named_set import words_of
 from diagnostics.report.life_detection import detection_table, life_block, shown_gearboxes
+from diagnostics.report.life_pictures import lives_of
 from diagnostics.report.life_rows import INDICATORS, inspections
-from diagnostics.report.unit_lives import detections, unit_lives, watches
+from diagnostics.report.unit_lives import PICTURES, Detection, detections, unit_lives, watches
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.life_scores import BINS, QUANTILES, LifeScores, life_scores
-from diagnostics.training.life_baselines import FOLDS, Inspections, baseline_predictions
+from diagnostics.training.life_baselines import (
+    AGE,
+    AREAS,
+    CONSTANT,
+    FOLDS,
+    OUTLOOK,
+    Inspections,
+    baseline_predictions,
+)
 from siggen.dataset.reading import Dataset
 
 PAGE = "report.html"
+KNOWN = (CONSTANT, AGE, AREAS, OUTLOOK)
+"""Rows that no sensor is behind."""
 RESERVATION = "All lives are simulated, by a law whose parameters were published for one test bench."
 
 
 def write_life_report(
-    dataset: Dataset, folder: Path, seed: int, stage: Stage = silent_stage, *, network: bool = True
+    dataset: Dataset,
+    folder: Path,
+    seed: int,
+    stage: Stage = silent_stage,
+    *,
+    network: bool = True,
+    amount: LookOptions | None = None,
 ) -> Path:
     """Write `report.html`, `metrics.json` and `predictions.parquet`; return the page's path.
 
-    The network is trained where it is wanted and PyTorch is installed.
+    The network is trained where it is wanted and PyTorch is installed. `amount` says how many records the page holds.
 
     Raises
     ------
@@ -67,13 +86,17 @@ def write_life_report(
     identity = str(dataset.manifest["identity"])
     write_predictions([_predicted_rows(name, found, values) for name, values in predicted.items()], identity, folder)
     page = folder / PAGE
-    lives = unit_lives(dataset, found, seen, predicted, shown_gearboxes(found)).values()
+    first, *lives = unit_lives(dataset, found, seen, predicted, shown_gearboxes(found)).values()
+    look = set_look(dataset, amount or LookOptions(), stage, lives_of)
     parts = [
+        *(html.heading("Records"), look.block, html.heading("Remaining life")),
+        *(html.paragraph(sentence) for sentence in (*_sentences(found), _verdict(leaks))),
+        *html.notes([left_out] if left_out else []),
         *(_errors(found, scores), _quantiles(scores), html.heading("First detection"), detection_table(detected)),
         *(html.figure_grid([life_block(one) for one in lives]), html.heading("Leaks"), _leaks(leaks)),
     ]
-    parts = [*html.notes([left_out] if left_out else []), *parts]
-    page.write_text(_page(dataset, found, leaks, seed, parts), encoding="utf-8")
+    opening = html.answer(_answer(found, scores, detected), life_block(first))
+    page.write_text(_page(dataset, seed, opening, parts, look), encoding="utf-8")
     return page
 
 
@@ -105,15 +128,42 @@ def _facts(found: Inspections) -> dict[str, object]:
     }
 
 
-def _page(dataset: Dataset, found: Inspections, leaks: Sequence[Leak], seed: int, parts: Sequence[str]) -> str:
+def _page(dataset: Dataset, seed: int, opening: str, parts: Sequence[str], look: Look) -> str:
+    words = words_of(dataset)
     title = f"Remaining life of {dataset.path.name}"
     whole = [
         html.heading(title, 1),
-        *html.summary([f"{origin_sentence(dataset)} {RESERVATION}", *_sentences(found), _verdict(leaks)]),
-        *parts,
+        html.paragraph(f"{origin_sentence(dataset)} {RESERVATION}"),
+        *(opening, html.contents(parts), *parts),
         html.paragraph(provenance(dataset, seed), "caption"),
     ]
-    return html.page(words_of(dataset)(title), [words_of(dataset)(part) for part in whole])
+    return html.page(words(title), [part if part is look.block else words(part) for part in whole], look.live)
+
+
+def _answer(
+    found: Inspections, scores: Mapping[str, LifeScores], detected: Mapping[str, Detection]
+) -> list[tuple[str, str]]:
+    """Say which baseline tells remaining lives best, when damage is seen, and how sure that is."""
+    sensed = {name: one for name, one in scores.items() if name not in KNOWN}
+    best = min(sensed, key=lambda name: sensed[name].mae_h[0].value)
+    error, by_age = sensed[best].mae_h[0], scores[AGE].mae_h[0]
+    seen = max(detected, key=lambda name: (name != PICTURES, detected[name].detected))
+    watch = detected[seen]
+    facts = _facts(found)
+    return [
+        (
+            "What is found",
+            f"**{capitalised(best)}** tell the remaining life to **{error.value:.0f} h** on average, age alone to "
+            f"{by_age.value:.0f} h; half of the gearboxes ran for {found.median_life_h:.0f} h. **{capitalised(seen)}** "
+            f"show pitting first in {watch.detected} of {watch.gearboxes}, when it covers "
+            f"**{100.0 * watch.share:.2g} % of the worst tooth**.",
+        ),
+        (
+            "How sure",
+            f"Judged on **{facts['gearboxes_judged']} gearboxes that failed**, each by what was trained on others; "
+            f"95 % limits of the error: {error.low:.0f} to {error.high:.0f} h.",
+        ),
+    ]
 
 
 def _sentences(found: Inspections) -> list[str]:

@@ -1,48 +1,53 @@
-"""The report of a set: features, training, figures, metrics and one page that says what it all means.
-
-What the audit of the same set says, where it was run; a report says what is missing where it was not.
-"""
+"""The report of a set: features, training, figures, metrics and one page that says what it all means."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.audit.audit import ALONE
-from diagnostics.base.beside import beside as folder_beside
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.explore.look import Look
+from diagnostics.explore.set_page import LookOptions, set_look
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.ranking_table import ranking_table
+from diagnostics.indicators.table import RecordTable
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
-from diagnostics.page.wording import counted, decimal, joined
+from diagnostics.page.wording import counted
 from diagnostics.prediction.saved_models import save_models
+from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.named_set import words_of
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import SHAM, ordered_states
 from diagnostics.report.answer import answer_figure, answer_sentences
+from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.drawing import draw
-from diagnostics.report.report_page import ANSWER, CAPTION, Reported, report_page
+from diagnostics.report.examples import example_set, reported_gearboxes
+from diagnostics.report.first_screen import first_caption, first_figure
+from diagnostics.report.indicator_evaluation import Evaluated, evaluated, write_evaluation
+from diagnostics.report.indicator_sections import figures
+from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, report_page
 from diagnostics.report.sentences import summary
-from diagnostics.report.your_scores import Beside
 from diagnostics.scoring.score import Scores, score
+from diagnostics.statistics.assessment import AssessmentSettings
 from diagnostics.statistics.judgement import TITLES
-from diagnostics.statistics.separability import Separability, separability, separability_table
-from diagnostics.training.detectors import judged_detectors
+from diagnostics.statistics.separability import Separability, separability
+from diagnostics.training.detectors import Detectors, judged_detectors
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.realism import is_error_free
 from diagnostics.training.studies import Studies, run_studies, studies_metrics
 from diagnostics.training.training import OtherSet, Training, train_models, training_metrics
-from diagnostics.training.training_sets import other_table, set_table
+from diagnostics.training.training_sets import checked_table, measured_table, other_table
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
@@ -50,39 +55,35 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 KINDS = ("through_face", SHAM)
-NOTHING_BESIDE = Beside()
 
 
-def audit_beside(dataset: Dataset) -> dict[str, Any] | None:
-    """Return the content of `audit.json` in the folder beside a set, DIR_audit; None without one of this very set."""
-    path = folder_beside(dataset.path, "_audit") / "audit.json"
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    same = isinstance(found, dict) and found.get("identity") == dataset.manifest["identity"]
-    return found if same else None
+@dataclass(frozen=True, slots=True)
+class PageOptions:
+    """What a report holds besides its judgement.
+
+    Attributes
+    ----------
+    predictions : Path, optional
+        The user's predictions, which get a row beside the classifiers.
+    states : sequence of str
+        Damaged states that features are judged on; all where empty.
+    false_alarms : float
+        Rate at which features are judged.
+    limit, full : int, bool
+        Of how many records the page holds the signals, and whether with every sample.
+    workers : int
+        Processes that take indicators.
+    """
+
+    predictions: Path | None = None
+    states: Sequence[str] = ()
+    false_alarms: float = 0.05
+    limit: int = 100
+    full: bool = False
+    workers: int = 1
 
 
-def audit_sentence(dataset: Dataset, audit: Mapping[str, Any] | None) -> str:
-    """Say what the audit found, or what is not known without it."""
-    name = dataset.path.name
-    if audit is None:
-        return (
-            "The audit was not run. So it is not known whether something other than the damage gives the states away, "
-            f"nor what attackers on the averaged revolution find. Run it: `siggen-diagnostics audit {name}`. Then make "
-            "this report again."
-        )
-    if audit.get("too_few_gearboxes"):
-        return str(audit.get("verdict"))
-    states = audit.get("strongest", {}).get(ALONE, {}).get("states", [])
-    reached = [
-        f"{state['state']} {decimal(state['auc']['value'])}"
-        for state in states
-        if state.get("auc", {}).get("value") is not None
-    ]
-    attackers = f" Its strongest attackers reach, on unseen gearboxes, an AUC of: {joined(reached)}." if reached else ""
-    return f"{audit.get('verdict', 'The audit gives no verdict.')}{attackers}"
+ALL_RECORDS = PageOptions()
 
 
 def write_report(
@@ -93,7 +94,7 @@ def write_report(
     network: NetworkOptions | None = None,
     other: Any = None,
     own: Sequence[OwnIndicator] = (),
-    beside: Beside = NOTHING_BESIDE,
+    page: PageOptions = ALL_RECORDS,
     stage: Stage = silent_stage,
 ) -> Path:
     """Compute everything and write `report.html`, `metrics.json`, tables, figures and models; return the page's path.
@@ -113,8 +114,7 @@ def write_report(
         Another set to judge on.
     own : sequence of OwnIndicator
         The user's indicators.
-    beside : Beside
-        Name of the page to explore, to which records and counts then lead; the user's predictions, which get a row.
+    page : PageOptions
     stage : Stage
         Told of every step.
 
@@ -125,27 +125,31 @@ def write_report(
     """
     require_packages("the report", "matplotlib", "sklearn", "skops")
     network = network or NetworkOptions()
-    _scored(dataset, beside, None, network)  # what is wrong with predictions is said before minutes have passed
-    table = set_table(dataset, stage, own=own)
+    _scored(dataset, page, None, network)  # what is wrong with predictions is said before minutes have passed
+    records = measured_table(dataset, stage, own=own, workers=page.workers)
+    table = checked_table(records, dataset)
     second = other_table(other, stage, own) if other is not None else None
     folder.mkdir(parents=True, exist_ok=True)
     matrix = feature_matrix(table, set_classes(dataset, network.classes))
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)
         advance()
+    judged = _evaluated(records, dataset, seed, page, stage)
     training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
     wanted = network.studies
     studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if wanted else (None, [])
     with stage("detectors", 1) as advance:
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
         advance()
+    words, classes = words_of(dataset), ordered_states(matrix.labels)
     with stage("figures", 1) as advance, styled():
-        drawing = draw(dataset, matrix, ordered_states(matrix.labels), training, found, studies, beside.explorer)
-        opening = answer_figure(detectors)
+        drawing = draw(dataset, matrix, classes, training, found, studies)
+        opening = _opening(dataset, matrix, classes, detectors)
+        in_detail = figures(judged, channel_quantities(dataset))
         advance()
     drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
-    words = words_of(dataset)
-    _write_tables(words.table(table), words.table(separability_table(found)), folder)
+    write_table(words.table(table), folder / "features.parquet")
+    write_evaluation(dataset, judged, folder)
     audit = audit_sentence(dataset, audit_beside(dataset))
     answer = answer_sentences(detectors, error_free=is_error_free(dataset.config))
     sentences = [*(text for _, text in answer), *summary(dataset.config, training, found), audit]
@@ -155,25 +159,61 @@ def write_report(
         for side in ("alone", "referenced")
     }
     metrics["studies"] = studies_metrics(studies) if studies else None
-    yours = _scored(dataset, beside, folder if training else None, network)
+    yours = _scored(dataset, page, folder if training else None, network)
     metrics["yours"] = yours.numbers() if yours else None
     (folder / "metrics.json").write_text(words(json.dumps(metrics, indent=1, allow_nan=False)) + "\n", encoding="utf-8")
-    reported = Reported(
-        dataset, seed, matrix, training, studies, found, detectors, audit, drawing, beside.explorer, yours
-    )
+    look = _look(dataset, records, judged, folder / "models" if training else None, page, own, stage)
+    reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, judged, look, yours)
     path = folder / "report.html"
     with stage("page", 1):
-        drawn = {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()}
+        drawn = {**opening, **drawing.figures(), **in_detail}
         pictures = _write_pictures(folder, {name: (words.figure(one), text) for name, (one, text) in drawn.items()})
-        path.write_text(words(report_page(reported, pictures)), encoding="utf-8")
+        path.write_text(report_page(reported, pictures), encoding="utf-8")
     return path
 
 
-def _scored(dataset: Dataset, beside: Beside, models: Path | None, options: NetworkOptions) -> Scores | None:
+def _evaluated(records: RecordTable, dataset: Dataset, seed: int, page: PageOptions, stage: Stage) -> Evaluated:
+    """Return how every feature separates damage; records that cannot be used were refused before."""
+    table = ranking_table(records, dataset, states=page.states, leave_out=True)
+    return evaluated(table, AssessmentSettings(seed=seed, false_alarms=page.false_alarms), stage)
+
+
+def _opening(
+    dataset: Dataset, matrix: FeatureMatrix, classes: tuple[str, ...], detectors: Detectors
+) -> dict[str, tuple[Figure, str]]:
+    """Return the figures that open the page: spectra by size, and all detectors."""
+    examples = example_set(dataset)
+    first, every = first_figure(examples, matrix, classes, detectors.strongest), answer_figure(detectors)
+    shown = {FIRST: (first, first_caption(examples)), ANSWER: (every, CAPTION)}
+    return {name: (figure, text) for name, (figure, text) in shown.items() if figure is not None}
+
+
+def _look(
+    dataset: Dataset,
+    records: RecordTable,
+    judged: Evaluated,
+    models: Path | None,
+    page: PageOptions,
+    own: Sequence[OwnIndicator],
+    stage: Stage,
+) -> Look:
+    """Return the records on the page, with what the first classifier names them; those of its figures come first."""
+    known = models if models is not None and (models / "model.json").is_file() else None
+    options = LookOptions(
+        *(page.limit, page.full),
+        model=known,
+        own=own,
+        first=reported_gearboxes(dataset),
+        ranked=[result.column for result in judged.shown],
+    )
+    return set_look(dataset, options, stage, table=records)
+
+
+def _scored(dataset: Dataset, page: PageOptions, models: Path | None, options: NetworkOptions) -> Scores | None:
     """Return the scores of the user's predictions beside those of the models in a folder; None without predictions."""
-    if beside.predictions is None:
+    if page.predictions is None:
         return None
-    return score(dataset, beside.predictions, baselines=models, classes=options.classes)
+    return score(dataset, page.predictions, baselines=models, classes=options.classes)
 
 
 def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
@@ -257,12 +297,6 @@ def clipping_notes(dataset: Dataset) -> list[str]:
                 f"to {share.max():.1%} of the samples. Clipping adds lines to the spectra that no gear makes."
             )
     return notes
-
-
-def _write_tables(table: pa.Table, entries: pa.Table, folder: Path) -> None:
-    write_table(table, folder / "features.parquet")
-    write_table(entries, folder / "separability.parquet")
-    write_table(entries, folder / "separability.csv")
 
 
 def report_metrics(

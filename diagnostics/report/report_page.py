@@ -1,6 +1,6 @@
-"""The page of a report: the answer first, then what limits it, then everything else in sections that links lead to.
+"""The page of a report: the answer first, then its records, then what limits it and everything else in sections.
 
-What classifiers say of test records: confusion matrices, and records named wrongly, with links to the explorer.
+What classifiers say of test records: confusion matrices, and records named wrongly, with links to the records.
 """
 
 from __future__ import annotations
@@ -11,19 +11,23 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.explore.look import Look
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page import html, tables
 from diagnostics.page.html import Cell, table
 from diagnostics.page.provenance import origin_sentence, provenance
-from diagnostics.page.tables import explorer_link, records_line, state_links
+from diagnostics.page.tables import records_line, records_link, state_links
 from diagnostics.page.wording import capitalised, counted
+from diagnostics.records.named_set import words_of
 from diagnostics.records.state_classes import CLASS, ordered_states
 from diagnostics.report.answer import answer_sentences
 from diagnostics.report.comparison_tables import score_blocks, study_blocks
 from diagnostics.report.confusion import confusion_table
 from diagnostics.report.detector_table import detection_blocks, detector_table
 from diagnostics.report.drawing import Drawing
-from diagnostics.report.indicator_figures import term_cell
+from diagnostics.report.first_screen import first_answer, first_certainty
+from diagnostics.report.indicator_evaluation import Evaluated
+from diagnostics.report.indicator_sections import detail_blocks, evaluation_notes, ranking_blocks
 from diagnostics.report.indicator_tables import definition_html
 from diagnostics.report.nested_tables import nested_blocks
 from diagnostics.report.sentences import (
@@ -46,9 +50,8 @@ from siggen.dataset.reading import Dataset
 MOST_RECORDS = 100
 """Rows of the table of wrongly named records."""
 
-ANSWER = "answer"
-MOST_SHOWN = 500
-"""Features in the table: all of two channels; a page of six would be twice as large with all."""
+FIRST, ANSWER = "first", "answer"
+"""Names of the figure that opens the page, and of that of all detectors."""
 CAPTION = (
     "Black, chosen: each gearbox judged by the detector that is best on others. Above: AUC of healthy against each "
     "state, with 95 % limits of the black one; 0.5 is chance. Lines are dashed by kind of damage, as its name is "
@@ -57,7 +60,7 @@ CAPTION = (
 )
 
 
-def wrong_records_table(training: Training, matrix: FeatureMatrix, explorer: str = "") -> str:
+def wrong_records_table(training: Training, matrix: FeatureMatrix) -> str:
     """Return the test records that some classifier names wrongly, with what each says; nothing where none does."""
     labels = matrix.rows(training.split.test).labels
     said = {found.name: np.array(found.predictions.classes)[found.predictions.predicted] for found in training.judged}
@@ -73,16 +76,13 @@ def wrong_records_table(training: Training, matrix: FeatureMatrix, explorer: str
         f"{counted(int(rows.size), 'test record')} of {labels[CLASS].size} that some classifier names wrongly "
         f"(shaded), those that most name wrongly first.{left}"
     )
-    return table(
-        head, [_record(labels, row, said, explorer) for row in order], caption=caption, sortable=True, tall=True
-    )
+    return table(head, [_record(labels, row, said) for row in order], caption=caption, sortable=True, tall=True)
 
 
-def _record(labels: dict[str, np.ndarray], row: int, said: dict[str, np.ndarray], explorer: str) -> list[Cell]:
+def _record(labels: dict[str, np.ndarray], row: int, said: dict[str, np.ndarray]) -> list[Cell]:
     number, area = int(labels["record_id"][row]), float(labels["damaged_area_mm2"][row])
-    link = explorer_link(explorer, record=number)
     return [
-        Cell(str(number), value=float(number), link=link, hint="open in the explorer" if link else ""),
+        Cell(str(number), value=float(number), link=records_link(record=number), hint="show this record"),
         Cell(str(labels["specimen_id"][row]), value=float(labels["specimen_id"][row])),
         Cell(f"{area:.3g}", value=area),
         Cell(str(labels[CLASS][row])),
@@ -103,40 +103,45 @@ class Reported:
     detectors: Detectors
     audit: str
     drawing: Drawing
-    explorer: str = ""
+    evaluated: Evaluated
+    look: Look
     yours: Scores | None = None
 
 
 def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
-    """Return the page.
+    """Return the page, in the names of the set's user.
 
     Parameters
     ----------
     reported : Reported
     pictures : mapping of str to (bytes, str)
-        PNG and caption by name, of all figures of the drawing, and of the answer under its own name.
+        PNG and caption by name, of all figures.
     """
+    words, look = words_of(reported.dataset), reported.look
     title = f"Diagnostics of {reported.dataset.path.name}"
-    sections = {name: blocks for name, blocks in _sections(reported, pictures).items() if blocks}
+    sections = {name: blocks for name, blocks in _sections(reported, pictures).items() if any(blocks)}
     parts = [part for name, blocks in sections.items() for part in (html.heading(name), *blocks)]
-    return html.page(
-        title,
-        [
-            html.heading(title, 1),
-            html.paragraph(origin_sentence(reported.dataset)),
-            _answer(reported, pictures),
-            html.contents(parts),
-            *parts,
-        ],
-    )
+    origin = html.paragraph(origin_sentence(reported.dataset))
+    whole = [html.heading(title, 1), origin, _answer(reported, pictures), html.contents(parts), *parts]
+    return html.page(words(title), [part if part is look.block else words(part) for part in whole], look.live)
 
 
 def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
-    states = next((tuple(one.states) for one in reported.detectors.alone.values()), ())
-    behind = records_line("Records", state_links(reported.explorer, states))
-    figure = html.figure_block(*pictures[ANSWER], behind) if ANSWER in pictures else ""
+    detectors = reported.detectors
+    states = next((tuple(one.states) for one in detectors.alone.values()), ())
+    figure = next((pictures[name] for name in (FIRST, ANSWER) if name in pictures), None)
+    shown = html.figure_block(*figure, records_line("Records", state_links(states))) if figure else ""
+    said = [("What is found", first_answer(detectors)), ("How sure", first_certainty(detectors))]
+    return html.answer(said, shown)
+
+
+def _detectors(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
     error_free = is_error_free(reported.dataset.config)
-    return html.answer(answer_sentences(reported.detectors, error_free=error_free), figure)
+    figure = [html.figure_block(*pictures[ANSWER])] if {FIRST, ANSWER} <= set(pictures) else []
+    table = [detector_table(reported.detectors)] if reported.detectors.alone else []
+    told = answer_sentences(reported.detectors, error_free=error_free)
+    said = [f"<p><b>{html.inline(question)}.</b> {html.inline(text)}</p>" for question, text in told]
+    return [*said, html.figure_grid(figure), *table]
 
 
 def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> dict[str, list[str]]:
@@ -147,31 +152,28 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         return html.figure_grid([html.figure_block(*pictures[name], drawing.behind.get(name, "")) for name in names])
 
     labels = reported.matrix.labels
-    notes = [*drawing.notes, "Shaft angles come from the once-per-revolution pulses."]
-    notes.append(provenance(reported.dataset, reported.seed))
+    notes = [*drawing.notes, *evaluation_notes(reported.dataset, reported.evaluated)]
+    notes += ["Shaft angles come from the once-per-revolution pulses.", provenance(reported.dataset, reported.seed)]
     return {
+        "Records": [reported.look.block, tables.set_table(labels, ordered_states(labels))],
+        "Which damage is found": _detectors(reported, pictures),
         "What limits the answer": _limits(reported),
-        "Detectors": [detector_table(reported.detectors, reported.explorer)] if reported.detectors.alone else [],
-        "Records": [*_explore(reported.explorer), tables.set_table(labels, ordered_states(labels), reported.explorer)],
+        "Features": _features(reported, pictures),
         "Scores": [*_scores(training), grid(drawing.scores)],
         "Your predictions": your_scores(reported.yours),
         "Records named wrongly": _named(reported),
         "Splits and training specimens": [*study_blocks(reported.studies), grid(drawing.studies)] if training else [],
-        "Indicators": [*_indicators(reported), grid(drawing.indicators)],
         "Signals": [grid(drawing.vibration)],
         "Damage": [grid(drawing.damage)],
         "Definitions of the indicators": [definition_html({channel.quantity for channel in reported.dataset.channels})],
-        "Notes": html.notes(notes),
+        "Notes": html.notes(list(dict.fromkeys(notes))),
     }
 
 
-def _explore(explorer: str) -> list[str]:
-    """Return the link to the page on which records are looked at, or how to have it."""
-    if not explorer:
-        return [
-            html.paragraph("`siggen-diagnostics report DIR --explore` adds a page on which every record can be seen.")
-        ]
-    return [f"<p>{html.link('Look at the records: signals, spectra, flanks and indicators', explorer)}</p>"]
+def _features(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
+    evaluated = reported.evaluated
+    details = html.folded("Trends, sizes, effects and causes of every feature", detail_blocks(evaluated, pictures))
+    return [*ranking_blocks(reported.dataset, evaluated), details]
 
 
 def _limits(reported: Reported) -> list[str]:
@@ -179,7 +181,7 @@ def _limits(reported: Reported) -> list[str]:
     trained = reported.training
     sentences = [meaning_of_scores(reported.dataset.config, scored=trained is not None)]
     sentences += [trust_sentence(trained)] if trained else []
-    sentences += [*indicator_sentences(reported.found), reported.audit]
+    sentences += [*indicator_sentences(reported.found), *area_sentence(reported.found), reported.audit]
     return [html.paragraph(sentence) for sentence in sentences]
 
 
@@ -198,29 +200,13 @@ def _scores(training: Training | None) -> list[str]:
 
 
 def _named(reported: Reported) -> list[str]:
-    """Return confusion matrices and wrongly named records; the explorer shows what the first classifier names."""
-    training, explorer = reported.training, reported.explorer
+    """Return confusion matrices and wrongly named records; the list of records has what the first classifier names."""
+    training = reported.training
     if training is None:
         return []
     matrices = [
-        confusion_table(found.scores, TITLES[found.name], explorer="" if place else explorer, kind=training.split.kind)
+        confusion_table(found.scores, TITLES[found.name], kind=training.split.kind, linked=place == 0)
         for place, found in enumerate(training.judged)
     ]
-    wrong = wrong_records_table(training, reported.matrix, explorer)
+    wrong = wrong_records_table(training, reported.matrix)
     return [html.figure_grid([f"<div>{matrix}</div>" for matrix in matrices]), *([wrong] if wrong else [])]
-
-
-def _indicators(reported: Reported) -> list[str]:
-    found = reported.found
-    shown = found[:MOST_SHOWN]
-    has = f"all {counted(len(found), 'feature')}"
-    if len(shown) < len(found):
-        has = f"the {len(shown)} strongest of {counted(len(found), 'feature')} (all: separability.csv)"
-    text = (
-        f"The table has {has} on all specimens. Nothing is trained here, so no "
-        "specimen is held out. An AUC of 0.5 means no separation; 0 and 1 mean a perfect one."
-    )
-    return [
-        html.paragraph(" ".join([*area_sentence(found), text])),
-        tables.separability_html(shown, term_cell, reported.explorer),
-    ]

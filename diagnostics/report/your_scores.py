@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-
 from diagnostics.page.html import Cell, paragraph, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.scoring.score import Scores
 from diagnostics.statistics.judgement import TITLES
-
-
-@dataclass(frozen=True, slots=True)
-class Beside:
-    """What a report shows beside its own: the page to explore, and the user's predictions; empty without."""
-
-    explorer: str = ""
-    predictions: Path | None = None
 
 
 def your_scores(scores: Scores | None) -> list[str]:

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import pyarrow as pa
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY
@@ -140,17 +139,3 @@ def weighted_spearman(first: np.ndarray, second: np.ndarray, weights: np.ndarray
         covariance = (weights * centred[0] * centred[1]).sum(axis=1)
         spread = [(weights * side * side).sum(axis=1) for side in centred]
         return np.asarray(covariance / np.sqrt(spread[0] * spread[1]))
-
-
-def separability_table(found: list[Separability]) -> pa.Table:
-    """Return the entries as a table: value, low and high of every AUC and of the correlation."""
-    rows = []
-    for entry in found:
-        row: dict[str, object] = {"feature": entry.feature, "defined_share": entry.defined_share}
-        for name, result in [
-            *((f"auc_{state}", a) for state, a in entry.auc.items()),
-            ("spearman_area", entry.spearman),
-        ]:
-            row |= {name: result.value, f"{name}_low": result.low, f"{name}_high": result.high}
-        rows.append(row)
-    return pa.Table.from_pylist(rows)

@@ -11,7 +11,7 @@ import pyarrow as pa
 from diagnostics.base.progress import Stage
 from diagnostics.indicators.classifier_table import check_table, classifier_table
 from diagnostics.indicators.own_indicator import OwnIndicator
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.records.named_set import open_set
 from diagnostics.records.record_classes import STATE
 from diagnostics.records.usable_records import with_channels
@@ -40,7 +40,15 @@ def open_sets(
     return dataset, other
 
 
-def set_table(dataset: Dataset, stage: Stage, title: str = "indicators", own: Sequence[OwnIndicator] = ()) -> pa.Table:
+def measured_table(
+    dataset: Dataset, stage: Stage, title: str = "indicators", own: Sequence[OwnIndicator] = (), workers: int = 1
+) -> RecordTable:
+    """Return everything that is taken of the records of a set."""
+    with stage(title, int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
+        return record_table(dataset, own=own, workers=workers, advance=advance)
+
+
+def checked_table(table: RecordTable, dataset: Dataset) -> pa.Table:
     """Return what classifiers take of a set whose records are usable, with notes on those to be taken with care.
 
     Raises
@@ -48,9 +56,12 @@ def set_table(dataset: Dataset, stage: Stage, title: str = "indicators", own: Se
     DatasetError
         As of `check_table`.
     """
-    with stage(title, int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
-        table = record_table(dataset, own=own, advance=advance)
     return classifier_table(table, check_table(table, dataset, can_leave_channels=True))
+
+
+def set_table(dataset: Dataset, stage: Stage, title: str = "indicators", own: Sequence[OwnIndicator] = ()) -> pa.Table:
+    """Return the checked table of a set."""
+    return checked_table(measured_table(dataset, stage, title, own), dataset)
 
 
 def other_table(other: Any, stage: Stage, own: Sequence[OwnIndicator] = ()) -> OtherSet:

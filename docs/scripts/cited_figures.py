@@ -1,6 +1,6 @@
 """Write the figures that pages cite from the report of quickstart: `python docs/scripts/cited_figures.py`.
 
-docs/start/demo.md cites the answer and the scores, docs/understand/baselines.md calibration and epochs of the networks.
+docs/start/demo.md cites the answer, docs/understand/baselines.md calibration and epochs of the networks.
 Tests compare both pages with the report (tests/diagnostics/pages). Sentences around the figures are written by hand:
 read them again after a new report.
 """
@@ -21,7 +21,6 @@ DEMO = ROOT / "docs" / "start" / "demo.md"
 BASELINES = ROOT / "docs" / "understand" / "baselines.md"
 WINDOWS, CIRCULAR = "1-D network", "circular network on the average"
 QUOTED = re.compile(r"^> .*\n(?:> .*\n)*", re.MULTILINE)
-SCORED = re.compile(r"^\| (.*?) \| \d+ %( of records)? \(\d+ to \d+\) \| .* \|$", re.MULTILINE)
 CALIBRATED = re.compile(
     r"the network gets T = [\d.]+\. Its calibration error\s+is [\d.]+ without T, [\d.]+ with T, and would be [\d.]+ if"
 )
@@ -47,14 +46,6 @@ def answer() -> str:
     return "".join(f"> {line}\n" for line in textwrap.wrap(said, 130, break_long_words=False, break_on_hyphens=False))
 
 
-def score_row(row: re.Match[str]) -> str:
-    """Return a row of the demo's table as the report has it."""
-    _, accuracy, macro, _ = report_rows("Scores on")[row[1].replace(" on windows", "")]
-    low, high = (round(100 * float(limit)) for limit in accuracy[1].split(" … "))
-    area = f"{macro[0]} ({macro[1].replace(' … ', ' to ')})"
-    return f"| {row[1]} | {round(100 * float(accuracy[0]))} %{row[2] or ''} ({low} to {high}) | {area} |"
-
-
 def calibration() -> str:
     """Return what temperature does to the network on windows."""
     temperature, _, _, before, after, honest = (text for text, _ in report_rows("with the temperature T")[WINDOWS][1:])
@@ -74,7 +65,7 @@ def epochs(network: str) -> str:
 def main() -> None:
     """Rewrite both pages."""
     demo = replaced(QUOTED, answer(), DEMO.read_text(encoding="utf-8"))
-    DEMO.write_text(SCORED.sub(score_row, demo), encoding="utf-8")
+    DEMO.write_text(demo, encoding="utf-8")
     page = replaced(CALIBRATED, calibration(), BASELINES.read_text(encoding="utf-8"))
     for network, name in (
         (WINDOWS, r"(the network alone .*?, an epoch of )\d+"),

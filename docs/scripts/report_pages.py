@@ -41,19 +41,20 @@ SETS = {
 """Commands that make a set, by its folder in runs/; the last one generates it."""
 
 LADDER = " ".join(f"--state through_{size:03d}" for size in (40, 50, 60, 70, 80, 90, 100, 125, 150))
-SMALL = ("quickstart", "rig")
-"""Sets whose networks cost a minute or two, of the others several; the audit is of quickstart alone."""
+OPTIONS = {"quickstart": " --limit 5", "rig": "", "bench": f" --no-cnn {LADDER}"}
+"""Networks of the first two cost a minute or two, of others several; the page that is kept has one gearbox's signals.
+
+Features of bench are ranked along one ladder of damage. The audit is of quickstart alone.
+"""
 
 REPORTS = {
     name: {
         # the audit first: the report cites it
         **({f"{name}_audit": ("audit.html", f"audit runs/{name} --realism")} if name == "quickstart" else {}),
-        f"{name}_report": ("report.html", f"report runs/{name}{'' if name in SMALL else ' --no-cnn'}"),
-        f"{name}_indicators": ("indicators.html", f"indicators runs/{name} --leave-out"),
+        f"{name}_report": ("report.html", f"report runs/{name}{OPTIONS.get(name, ' --no-cnn')}"),
     }
     for name in SETS
 }
-REPORTS["bench"]["bench_ladder"] = ("indicators.html", f"indicators runs/bench --leave-out {LADDER}")
 """By set: the name of a page, what the program calls it, and the command that writes it."""
 
 KEPT = ("quickstart_audit", "quickstart_report")

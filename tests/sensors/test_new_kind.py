@@ -18,6 +18,7 @@ from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from siggen.config import parse
 from siggen.errors import UsageError
+from tests.diagnostics.explore.unpacked import held
 from tests.house.source_tree import ROOT
 from tests.publication.conftest import facts_file
 from tests.sensors.toy_strain_gauge import STRAIN_PER_FORCE
@@ -127,9 +128,9 @@ def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path)
 def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:
     command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
     assert '"seat_vertical":{"word":"strain","unit":"µm/m"}' in (folder / "explorer.html").read_text("utf-8")
-    said = words_of(folder / "explorer.html")
-    assert "RMS [µm/m]" in said
-    assert not OTHER_QUANTITY.search(said)
+    titles = {one["title"] for one in held(folder / "explorer.html")["look-data"]["indicators"]}
+    assert "RMS [µm/m]" in titles
+    assert not OTHER_QUANTITY.search(" ".join((*titles, words_of(folder / "explorer.html"))))
 
 
 def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:

@@ -124,7 +124,7 @@ def test_from_a_set_to_a_ranking_of_an_own_indicator(rig: Path) -> None:
         signal = dataset.record(row["record_id"])[channel.column].astype(np.float64)
         expected = np.abs(signal).max() / np.sqrt(np.mean(signal**2))
         assert row[f"crest__{channel.name}"] == pytest.approx(expected, rel=1e-5)
-    assert "crest" in (rig / "indicators" / "indicators.html").read_text()
+    assert "crest" in (rig / "indicators" / "evaluation.csv").read_text()
 
 
 def test_from_a_set_to_a_published_folder_that_opens_again(rig: Path) -> None:

@@ -23,14 +23,14 @@ Explore.showAverages = (section, row, channel, healthy) => {
   const controls = section.querySelector(".controls");
   Explore.clear(body);
   const label = Explore.element("label", "Shaft ");
-  const select = Explore.element("select", "", { id: "shaft" });
+  const select = Explore.element("select", "", { id: "look-shaft" });
   if (!Explore.data.shafts.includes(Explore.shaft)) Explore.shaft = Explore.data.shafts[0];
   for (const name of Explore.data.shafts) select.append(Explore.element("option", Explore.called(name), { value: name }));
   select.value = Explore.shaft;
   select.addEventListener("change", () => {
     Explore.shaft = select.value;
     Explore.showAverages(section, row, channel, healthy);
-    document.getElementById("shaft").focus();
+    Explore.part("shaft").focus();
   });
   label.append(select);
   controls.replaceChildren(label);
@@ -57,7 +57,7 @@ Explore.drawAverages = (body, row, channel, packed, base) => {
   const both = (values) => (base ? [x, values(base), values(own)] : [x, values(own)]);
   const series = () => (base ? [Explore.line(Explore.otherName(), "healthy", { alpha: 0.75 }), Explore.line("record", "record")] : [Explore.line("record", "record")]);
   const marks = Explore.toothMarks(row, Explore.shaft, packed.numbered);
-  const shared = { x: packed.numbered ? `tooth of the ${Explore.shaft}` : `teeth of the ${Explore.shaft} in a turn`, y: Explore.held(channel).unit, range: [0, own.length / steps], marks, group: "teeth" };
+  const shared = { x: packed.numbered ? `tooth of the ${Explore.shaft}` : `teeth of the ${Explore.shaft} in a turn`, y: Explore.quantityOf(channel).unit, range: [0, own.length / steps], marks, group: "teeth" };
   const mark = packed.numbered ? "Shaded: one pitch from where a damaged tooth enters contact; the structure rings on after it." : "The set does not say which tooth the first pulse meets, so that no tooth is marked.";
   Explore.chart(body, { ...shared, title: "Synchronous average", data: both((values) => values), series: series(), caption: `Mean over ${packed.turns} revolutions of the ${Explore.shaft}. ${mark}` });
   Explore.chart(body, { ...shared, title: "Without the mean tooth", height: 190, data: both((values) => Explore.withoutMeanTooth(values, steps)), series: series(), caption: "Average minus the mean of all its teeth: all mesh harmonics are gone, what differs from tooth to tooth stays." });

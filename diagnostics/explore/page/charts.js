@@ -16,7 +16,7 @@ Explore.markHook = (marks) => (plot) => {
   ctx.textAlign = "left";
   ctx.textBaseline = "alphabetic";
   let free = -Infinity; // where the last text ends, so that none lies over another
-  const wanted = marks(scale.min, scale.max).sort((a, b) => a.at - b.at);
+  const wanted = marks(scale.min, scale.max).sort((a, b) => a.at - b.at || (a.to === undefined) - (b.to === undefined));
   for (const mark of wanted) {
     const x = plot.valToPos(mark.at, "x", true);
     ctx.fillStyle = ctx.strokeStyle = Explore.colour(mark.colour || "mark");
@@ -76,10 +76,11 @@ Explore.tools = (title, plot) => {
   return tools;
 };
 
-Explore.axis = (label, side) => ({
+Explore.axis = (label, side, more = {}) => ({
   label, stroke: Explore.colour("ink"), grid: { stroke: Explore.colour("grid"), width: 1 },
   ticks: { stroke: Explore.colour("grid") }, size: side ? 62 : 38, labelSize: 20,
   values: (_, splits) => splits.map((value) => (value === null ? "" : Number(value.toPrecision(6)).toString())),
+  ...more,
 });
 
 Explore.line = (label, colour, more = {}) => ({
@@ -87,7 +88,7 @@ Explore.line = (label, colour, more = {}) => ({
   value: (_, value) => (value == null ? "–" : Explore.number(value)), ...more,
 });
 
-// what: {title, caption, x, y, series, data, marks, range, group, height, cursor, summary, hooks}
+// what: {title, caption, x, y, series, data, marks, range, group, height, start, cursor, summary, hooks, xAxis, yAxis, scaleY, bare}
 Explore.chart = (host, what) => {
   const figure = Explore.element("figure");
   const area = Explore.element("div", "", { class: "plot", tabindex: "0", role: "img", "aria-label": `${what.title}. ${what.summary || ""} Keys plus, minus, arrows and 0 zoom.` });
@@ -97,8 +98,9 @@ Explore.chart = (host, what) => {
   const followers = () => [...Explore.plots.values()].filter((other) => other !== plot && what.group && other.group === what.group);
   const options = {
     width: Math.max(area.clientWidth, 200), height: what.height || 240,
-    scales: { x: { time: false }, y: {} },
-    axes: [Explore.axis(what.x, false), Explore.axis(what.y, true)],
+    scales: { x: { time: false }, y: what.scaleY || {} },
+    axes: [Explore.axis(what.x, false, what.xAxis), Explore.axis(what.y, true, what.yAxis)],
+    legend: { show: !what.bare },
     series: [{ label: what.x, value: (_, value) => (value == null ? "–" : Explore.number(value)) }, ...what.series],
     cursor: { drag: { x: true, y: false }, focus: { prox: 16 }, ...(what.group ? { sync: { key: what.group, setSeries: false } } : {}), ...what.cursor },
     hooks: {
@@ -117,6 +119,7 @@ Explore.chart = (host, what) => {
   plot.whole = what.range;
   Explore.plots.set(area, plot);
   if (what.range) Explore.reset(plot);
+  if (what.start) plot.setScale("x", what.start);
   area.addEventListener("keydown", (event) => {
     const found = Explore.ACTIONS.find(([, , key]) => key === event.key || (key === "+" && event.key === "="));
     if (!found || event.altKey || event.ctrlKey || event.metaKey) return;

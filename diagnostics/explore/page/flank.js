@@ -34,8 +34,8 @@ Explore.showFlank = (section, row) => {
   const body = section.querySelector(".body");
   body.replaceChildren();
   section.hidden = Explore.data.measured;
-  const record = Explore.data.records[row];
-  const damages = Explore.data.damage[String(record.record_id)] || [];
+  const record = Explore.records[row];
+  const { damage: damages, flanks: sizes } = Explore.detail(row);
   const teeth = Explore.damagedTeeth(row);
   if (!teeth.length) {
     const why = Explore.isRecording(row) ? "A recording does not tell its damage." : record.fault === "healthy" ? "This record is healthy." : "The table of damage names none for this record.";
@@ -43,11 +43,11 @@ Explore.showFlank = (section, row) => {
   }
   const flanks = Explore.element("div", "", { class: "flanks" });
   for (const [gear, tooth] of teeth.slice(0, Explore.MOST_FLANKS)) {
-    const size = Explore.data.flanks[row][gear];
+    const size = sizes[gear];
     if (!size) return void body.append(Explore.element("p", "The set's configuration does not give the gears as plain numbers, so that flanks have no scale."));
     flanks.append(Explore.flank(gear, tooth, damages.filter((damage) => damage.gear === gear && damage.tooth === tooth), size));
   }
-  const size = Explore.data.flanks[row][teeth[0][0]];
+  const size = sizes[teeth[0][0]];
   const more = teeth.length > Explore.MOST_FLANKS ? ` ${Explore.MOST_FLANKS} of ${teeth.length} flanks are drawn.` : "";
   body.append(flanks, Explore.element("p", `Face ${Explore.number(size.face_mm)} mm wide, from the base circle (below) to the tip (above); dashed: pitch circle. The stronger the colour, the deeper.${more}`));
 };

@@ -1,10 +1,16 @@
 // The gearbox of a record over its life, in sets that run to failure.
-Explore.showLife = (section, row) => {
-  const found = (Explore.data.lives || {})[String(Explore.data.records[row].specimen_id)];
+Explore.lives = new Map();
+
+Explore.showLife = async (section, row) => {
+  const unit = Explore.records[row].specimen_id;
   const body = section.querySelector(".body");
-  section.hidden = !found;
+  section.hidden = !Explore.data.lives;
+  if (!Explore.data.lives) return;
+  if (!Explore.lives.has(unit)) Explore.lives.set(unit, await Explore.held(`look-life-${unit}`, `life?number=${unit}`));
+  const found = Explore.lives.get(unit);
+  if (Explore.chosen !== row) return;
   body.replaceChildren();
-  if (!found) return;
+  if (!found) return void body.append(Explore.element("p", "This page does not hold this gearbox over its life."));
   const figure = Explore.element("figure");
   figure.append(Explore.element("img", "", { src: `data:image/png;base64,${found.png}`, alt: found.caption, class: "drawn" }), Explore.element("figcaption", found.caption));
   body.append(figure);

@@ -1,118 +1,207 @@
-// The table of records: sort, filter, and choice by mouse or keys.
-Explore.rows = () => [...document.querySelectorAll("#table tbody tr")];
-Explore.visible = () => Explore.rows().filter((line) => !line.hidden);
+// The list of records: filters, order, and choice by mouse or keys. A page of rows stands in the document at a time.
+Explore.MOST_ROWS = 50;
+Explore.shown = Explore.records.map((_, row) => row); // rows that fit, in the order of the table
+Explore.sorted = { key: "record_id", descending: false };
+Explore.first = 0; // place in `shown` of the first row in the document
+Explore.indicatorShown = null; // a column that the table has besides its own
+Explore.ranges = new Map(); // name of a column -> [from, to], as chosen in the histogram
 
-Explore.sortRecords = (key, descending) => {
-  const body = document.querySelector("#table tbody");
-  const shown = Explore.indicatorValues[Explore.shown] ?? [];
-  const value = (line) => (key === "shown" ? shown[line.dataset.row] : Explore.data.records[line.dataset.row][key]);
-  const known = (number) => (Number.isFinite(number) ? number : -Infinity);
-  const order = (a, b) => (typeof a === "string" ? a.localeCompare(b) : known(a) < known(b) ? -1 : Number(known(a) > known(b)));
-  const lines = Explore.rows().sort((a, b) => order(value(a), value(b)) * (descending ? -1 : 1));
-  body.append(...lines);
+Explore.columnsShown = () => [...Explore.data.table, ...(Explore.indicatorShown ? [[Explore.indicatorShown.name, Explore.indicatorShown.title]] : [])];
+
+Explore.compare = (a, b) => {
+  if (typeof a === "string" || typeof b === "string") return String(a ?? "").localeCompare(String(b ?? ""));
+  const [left, right] = [a, b].map((value) => (Number.isFinite(value) ? value : -Infinity));
+  return left < right ? -1 : Number(left > right);
 };
 
-Explore.filterRecords = () => {
-  const text = document.getElementById("filter-text").value.toLowerCase();
-  const size = Number(document.getElementById("filter-size").value) || 0;
-  const chosen = [...document.querySelectorAll("[data-filter]")].filter((select) => select.value !== "");
-  for (const line of Explore.rows()) {
-    const record = Explore.data.records[line.dataset.row];
-    const fits = chosen.every((select) => Explore.same(record[select.dataset.filter], select.value));
-    line.hidden = !(fits && (record.damaged_area_mm2 || 0) >= size && line.textContent.toLowerCase().includes(text));
-  }
-  Explore.setTabStop();
-  document.getElementById("count").textContent = `${Explore.visible().length} of ${Explore.data.records.length} records shown`;
-};
-
-// An indicator as a column of the table and as the vertical axis of the scatter.
-Explore.showIndicator = (name) => {
-  Explore.shown = name ? Explore.data.indicators.findIndex((one) => one.name === name || one.name.startsWith(`${name}__`)) : -1;
-  const found = Explore.shown >= 0;
-  const head = document.getElementById("shown-indicator");
-  const values = found ? Explore.indicatorValues[Explore.shown] : null;
-  head.hidden = !found;
-  head.querySelector("button").textContent = found ? Explore.indicatorName(Explore.data.indicators[Explore.shown]) : "";
-  for (const line of Explore.rows()) {
-    line.lastElementChild.hidden = !found;
-    line.lastElementChild.textContent = found && Number.isFinite(values[line.dataset.row]) ? Explore.number(values[line.dataset.row]) : "";
-  }
-  if (found && Explore.data.indicators.length > 1) Explore.pair = [Explore.pair[0] === Explore.shown ? Explore.pair[1] : Explore.pair[0], Explore.shown];
-};
-
-// Says what the address asked for and the page does not have.
-Explore.showAsked = (wanted) => {
-  const note = document.getElementById("asked");
-  const record = wanted.get("record");
-  const lost = [];
-  if (record !== null && !Explore.data.records.some((one) => String(one.record_id) === record)) lost.push(`Record ${record} is not on this page; the option --limit takes more.`);
-  if (wanted.get("indicator") && Explore.shown < 0) lost.push(`No record of this page has the indicator ${wanted.get("indicator")}.`);
-  if (record === null && !Explore.visible().length) lost.push("No record of this page is as the link asks for; the option --limit takes more.");
-  note.textContent = lost.join(" ");
-  note.hidden = !lost.length;
-};
-
-// What the address asks for: `#record=12`, or values of the filters such as `#state=severe&predicted=healthy`, and
-// `indicator=fm4_pinion`, whose values are shown then.
-Explore.address = () => {
-  const wanted = new URLSearchParams(location.hash.slice(1));
-  for (const select of document.querySelectorAll("[data-filter]")) {
-    const value = wanted.get(select.dataset.filter) ?? "";
-    const fits = [...select.options].find((option) => option.value === value);
-    select.value = fits ? value : "";
-  }
-  document.getElementById("filter-text").value = wanted.get("text") ?? "";
-  document.getElementById("filter-size").value = wanted.get("area_from") ?? "";
-  Explore.showIndicator(wanted.get("indicator"));
-  Explore.filterRecords();
-  Explore.showAsked(wanted);
-  return Explore.data.records.findIndex((record) => String(record.record_id) === wanted.get("record"));
-};
-
+Explore.textOf = (record) => Explore.data.table.map(([key]) => record[key] ?? "").join(" ").toLowerCase();
 Explore.same = (value, text) => (typeof value === "number" ? value === Number(text) : value === text);
 
-// One row of the table takes part in the order of the Tab key: the chosen one, or the first that is shown.
-Explore.setTabStop = () => {
-  const shown = Explore.visible();
-  const stop = shown.find((line) => Number(line.dataset.row) === Explore.chosen) || shown[0];
-  for (const line of Explore.rows()) line.querySelector("button").tabIndex = line === stop ? 0 : -1;
+Explore.filterRecords = () => {
+  const text = Explore.part("text").value.toLowerCase();
+  const chosen = [...document.querySelectorAll("[data-filter]")].filter((select) => select.value !== "");
+  const ranges = [...Explore.ranges].map(([name, [from, to]]) => [Explore.columnValues(Explore.columnOf.get(name)), from, to]);
+  const fits = (record, row) =>
+    chosen.every((select) => Explore.same(record[select.dataset.filter], select.value)) &&
+    ranges.every(([values, from, to]) => values[row] !== null && values[row] >= from && values[row] <= to) &&
+    (!text || Explore.textOf(record).includes(text));
+  const { key, descending } = Explore.sorted;
+  const values = Explore.columnValues(Explore.columnOf.get(key));
+  const rows = Explore.records.flatMap((record, row) => (fits(record, row) ? [row] : []));
+  Explore.shown = rows.sort((a, b) => Explore.compare(values[a], values[b]) * (descending ? -1 : 1));
+  Explore.first = 0;
+  const all = Explore.records.length;
+  Explore.part("count").textContent = `${Explore.shown.length} of ${all} ${Explore.data.measured ? "recordings" : "records"} shown`;
 };
 
-Explore.markRow = () => {
-  for (const line of Explore.rows()) {
-    if (Number(line.dataset.row) === Explore.chosen) line.setAttribute("aria-current", "true");
-    else line.removeAttribute("aria-current");
+Explore.afterFilter = () => {
+  Explore.filterRecords();
+  Explore.drawTable();
+  Explore.drawHistogram();
+  Explore.drawScatter();
+  Explore.drawWaterfall();
+};
+
+Explore.drawHead = () => {
+  const line = Explore.element("tr");
+  for (const [key, title] of Explore.columnsShown()) {
+    const head = Explore.element("th", "", { scope: "col" });
+    if (key === Explore.sorted.key) head.setAttribute("aria-sort", Explore.sorted.descending ? "descending" : "ascending");
+    head.append(Explore.element("button", title, { type: "button", "data-key": key }));
+    line.append(head);
   }
-  Explore.setTabStop();
-  Explore.bringIntoView(document.querySelector("#table tr[aria-current]"));
+  Explore.part("table").querySelector("thead").replaceChildren(line);
+};
+
+Explore.cell = (value) => {
+  if (typeof value !== "string") return Explore.element("td", Number.isFinite(value) ? Explore.number(value) : "", { class: "number" });
+  const cell = Explore.element("td", "", value === "wrongly" ? { class: "wrong" } : {});
+  if (value === "seen in training") cell.title = "The model was trained or chosen on this gearbox: naming it rightly says nothing about others.";
+  cell.append(Explore.element("bdi", value));
+  return cell;
+};
+
+Explore.drawTable = () => {
+  Explore.drawHead();
+  const rows = Explore.shown.slice(Explore.first, Explore.first + Explore.MOST_ROWS);
+  const columns = Explore.columnsShown().slice(1).map(([key]) => Explore.columnValues(Explore.columnOf.get(key)));
+  const lines = rows.map((row) => {
+    const line = Explore.element("tr", "", { "data-row": row });
+    const head = Explore.element("th", "", { scope: "row" });
+    head.append(Explore.element("button", String(Explore.records[row].record_id), { type: "button", tabindex: "-1" }));
+    line.append(head, ...columns.map((values) => Explore.cell(values[row])));
+    return line;
+  });
+  Explore.part("table").querySelector("tbody").replaceChildren(...lines);
+  Explore.drawTurn();
+  Explore.markRow();
+};
+
+// Buttons to the rows before and after, where there are more than the document holds.
+Explore.drawTurn = () => {
+  const all = Explore.shown.length;
+  const last = Math.min(Explore.first + Explore.MOST_ROWS, all);
+  const button = (text, to, possible) => {
+    const made = Explore.element("button", text, { type: "button", ...(possible ? {} : { disabled: "" }) });
+    made.addEventListener("click", () => Explore.turnTo(to));
+    return made;
+  };
+  const parts = [
+    button("first", 0, Explore.first > 0),
+    button("before", Explore.first - Explore.MOST_ROWS, Explore.first > 0),
+    Explore.element("span", `rows ${Explore.first + 1} to ${last} of ${all}`, { role: "status" }),
+    button("after", last, last < all),
+    button("last", all - 1, last < all),
+  ];
+  Explore.part("turn").replaceChildren(...(all > Explore.MOST_ROWS ? parts : []));
+};
+
+Explore.turnTo = (place) => {
+  Explore.first = Math.max(0, Math.floor(place / Explore.MOST_ROWS) * Explore.MOST_ROWS);
+  Explore.drawTable();
+};
+
+// One row of the table takes part in the order of the Tab key: the chosen one, or the first that is shown.
+Explore.markRow = () => {
+  const lines = [...Explore.part("table").querySelectorAll("tbody tr")];
+  const own = lines.find((line) => Number(line.dataset.row) === Explore.chosen);
+  for (const line of lines) {
+    if (line === own) line.setAttribute("aria-current", "true");
+    else line.removeAttribute("aria-current");
+    line.querySelector("button").tabIndex = line === (own || lines[0]) ? 0 : -1;
+  }
+  if (own) Explore.bringIntoView(own);
 };
 
 // Scrolls the table alone: the page stays where the reader looks.
 Explore.bringIntoView = (line) => {
   const box = line.closest(".scroll");
-  const head = document.querySelector("#table thead").offsetHeight;
+  const head = Explore.part("table").querySelector("thead").offsetHeight;
   const top = line.offsetTop - head;
   if (top < box.scrollTop) box.scrollTop = top;
   else if (line.offsetTop + line.offsetHeight > box.scrollTop + box.clientHeight) box.scrollTop = line.offsetTop + line.offsetHeight - box.clientHeight;
 };
 
-Explore.stepRow = (line, key) => {
-  const shown = Explore.visible();
-  const at = shown.indexOf(line);
-  const to = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: shown.length - 1 }[key];
-  return to === undefined ? null : shown[Math.min(Math.max(to, 0), shown.length - 1)];
+// The record that a key leads to, on whichever page of rows it stands.
+Explore.step = (row, key) => {
+  const at = Explore.shown.indexOf(row);
+  const last = Explore.shown.length - 1;
+  const to = { ArrowDown: at + 1, ArrowUp: at - 1, PageDown: at + Explore.MOST_ROWS, PageUp: at - Explore.MOST_ROWS, Home: 0, End: last }[key];
+  return to === undefined ? null : Math.min(Math.max(to, 0), last);
+};
+
+// Shows an indicator as a column of the table and upwards in the scatter.
+Explore.showIndicator = (name) => {
+  const fits = (column) => column.indicator && (column.name === name || column.name.startsWith(`${name}__`));
+  Explore.indicatorShown = name ? Explore.columns.find(fits) ?? null : null;
+  if (Explore.indicatorShown) {
+    Explore.pair[1] = Explore.indicatorShown;
+    Explore.byColumn = Explore.indicatorShown;
+  }
+};
+
+// Says what the address asked for and the page does not have.
+Explore.showAsked = (wanted) => {
+  const record = wanted.get("record");
+  const lost = [];
+  if (record !== null && !Explore.rowOf.has(Number(record))) lost.push(`Record ${record} is not on this page.`);
+  if (wanted.get("indicator") && !Explore.indicatorShown) lost.push(`No record of this page has the indicator ${wanted.get("indicator")}.`);
+  if (record === null && !Explore.shown.length) lost.push("No record of this page is as the link asks for.");
+  Explore.part("asked").textContent = lost.join(" ");
+  Explore.part("asked").hidden = !lost.length;
+};
+
+// What the address asks for: `#record=12`, or values of the filters such as `#state=severe&predicted=healthy`, and
+// `indicator=fm4_pinion`, whose values are shown then. Returns the row of the record, or -1.
+Explore.address = () => {
+  const wanted = new URLSearchParams(location.hash.includes("=") ? location.hash.slice(1) : "");
+  for (const select of document.querySelectorAll("[data-filter]")) {
+    const value = wanted.get(select.dataset.filter) ?? "";
+    const fits = [...select.options].find((option) => option.value === value);
+    select.value = fits ? value : "";
+  }
+  Explore.part("text").value = wanted.get("text") ?? "";
+  Explore.ranges.clear();
+  Explore.showIndicator(wanted.get("indicator"));
+  Explore.filterRecords();
+  Explore.showAsked(wanted);
+  return Explore.rowOf.get(Number(wanted.get("record") ?? NaN)) ?? -1;
+};
+
+Explore.buildFilters = () => {
+  const form = Explore.part("filters");
+  const text = Explore.element("label", "Contains ");
+  text.append(Explore.element("input", "", { type: "search", id: "look-text", autocomplete: "off" }));
+  form.append(text);
+  for (const [name, title] of Explore.data.filters) {
+    const label = Explore.element("label", `${title} `);
+    const select = Explore.element("select", "", { "data-filter": name });
+    select.append(Explore.element("option", "all", { value: "" }));
+    const values = [...new Set(Explore.columnValues(Explore.columnOf.get(name)))].filter((value) => value !== null).sort(Explore.compare);
+    for (const value of values) select.append(Explore.element("option", typeof value === "string" ? value : Explore.number(value), { value }));
+    label.append(select);
+    form.append(label);
+  }
+  const all = Explore.element("button", "all records", { type: "reset" });
+  form.append(all);
+  form.addEventListener("input", Explore.afterFilter);
+  form.addEventListener("reset", () => {
+    Explore.ranges.clear();
+    setTimeout(Explore.afterFilter, 0);
+  });
+  form.addEventListener("submit", (event) => event.preventDefault());
 };
 
 Explore.listen = () => {
-  const table = document.getElementById("table");
+  const table = Explore.part("table");
   table.querySelector("thead").addEventListener("click", (event) => {
     const button = event.target.closest("button");
     if (!button) return;
-    const head = button.closest("th");
-    const descending = head.getAttribute("aria-sort") === "ascending";
-    for (const other of table.querySelectorAll("thead th")) other.removeAttribute("aria-sort");
-    head.setAttribute("aria-sort", descending ? "descending" : "ascending");
-    Explore.sortRecords(button.dataset.key, descending);
+    const { key } = button.dataset;
+    Explore.sorted = { key, descending: Explore.sorted.key === key && !Explore.sorted.descending };
+    Explore.filterRecords();
+    Explore.drawTable();
+    table.querySelector(`thead button[data-key="${CSS.escape(key)}"]`).focus();
   });
   const body = table.querySelector("tbody");
   body.addEventListener("click", (event) => {
@@ -120,12 +209,11 @@ Explore.listen = () => {
     if (line) Explore.open(Number(line.dataset.row));
   });
   body.addEventListener("keydown", (event) => {
-    const line = Explore.stepRow(event.target.closest("tr"), event.key);
-    if (!line) return;
+    const to = Explore.step(Number(event.target.closest("tr").dataset.row), event.key);
+    if (to === null) return;
     event.preventDefault();
-    line.querySelector("button").focus({ preventScroll: true });
-    Explore.open(Number(line.dataset.row));
+    if (to < Explore.first || to >= Explore.first + Explore.MOST_ROWS) Explore.turnTo(to);
+    body.querySelector(`tr[data-row="${Explore.shown[to]}"] button`).focus({ preventScroll: true });
+    Explore.open(Explore.shown[to]);
   });
-  document.getElementById("filters").addEventListener("input", Explore.filterRecords);
-  document.getElementById("filters").addEventListener("submit", (event) => event.preventDefault());
 };

@@ -9,7 +9,7 @@ Explore.orders = (count, step) => Array.from({ length: count }, (_, k) => k * st
 Explore.minus = (left, right) => left.map((value, k) => (value === null || right[k] === null ? null : value - right[k]));
 
 Explore.spectrumMarks = (row) => (first, last) => {
-  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.data.records[row];
+  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.records[row];
   const found = [];
   for (let h = Math.max(1, Math.ceil(first / pinion)); h * pinion <= last; h++) found.push({ at: h * pinion, text: `mesh ${h}` });
   if (last - first > 1.2 * pinion || Explore.planetary()) return found;
@@ -37,7 +37,7 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
   if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   const shared = { x: Explore.orderWords(), range, marks: Explore.spectrumMarks(row), group: "orders" };
   Explore.chart(body, {
-    ...shared, title: "Order spectrum", y: `dB over 1 ${Explore.held(channel).unit}`, series, data: base ? [x, own, base] : [x, own],
+    ...shared, title: "Order spectrum", y: `dB over 1 ${Explore.quantityOf(channel).unit}`, series, data: base ? [x, own, base] : [x, own],
     summary: `Strongest line at order ${Explore.number(x[top])} with ${Explore.number(own[top])} dB.`,
     caption: `Hann amplitude over whole ${Explore.turnWords()}; a point is the largest line near it.${Explore.planetary() ? " Planets that pass move lines off the mesh frequency." : ` Zoom to a mesh line for its sidebands: ${Explore.called("pinion")}, and nearer still ${Explore.data.called.gear || "the gear"}.`}`,
   });
@@ -49,7 +49,7 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
 };
 
 Explore.envelopeMarks = (row) => (first, last) => {
-  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.data.records[row];
+  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.records[row];
   const found = [];
   const [fast, slow] = Explore.planetary() ? [Explore.data.shafts[0], "carrier"] : ["pinion", "gear"].map(Explore.called);
   for (let k = 1; k <= 4; k++) found.push({ at: k, text: k < 3 ? `${k}× ${fast}` : "" }, { at: (k * pinion) / gear, faint: true, colour: "accent", text: last - first < 4 && k < 3 ? `${k}× ${slow}` : "" });
@@ -70,7 +70,7 @@ Explore.showEnvelope = (section, row, channel, healthy) => {
   if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   const top = own.reduce((found, value, k) => (value !== null && value > own[found] ? k : found), 1);
   Explore.chart(body, {
-    title: "Envelope spectrum", x: Explore.orderWords(), y: `amplitude [${Explore.held(channel).unit}]`, series, data: base ? [x, own, base] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),
+    title: "Envelope spectrum", x: Explore.orderWords(), y: `amplitude [${Explore.quantityOf(channel).unit}]`, series, data: base ? [x, own, base] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),
     summary: `Strongest line at order ${Explore.number(x[top])}.`,
     caption: "Envelope of everything above half the mesh order. A local fault repeats once per revolution of its shaft: lines at its order and multiples.",
   });

@@ -1,8 +1,9 @@
 "use strict";
-// Reads what the page carries: packed arrays, and the place of a sample in revolutions.
+// Reads what the page carries: packed arrays, columns, and the place of a sample in revolutions.
 const Explore = {};
 
-Explore.data = JSON.parse(document.getElementById("data").textContent);
+Explore.data = JSON.parse(document.getElementById("look-data").textContent);
+Explore.part = (name) => document.getElementById(`look-${name}`);
 
 Explore.bytes = (text) => {
   const raw = atob(text);
@@ -47,12 +48,60 @@ Explore.revolutions = (samples, pulses) => {
   });
 };
 
+// A column of labels: numbers (null where there is none), or texts from a list of names.
+Explore.unpackLabel = ({ kind, names, data }) => {
+  if (kind === "text") return Array.from(new Uint16Array(Explore.bytes(data)), (code) => (code ? names[code - 1] : null));
+  if (kind === "whole") return Array.from(new Int32Array(Explore.bytes(data)));
+  return Array.from(Explore.floats(data), (value) => (Number.isFinite(value) ? value : null));
+};
+
+// Everything that records can be chosen and drawn by: labels, then indicators; values are unpacked when they are wanted.
+Explore.columns = [
+  ...Explore.data.labels.map((label) => ({ ...label, group: "labels", indicator: null })),
+  ...Explore.data.indicators.map((one) => ({
+    name: one.name, title: one.channel ? `${one.title} (${one.channel})` : one.title, kind: "float", data: one.data,
+    group: one.channel ? `indicators of ${one.channel}` : "your indicators", indicator: one,
+  })),
+];
+Explore.columnOf = new Map(Explore.columns.map((column) => [column.name, column]));
+Explore.columnValues = (column) => (column.values ??= Explore.unpackLabel(column));
+Explore.firstIndicator = Explore.data.labels.length;
+
+// Labels that the page itself needs of a record, as one object each.
+Explore.records = (() => {
+  const needed = Explore.data.needed.map((name) => [name, Explore.columnValues(Explore.columnOf.get(name))]);
+  return Array.from({ length: Explore.data.count }, (_, k) => Object.fromEntries(needed.map(([name, values]) => [name, values[k]])));
+})();
+
+Explore.rowOf = new Map(Explore.records.map((record, row) => [record.record_id, row]));
+Explore.rowsOver = (data) => (data === null ? null : Array.from(new Int32Array(Explore.bytes(data)), (row) => (row < 0 ? null : row)));
+Explore.overlay = Explore.rowsOver(Explore.data.overlay);
+Explore.beside = Explore.rowsOver(Explore.data.beside);
+
+// Signals, spectra, averages and damage of a record: from the page, or from the server on this machine.
+Explore.details = new Map();
+Explore.detail = (row) => (row === null ? null : Explore.details.get(row) ?? null);
+
+Explore.load = async (row) => {
+  if (row === null || Explore.details.has(row)) return;
+  const found = await Explore.held(`look-record-${row}`, `detail?number=${row}`);
+  if (found) Explore.details.set(row, found);
+};
+
+// What an element of the page holds, or else its server gives; null where neither has it.
+Explore.held = async (name, address) => {
+  const here = document.getElementById(name);
+  if (here) return JSON.parse(here.textContent);
+  const answer = Explore.data.served ? await fetch(address).catch(() => null) : null;
+  return answer && answer.ok ? answer.json() : null;
+};
+
 // What a channel holds: its word and unit.
-Explore.held = (channel) => Explore.data.held[channel];
+Explore.quantityOf = (channel) => Explore.data.held[channel];
 
 Explore.view = (row, channel) => {
-  const signals = Explore.data.signals[row];
-  return { missing: signals.missing, pulses: Explore.floats(signals.pulses), ...signals.channels[channel] };
+  const detail = Explore.detail(row);
+  return { missing: detail.missing, pulses: Explore.floats(detail.pulses), ...detail.channels[channel] };
 };
 
 Explore.element = (tag, text, attributes = {}) => {
@@ -62,4 +111,4 @@ Explore.element = (tag, text, attributes = {}) => {
   return made;
 };
 
-Explore.number = (value) => (value === null || !Number.isFinite(value) ? "undefined" : Number(value.toPrecision(4)).toString());
+Explore.number = (value) => (value === null || value === undefined || !Number.isFinite(value) ? "undefined" : Number(value.toPrecision(4)).toString());

@@ -1,7 +1,7 @@
 // The signal over pinion revolutions: extremes of buckets, every sample of the first stretch.
 Explore.wave = (row, packed) => {
   const samples = packed.every ? Array.from(packed.every, (_, k) => k) : Explore.samples(packed);
-  const pulses = Explore.floats(Explore.data.signals[row].pulses);
+  const pulses = Explore.floats(Explore.detail(row).pulses);
   const turning = pulses.length > 1;
   const x = turning ? Explore.revolutions(samples, pulses) : samples.map((sample) => sample / Explore.data.fs_hz);
   return { x, y: packed.every ? Array.from(packed.every) : Explore.values(packed), fine: packed.fine, from: samples.indexOf(packed.fine[0]), turning };
@@ -20,13 +20,13 @@ Explore.angleLabel = (own) => (own.turning ? `${Explore.turnWords()} since the f
 
 // Angles (revolutions since the first pulse) at which a damaged tooth enters contact, within first ... last.
 Explore.entries = (row, first, last) => {
-  const record = Explore.data.records[row];
+  const record = Explore.records[row];
   const found = [];
   if (Explore.planetary()) return found; // which tooth meets which planet follows from the carrier, which has no pulse
-  const pairs = record.start_angle_rad === undefined ? 0 : Math.ceil(record.start_angle_rad / (2 * Math.PI)) * record.teeth_pinion;
+  const pairs = Explore.unknown(record.start_angle_rad) ? 0 : Math.ceil(record.start_angle_rad / (2 * Math.PI)) * record.teeth_pinion;
   for (const [gear, tooth] of Explore.damagedTeeth(row)) {
     if (gear.includes(".")) continue; // of a further mesh, whose shafts turn otherwise
-    if (gear === "gear" && record.start_angle_rad === undefined) continue;
+    if (gear === "gear" && Explore.unknown(record.start_angle_rad)) continue;
     const teeth = gear === "pinion" ? record.teeth_pinion : record.teeth_gear;
     const start = gear === "pinion" ? tooth : (((tooth - pairs) % teeth) + teeth) % teeth;
     const period = teeth / record.teeth_pinion;
@@ -39,22 +39,23 @@ Explore.entries = (row, first, last) => {
   return found;
 };
 
+Explore.unknown = (value) => value === undefined || value === null;
+
 // What the user calls a gear.
 Explore.called = (gear) => Explore.data.called[gear] || gear;
 
 Explore.damagedTeeth = (row) => {
-  const rows = Explore.data.damage[String(Explore.data.records[row].record_id)] || [];
-  const found = new Map(rows.map((damage) => [`${damage.gear} ${damage.tooth}`, [damage.gear, damage.tooth]]));
+  const found = new Map((Explore.detail(row)?.damage ?? []).map((damage) => [`${damage.gear} ${damage.tooth}`, [damage.gear, damage.tooth]]));
   return [...found.values()];
 };
 
 Explore.waveMarks = (row, turning) => (first, last) => {
   if (!turning) return [];
-  const teeth = Explore.data.records[row].teeth_pinion;
+  const teeth = Explore.records[row].teeth_pinion;
   const found = [];
   if (last - first <= 60) for (let n = Math.ceil(first); n <= last; n++) found.push({ at: n, text: last - first <= 12 ? `rev ${n}` : "" });
   if ((last - first) * teeth <= 130)
-    for (let k = Math.ceil(first * teeth); k <= last * teeth; k++) if (k % teeth) found.push({ at: k / teeth, faint: true });
+    for (let k = Math.ceil(first * teeth); k <= last * teeth; k++) if (k % teeth) found.push({ at: k / teeth, faint: true, text: last - first < 2.2 ? String(((k % teeth) + teeth) % teeth) : "" });
   if (last - first <= 12) {
     const entries = Explore.entries(row, first, last);
     found.push(...entries.map((entry) => (entries.length > 12 ? { ...entry, text: "" } : entry)));
@@ -64,10 +65,10 @@ Explore.waveMarks = (row, turning) => (first, last) => {
 
 // From the server on this machine: every sample of a record, in place of its extremes; then it is drawn again.
 Explore.fetchWave = async (row, channel) => {
-  const view = Explore.data.signals[row].channels[channel];
+  const view = Explore.detail(row).channels[channel];
   if (!Explore.data.served || view.wave.every || view.asked) return;
   view.asked = true;
-  const wanted = new URLSearchParams({ record: Explore.data.records[row].record_id, channel });
+  const wanted = new URLSearchParams({ record: Explore.records[row].record_id, channel });
   const answer = await fetch(`wave?${wanted}`).catch(() => null);
   if (!answer || !answer.ok) return;
   const every = new Float32Array(await answer.arrayBuffer());
@@ -76,7 +77,13 @@ Explore.fetchWave = async (row, channel) => {
 };
 
 Explore.redrawWave = () =>
-  Explore.showWaveform(document.getElementById("waveform"), Explore.chosen, document.getElementById("channel").value, Explore.healthyOf(Explore.chosen));
+  Explore.showWaveform(Explore.part("waveform"), Explore.chosen, Explore.channel(), Explore.healthyOf(Explore.chosen));
+
+// Two revolutions from the first sample on that is kept: so near, teeth are told apart.
+Explore.firstTurns = (own) => {
+  const end = Math.min(own.from + own.fine[1] - own.fine[0] - 1, own.x.length - 1);
+  return { min: own.x[own.from], max: own.turning ? Math.min(own.x[end], own.x[own.from] + 2) : own.x[end] };
+};
 
 Explore.showWaveform = (section, row, channel, healthy) => {
   const body = section.querySelector(".body");
@@ -85,20 +92,20 @@ Explore.showWaveform = (section, row, channel, healthy) => {
   controls.replaceChildren();
   Explore.fetchWave(row, channel);
   if (healthy !== null) Explore.fetchWave(healthy, channel);
-  const packed = (at) => Explore.data.signals[at].channels[channel].wave;
+  const packed = (at) => Explore.detail(at).channels[channel].wave;
   const own = Explore.wave(row, packed(row));
   const other = healthy === null ? null : Explore.wave(healthy, packed(healthy));
   const peak = own.y.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
   const whole = own.fine[1] - own.fine[0] >= Explore.data.samples;
   const kept = whole ? "Every sample is here." : `Whole record: smallest and largest sample of each stretch, at their own places. Every sample from ${Explore.number(own.fine[0] / Explore.data.fs_hz)} to ${Explore.number(own.fine[1] / Explore.data.fs_hz)} s; ${Explore.data.served ? "the others are on their way." : "--full keeps all."}`;
+  const start = Explore.firstTurns(own);
   const plot = Explore.chart(body, {
-    title: "Signal", x: Explore.angleLabel(own), y: `${Explore.held(channel).word} [${Explore.held(channel).unit}]`, ...Explore.overlaid(own, other), group: "turns",
-    range: [own.x[0], own.x[own.x.length - 1]], marks: Explore.waveMarks(row, own.turning), summary: `Largest magnitude ${Explore.number(peak)} ${Explore.held(channel).unit}.`,
-    caption: `${kept} Dashed: revolutions; thin: tooth passages (when near enough); shaded: a damaged tooth enters contact.`,
+    title: "Signal", start, x: Explore.angleLabel(own), y: `${Explore.quantityOf(channel).word} [${Explore.quantityOf(channel).unit}]`, ...Explore.overlaid(own, other), group: "turns",
+    range: [own.x[0], own.x[own.x.length - 1]], marks: Explore.waveMarks(row, own.turning), summary: `Largest magnitude ${Explore.number(peak)} ${Explore.quantityOf(channel).unit}.`,
+    caption: `${kept} Dashed: revolutions; thin, numbered: teeth of the ${Explore.planetary() ? Explore.data.shafts[0] : Explore.called("pinion")} (when near enough); shaded: a damaged tooth enters contact.`,
   });
-  const end = Math.min(own.from + own.fine[1] - own.fine[0] - 1, own.x.length - 1);
   const near = Explore.element("button", own.turning ? "first revolutions" : "first stretch", { type: "button" });
-  near.addEventListener("click", () => plot.setScale("x", { min: own.x[own.from], max: own.turning ? Math.min(own.x[end], own.x[own.from] + 2) : own.x[end] }));
+  near.addEventListener("click", () => plot.setScale("x", start));
   const all = Explore.element("button", "whole record", { type: "button" });
   all.addEventListener("click", () => Explore.reset(plot));
   controls.append(near, all);

@@ -16,7 +16,7 @@ from pyarrow import parquet
 
 import diagnostics
 from diagnostics.base.progress import silent_stage
-from diagnostics.explore.explorer import predicted_labels
+from diagnostics.explore.set_page import predicted_labels
 from diagnostics.indicators.table import record_table
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.prediction.released_model import load_model

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import siggen
 from diagnostics.cli.app import app
 from siggen.checks.loading import load_config
 from siggen.errors import DatasetError, UsageError
+from tests.diagnostics.explore.unpacked import held, listed
 from tests.sets.test_lives import lives
 
 RARE = {"interval_h": 1.5, "most": 6}
@@ -52,14 +54,17 @@ def test_a_report_of_lives_judges_baselines_of_remaining_life(
     assert known == pytest.approx(np.sqrt(np.mean(error_h**2)), rel=1e-12)
 
 
-def test_the_page_to_explore_shows_each_gearbox_over_its_life(fleet: Path, tmp_path: Path) -> None:
-    page = tmp_path / "page.html"
-    CliRunner().invoke(app, ["explore", str(fleet), "--out", str(page)], catch_exceptions=False)
-    data = json.loads(page.read_text(encoding="utf-8").split('id="data">')[1].split("</script>")[0])
-    assert sorted(data["lives"]) == [str(unit) for unit in range(5)]
+def test_the_page_shows_each_gearbox_over_its_life_and_each_record_with_its_age(fleet: Path, tmp_path: Path) -> None:
+    report(str(fleet), "--no-cnn", "--out", str(tmp_path))
+    found = held(tmp_path / "report.html")
+    lives = [value for name, value in found.items() if name.startswith("look-life-")]
+    assert len(lives) == 5
+    assert all(base64.b64decode(one["png"]).startswith(b"\x89PNG") for one in lives)
     ages = {row["record_id"]: row["age_h"] for row in siggen.open(fleet).life("inspections").to_pylist()}
-    assert {record["record_id"]: record["age_h"] for record in data["records"]} == ages
-    assert all(base64.b64decode(one["png"]).startswith(b"\x89PNG") for one in data["lives"].values())
+    assert {record["record_id"]: record["age_h"] for record in listed(found["look-data"])} == pytest.approx(ages)
+    said = (tmp_path / "report.html").read_text(encoding="utf-8").split('<section class="answer"')[1]
+    assert re.search(r"<h2>What is found</h2><p><b>.*</b> tell the remaining life to <b>\d+ h</b>", said)
+    assert "<b>5 gearboxes that failed</b>" in said
 
 
 @pytest.mark.parametrize("command", ["audit", "indicators"])
@@ -69,8 +74,8 @@ def test_what_compares_states_refuses_lives_and_says_what_judges_them(fleet: Pat
 
 
 def test_options_of_sets_of_states_are_refused(fleet: Path) -> None:
-    with pytest.raises(UsageError, match="--studies, --explore: for sets of states; this one has lives"):
-        report(str(fleet), "--studies", "--explore")
+    with pytest.raises(UsageError, match="--studies, --state: for sets of states; this one has lives"):
+        report(str(fleet), "--studies", "--state", "severe")
 
 
 def test_too_few_failed_gearboxes_are_refused_with_a_way_on(tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import math
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from diagnostics.recordings.measured_recording import RecordingFacts
 from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, FS_HZ, TEETH, MemoryDataset, memory_dataset, shaft_record
 from tests.diagnostics.explore.test_explorer import Read
-from tests.diagnostics.explore.unpacked import steps
+from tests.diagnostics.explore.unpacked import held, listed, rows, steps
 
 
 def recorded(
@@ -45,12 +44,12 @@ def test_each_side_is_laid_over_the_healthy_record_of_the_other_that_is_nearest_
     ]
     page = write_beside_page("rig", shown, dataset, tmp_path / "page.html").read_text(encoding="utf-8")
     found = Read(page)
-    data = json.loads(found.data)
-    records = data["records"]
+    data = held(page)["look-data"]
+    records = listed(data)
     assert [record["kind"] for record in records] == ["recording"] * 2 + ["simulated"] * 6
     assert [record["record_id"] for record in records] == [6, 7, 0, 1, 2, 3, 4, 5]
-    assert data["beside"] == [2, 5, *[0] * 6]  # the healthy simulated ones, the one healthy recording
-    assert data["overlay"] == [None, 0, None, 2, 2, None, 5, 5]  # as on a page of either
+    assert rows(data["beside"]) == [2, 5, *[0] * 6]  # the healthy simulated ones, the one healthy recording
+    assert rows(data["overlay"]) == [None, 0, None, 2, 2, None, 5, 5]  # as on a page of either
     assert "b" not in found.tags
     assert records[0]["name"] == "<b>slow.npz"
     assert records[1]["torque_nm"] == 12.0
@@ -63,13 +62,13 @@ def test_channels_are_taken_in_their_order_and_values_stay_those_of_the_recordin
     page = write_beside_page(
         "rig", [ShownRecording(one, "unchanged", math.nan)], dataset, tmp_path / "page.html"
     ).read_text(encoding="utf-8")
-    data = json.loads(Read(page).data)
+    data = held(page)
     assert "channel ch1 is shown as bearing_vertical of the set" in page
-    (rms,) = (entry for entry in data["indicators"] if entry["name"] == f"rms__{CHANNELS[1]}")
+    (rms,) = (entry for entry in data["look-data"]["indicators"] if entry["name"] == f"rms__{CHANNELS[1]}")
     values = np.frombuffer(base64.b64decode(rms["data"]), "<f4")
     assert values[0] == np.float32(one.values["rms__ch2"])
     signal = one.recording.channels["ch2"]
-    assert np.abs(steps(data["signals"][0]["channels"][CHANNELS[1]]["wave"])).max() == pytest.approx(
+    assert np.abs(steps(data["look-record-0"]["channels"][CHANNELS[1]]["wave"])).max() == pytest.approx(
         np.abs(signal).max(), rel=1e-4
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import http.client
 import json
 import shutil
@@ -20,15 +21,16 @@ import pytest
 
 from diagnostics.explore.chosen_records import chosen_records, overlaid_records
 from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
-from diagnostics.explore.explorer import ExplorerOptions, predicted_labels, write_explorer
-from diagnostics.explore.server import page_server
+from diagnostics.explore.look import look_page
+from diagnostics.explore.server import DETAIL, page_server
+from diagnostics.explore.set_page import LookOptions, predicted_labels, set_look, write_set_page
 from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
 from diagnostics.training.training import Training
 from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
-from tests.diagnostics.explore.unpacked import steps
+from tests.diagnostics.explore.unpacked import DATA, held, listed, rows, steps
 
 BROWSER = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), ""
@@ -41,34 +43,17 @@ NAMES = {
 
 
 class Read(HTMLParser):
-    """Elements with what they reach for, texts of table cells, and the embedded data."""
+    """Elements with what they reach for."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
         self.tags: list[str] = []
         self.reached: list[str] = []
-        self.cells: list[str] = []
-        self.data = ""
-        self._data = self._cell = False
         self.feed(text)
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         self.tags.append(tag)
         self.reached += [str(value) for name, value in attributes if name in ("src", "href", "action")]
-        self._data = tag == "script" and ("id", "data") in attributes
-        if tag in ("td", "th"):
-            self._cell = True
-            self.cells.append("")
-
-    def handle_endtag(self, tag: str) -> None:
-        self._data = False
-        self._cell = self._cell and tag not in ("td", "th")
-
-    def handle_data(self, text: str) -> None:
-        if self._data:
-            self.data += text
-        if self._cell:
-            self.cells[-1] += text
 
 
 def renamed(dataset: MemoryDataset, names: dict[str, str] | None = None) -> MemoryDataset:
@@ -83,17 +68,16 @@ def renamed(dataset: MemoryDataset, names: dict[str, str] | None = None) -> Memo
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("explore") / "new" / "page.html"
-    return write_explorer(renamed(memory_dataset(("train", "test"))), path).read_text(encoding="utf-8")
+    return write_set_page(renamed(memory_dataset(("train", "test"))), path).read_text(encoding="utf-8")
 
 
 def test_names_of_a_set_stay_text_wherever_they_stand(page: str) -> None:
     found = Read(page)
-    assert found.tags.count("script") == 2
+    assert found.tags.count("script") == 1 + 6 + 2  # the list, six records, two programs
     assert "img" not in found.tags
-    for name in NAMES.values():
-        assert name in found.cells
-    assert {record["state"] for record in json.loads(found.data)["records"]} == set(NAMES.values())
-    assert not set("<>&\u2028") & set(found.data)
+    assert {record["state"] for record in listed(held(page)["look-data"])} == set(NAMES.values())
+    data = "".join(text for _, text in DATA.findall(page))
+    assert not set("<>&\u2028\u202e") & set(data)
 
 
 def test_the_page_reaches_for_nothing_outside_itself(page: str) -> None:
@@ -104,13 +88,14 @@ def test_the_page_reaches_for_nothing_outside_itself(page: str) -> None:
 
 
 def test_the_page_holds_every_record_with_all_its_views(page: str) -> None:
-    data = json.loads(Read(page).data)
-    assert len(data["signals"]) == len(data["records"]) == len(data["overlay"]) == 6
-    for signals in data["signals"]:
-        assert set(signals["channels"]) == set(CHANNELS)
-        for view in signals["channels"].values():
+    found = held(page)
+    data = found["look-data"]
+    for row in range(6):
+        detail = found[f"look-record-{row}"]
+        assert set(detail["channels"]) == set(CHANNELS)
+        for view in detail["channels"].values():
             assert {"wave", "spectrum", "envelope", "averages"} <= set(view)
-    assert data["overlay"] == [None, 0, 0, None, 3, 3]
+    assert rows(data["overlay"]) == [None, 0, 0, None, 3, 3]
     titles = {indicator["title"] for indicator in data["indicators"]}
     assert {"FM4, pinion", "Sideband amplitude, gear, mesh harmonic 1, upper sideband 1", "RMS [m/s²]"} <= titles
 
@@ -119,19 +104,21 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     dataset: MemoryDataset, measured: RecordTable, training: Training, models_folder: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(models_folder, tmp_path / "report" / "models")
-    options = ExplorerOptions(model=tmp_path / "report")
-    text = write_explorer(dataset, tmp_path / "page.html", options).read_text(encoding="utf-8")
-    records = json.loads(Read(text).data)["records"]
+    options = LookOptions(model=tmp_path / "report")
+    text = write_set_page(dataset, tmp_path / "page.html", options).read_text(encoding="utf-8")
+    data = held(text)["look-data"]
+    records = listed(data)
     said = {record["record_id"]: record["predicted"] for record in records if record["split"] == "test"}
     judged = next(found for found in training.judged if found.name == "indicators").predictions
     ids = dataset.labels("test").column("record_id").to_pylist()
     assert [said[record] for record in ids] == [judged.classes[k] for k in judged.predicted]
     assert {record["named"] for record in records} <= {"rightly", "wrongly"}
     assert all((record["named"] == "rightly") == (record["predicted"] == record["state"]) for record in records)
-    assert 'data-filter="predicted"' in text
+    assert ["predicted", "Predicted"] in data["filters"]
     assert all((record["seen"] == "seen in training") == (record["split"] != "test") for record in records)
     seen = sum(record["split"] != "test" for record in records)
-    assert f"{seen} of {len(records)}\N{NO-BREAK SPACE}records are of the gearboxes that the model was trained" in text
+    start = f"{seen} of {len(records)}\N{NO-BREAK SPACE}records are of the gearboxes that the model was trained"
+    assert data["seen"].startswith(start)
     table, another = measured, replace(dataset, manifest={"identity": "another set"})
     assert set(predicted_labels(table, another, tmp_path / "report")["seen"]) == {"no"}
     other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))
@@ -142,10 +129,10 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
 @pytest.mark.skipif(not BROWSER, reason="needs a browser")
 @pytest.mark.parametrize(
     ("asked", "shown", "opened"),
-    [("state=severe&indicator=fm4_pinion", 2, 2), ("record=4", 6, 4), ("state=%3Cb%3E&record=99", 6, 1)],
+    [("state=severe&indicator=fm4_pinion", 2, 2), ("record=4", 6, 4), ("state=%3Cb%3E&record=99", 6, 0)],
 )
 def test_an_address_chooses_records(tmp_path: Path, asked: str, shown: int, opened: int) -> None:
-    page = write_explorer(memory_dataset(("train", "test")), tmp_path / "page.html")
+    page = write_set_page(memory_dataset(("train", "test")), tmp_path / "page.html")
     command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
     address = f"{page.as_uri()}#{asked}"
     done = subprocess.run([*command, "--dump-dom", address], capture_output=True, text=True, timeout=120, check=True)
@@ -156,7 +143,8 @@ def test_an_address_chooses_records(tmp_path: Path, asked: str, shown: int, open
 
 
 def test_a_server_gives_every_sample_to_this_machine_alone(dataset: MemoryDataset) -> None:
-    server = page_server("<p>page</p>", dataset, np.array([3]))
+    look = set_look(dataset, LookOptions(served=True))
+    server = page_server("<p>page</p>", dataset, np.array([3]), {DETAIL: look.detail})
     threading.Thread(target=server.serve_forever, daemon=True).start()
 
     def answer(path: str, host: str = "") -> tuple[int, bytes]:
@@ -167,6 +155,7 @@ def test_a_server_gives_every_sample_to_this_machine_alone(dataset: MemoryDatase
         line.close()
         return found.status, body
 
+    assert list(held(look_page("Page", look))) == ["look-data"]  # the server gives all signals
     wave = f"/wave?record=3&channel={CHANNELS[1]}"
     try:
         assert server.server_address[0] == "127.0.0.1"
@@ -174,8 +163,17 @@ def test_a_server_gives_every_sample_to_this_machine_alone(dataset: MemoryDatase
         signal = dataset.record(3)[f"accel_{CHANNELS[1]}_m_s2"]
         assert np.array_equal(np.frombuffer(answer(wave)[1], "<f4"), signal)
         assert answer(wave, host="evil.example")[0] == 403
-        refused = ("/wave?record=4&channel=" + CHANNELS[1], "/wave?record=3&channel=tacho_s", "/wave?record=-3", "/etc")
-        assert [answer(path)[0] for path in refused] == [404] * 4
+        detail = json.loads(answer(f"{DETAIL}?number=0")[1])
+        peak = np.abs(dataset.record(0)[f"accel_{CHANNELS[1]}_m_s2"]).max()
+        assert np.abs(steps(detail["channels"][CHANNELS[1]]["wave"])).max() == pytest.approx(peak, rel=1e-4)
+        refused = (
+            "/wave?record=4&channel=" + CHANNELS[1],
+            "/wave?record=3&channel=tacho_s",
+            "/wave?record=-3",
+            "/etc",
+            "/detail?number=1",
+        )
+        assert [answer(path)[0] for path in refused] == [404] * 5
     finally:
         server.shutdown()
         server.server_close()
@@ -184,16 +182,16 @@ def test_a_server_gives_every_sample_to_this_machine_alone(dataset: MemoryDatase
 def test_a_set_without_healthy_records_says_so(tmp_path: Path) -> None:
     dataset = memory_dataset(("train",))
     dataset.table = dataset.table.filter(pc.not_equal(dataset.table.column("fault"), "healthy"))
-    text = write_explorer(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
+    text = write_set_page(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
     assert "No healthy records" in text
     assert "Neither transmission error nor mesh force" in text
-    assert json.loads(Read(text).data)["overlay"] == [None, None]
+    assert rows(held(text)["look-data"]["overlay"]) == [None, None]
 
 
 def test_a_set_without_damaged_records_says_that_no_flank_is_drawn(tmp_path: Path) -> None:
     dataset = memory_dataset(("train",))
     dataset.table = dataset.table.filter(pc.equal(dataset.table.column("fault"), "healthy"))
-    text = write_explorer(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
+    text = write_set_page(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
     assert "no flank is drawn" in text
 
 
@@ -212,11 +210,12 @@ class WithInternals(MemoryDataset):
 
 def test_stored_quantities_that_no_sensor_sees_stand_at_their_records(tmp_path: Path) -> None:
     plain = memory_dataset(("train",))
-    text = write_explorer(WithInternals(plain.table), tmp_path / "page.html").read_text(encoding="utf-8")
-    data = json.loads(Read(text).data)
-    assert [quantity["name"] for quantity in data["quantities"]] == ["transmission_error_m"]
-    assert [set(found) for found in data["internals"]] == [{"transmission_error_m"}, set(), {"transmission_error_m"}]
-    assert steps(data["internals"][2]["transmission_error_m"]).max() == pytest.approx(2.0e6)  # shown in um
+    text = write_set_page(WithInternals(plain.table), tmp_path / "page.html").read_text(encoding="utf-8")
+    data = held(text)
+    assert [quantity["name"] for quantity in data["look-data"]["quantities"]] == ["transmission_error_m"]
+    internals = [data[f"look-record-{row}"]["internals"] for row in range(3)]
+    assert [set(found) for found in internals] == [{"transmission_error_m"}, set(), {"transmission_error_m"}]
+    assert steps(internals[2]["transmission_error_m"]).max() == pytest.approx(2.0e6)  # shown in um
     assert "Neither transmission error" not in text
 
 
@@ -226,6 +225,32 @@ def test_signals_of_a_hundred_records_fit(channels: int, full: bool, most: float
     detail = page_detail(100 * channels, 38_400, 81, full=full)
     assert 100 * channels * detail.points(81) * BYTES_PER_POINT < most
     assert detail.fine_samples > 200
+
+
+def test_all_records_are_listed_and_the_signals_of_as_many_as_are_wanted_are_kept(tmp_path: Path) -> None:
+    dataset = memory_dataset(("train", "test", "test"))
+    found = held(write_set_page(dataset, tmp_path / "page.html", LookOptions(limit=4, first=[1])))
+    assert [row["specimen_id"] for row in listed(found["look-data"])] == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+    assert set(found) == {"look-data", "look-record-3", "look-record-4", "look-record-5"}
+    (rms,) = (one for one in found["look-data"]["indicators"] if one["name"] == f"rms__{CHANNELS[0]}")
+    signals = [dataset.record(k)[f"accel_{CHANNELS[0]}_m_s2"].astype(np.float64) for k in range(9)]
+    expected = [np.sqrt(np.mean(signal**2)) for signal in signals]
+    np.testing.assert_allclose(np.frombuffer(base64.b64decode(rms["data"]), "<f4"), expected, rtol=1e-6)
+
+
+def test_the_code_to_copy_gives_the_values_of_the_page(
+    dataset: MemoryDataset, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = set_look(dataset, LookOptions(served=True)).live.data["look-data"]
+    column = next(one for one in data["indicators"] if one["name"] == f"fm4_pinion__{CHANNELS[0]}")
+    monkeypatch.setattr("siggen.open", lambda path: {str(dataset.path): dataset}[path])
+    scope: dict[str, object] = {}
+    exec(data["code"].replace("COLUMN", column["name"]), scope)
+    shown = np.frombuffer(base64.b64decode(column["data"]), "<f4")
+    np.testing.assert_array_equal(np.asarray(scope["values"], "<f4"), shown)
+    healthy = np.array([record["fault"] == "healthy" for record in listed(data)])
+    assert (shown[healthy] > scope["limit"]).sum() == 1  # one of 24, as the code says
+    assert capsys.readouterr().out.startswith("[")
 
 
 def test_gearboxes_beyond_the_limit_are_left_out_whole_and_evenly() -> None:

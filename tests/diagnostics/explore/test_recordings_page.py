@@ -17,6 +17,7 @@ from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.measured_recording import RecordingFacts
 from siggen.errors import UsageError
 from tests.diagnostics.explore.test_explorer import Read
+from tests.diagnostics.explore.unpacked import held, listed, rows
 from tests.diagnostics.machine.test_check import FS_HZ, write_recording
 
 FACTS = ("--fs", str(FS_HZ), "--teeth", "20,31", "--speed-range", "20,30")
@@ -28,26 +29,23 @@ def run(*arguments: object) -> str:
     return result.output
 
 
-def data_of(page: Path) -> tuple[dict, Read]:
-    found = Read(page.read_text(encoding="utf-8"))
-    return json.loads(found.data), found
-
-
 def test_recordings_are_laid_over_the_healthy_one_nearest_in_speed(tmp_path: Path) -> None:
     slow = write_recording(tmp_path / "slow.npz", seed=1, speed_hz=22.0)
     fast = write_recording(tmp_path / "fast.npz", seed=2, speed_hz=28.0)
     new = write_recording(tmp_path / "<img src=x onerror=alert(1)>.npz", seed=3, speed_hz=27.0, knock=0.8)
     page = tmp_path / "page.html"
     run("explore", new, "--healthy", slow, "--healthy", fast, *FACTS, "--out", page)
-    data, found = data_of(page)
-    assert [record["name"] for record in data["records"]] == ["slow.npz", "fast.npz", new.name]
-    assert data["overlay"] == [1, 0, 1]
-    assert [record["fault"] for record in data["records"]] == ["healthy", "healthy", "unknown"]
-    assert [round(record["speed_hz"]) for record in data["records"]] == [22, 28, 27]
+    elements = held(page)
+    data, found = elements["look-data"], Read(page.read_text(encoding="utf-8"))
+    records = listed(data)
+    assert [record["name"] for record in records] == ["slow.npz", "fast.npz", new.name]
+    assert rows(data["overlay"]) == [1, 0, 1]
+    assert [record["fault"] for record in records] == ["healthy", "healthy", "unknown"]
+    assert [round(record["speed_hz"]) for record in records] == [22, 28, 27]
     assert data["measured"]
     assert "img" not in found.tags
-    assert new.name in found.cells
-    assert all({"wave", "spectrum", "envelope", "averages"} <= set(one["channels"]["lid"]) for one in data["signals"])
+    signals = [elements[f"look-record-{row}"]["channels"]["lid"] for row in range(3)]
+    assert all({"wave", "spectrum", "envelope", "averages"} <= set(one) for one in signals)
 
 
 def test_a_machine_gives_its_references_and_verdicts_but_no_samples(tmp_path: Path) -> None:
@@ -58,7 +56,7 @@ def test_a_machine_gives_its_references_and_verdicts_but_no_samples(tmp_path: Pa
     line = json.dumps({name: getattr(past, name) for name in PastCheck.__slots__})
     (tmp_path / "rig" / "checks.jsonl").write_text(f"{line}\n")
     run("explore", tmp_path / "rig", *files, new, "--out", tmp_path / "page.html")
-    records = data_of(tmp_path / "page.html")[0]["records"]
+    records = listed(held(tmp_path / "page.html")["look-data"])
     assert [record["state"] for record in records] == [*["healthy reference"] * 3, "changed"]
     assert [record["torque_nm"] for record in records] == [40.0, 40.0, 40.0, None]
     with pytest.raises(UsageError, match="holds no samples of its recordings"):

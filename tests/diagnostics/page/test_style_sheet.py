@@ -10,7 +10,10 @@ import pytest
 from diagnostics.page.html import style_sheet
 
 STYLE = style_sheet(20)
-LIGHT, DARK = (dict(re.findall(r"--(\w+):#(\w+)", part)) for part in re.findall(r":root\{(.*?)\}", STYLE, re.DOTALL))
+LIGHT, DARK = (
+    dict(re.findall(r"--(\w+):#(\w+)", part))
+    for part in re.findall(r":root(?::not\(.print\))?\{(.*?)\}", STYLE, re.DOTALL)
+)
 
 
 def colour(text: str) -> np.ndarray:

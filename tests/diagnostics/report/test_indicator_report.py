@@ -1,4 +1,4 @@
-"""The page of the evaluation of indicators: complete, self-contained, and telling what its numbers rest on."""
+"""The evaluation of indicators: tables and blocks of a page, complete, and telling what their numbers rest on."""
 
 from __future__ import annotations
 
@@ -13,15 +13,25 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from diagnostics.indicators.ranking_table import ranking_table
+from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
 from diagnostics.indicators.registry import taken_of
 from diagnostics.indicators.table import RecordTable, record_table
-from diagnostics.records.channel_quantities import RECORDED
-from diagnostics.report.indicator_report import kind_notes, write_indicator_report
+from diagnostics.page.style import png_bytes
+from diagnostics.records.channel_quantities import RECORDED, channel_quantities
+from diagnostics.report.indicator_evaluation import evaluated, write_evaluation
+from diagnostics.report.indicator_sections import detail_blocks, evaluation_notes, figures, kind_notes, ranking_blocks
 from diagnostics.statistics.assessment import AssessmentSettings
 from diagnostics.statistics.detectable_size import noise_curve
 
 SETTINGS = AssessmentSettings(resamples=60)
+
+
+def blocks(dataset: Any, table: IndicatorTable) -> str:
+    found = evaluated(table, SETTINGS)
+    drawn = figures(found, channel_quantities(dataset))
+    pictures = {name: (png_bytes(figure), text) for name, (figure, text) in drawn.items()}
+    notes = evaluation_notes(dataset, found)
+    return "".join([*ranking_blocks(dataset, found), *detail_blocks(found, pictures), *notes])
 
 
 @pytest.fixture(scope="module")
@@ -31,21 +41,24 @@ def folder(dataset: Any, measured: RecordTable, tmp_path_factory: pytest.TempPat
     rng = np.random.default_rng(1)
     table.matrix.labels["snr_bearing_vertical_db"] = rng.uniform(0, 30, len(table.notes))
     table.matrix.values[0, table.matrix.names.index("phase_modulation_gear_h1__bearing_vertical")] = np.nan
-    write_indicator_report(dataset, table, folder, SETTINGS, explorer="explorer.html")
+    write_evaluation(dataset, evaluated(table, SETTINGS), folder, values=True)
+    (folder / "blocks.html").write_text(blocks(dataset, table), encoding="utf-8")
     return folder
 
 
-def test_page_loads_nothing_from_elsewhere_and_names_every_indicator(folder: Path) -> None:
-    page = (folder / "indicators.html").read_text(encoding="utf-8")
-    assert not re.search(r'(src|href)="(?!data:|#|explorer\.html#)', page)
-    for text in ("Ranking", "Definitions", "Undefined values", "other specimens", "manufacturing errors"):
+def test_blocks_load_nothing_from_elsewhere_and_name_every_indicator(folder: Path) -> None:
+    page = (folder / "blocks.html").read_text(encoding="utf-8")
+    assert not re.search(r'(src|href)="(?!data:|#)', page)
+    for text in ("Ranking", "undefined", "other specimens", "Revolutions averaged"):
         assert text in page
     for definition in taken_of(RECORDED.word):
         assert definition.name.replace("_", "_<wbr>") in page
-    assert page.count("<img") == len(list((folder / "figures").glob("*.png"))) == 3
+    assert page.count("<img") == 3
     separation = page.split("Separation of each state")[-1].split("</table>")[0]
     assert 0 < separation.count('class="shade') <= 36 * 4  # the heat map: two states in two designs
-    assert separation.count('href="explorer.html#state=') == separation.count('class="shade')
+    history = re.findall(r"<tr>.*?</tr>", separation)
+    single = [row for row in history if not re.search(r'href="#term-n[ab]4', row)]
+    assert separation.count('href="#indicator=') == sum(row.count('class="shade') for row in single) > 100
 
 
 def test_numbers_are_those_of_the_tables(folder: Path) -> None:
@@ -63,18 +76,19 @@ def test_summary_says_what_is_best_and_what_survives(folder: Path) -> None:
     text = " ".join(json.loads((folder / "indicators.json").read_text(encoding="utf-8"))["summary"])
     for part in ("separates best", "After Holm's correction at 0.05", "smallest damaged area"):
         assert part in text
-    assert "NA4, NA4* and NB4" in (folder / "indicators.html").read_text(encoding="utf-8")
+    page = (folder / "blocks.html").read_text(encoding="utf-8")
+    assert "NA4, NA4* and NB4" in page
+    assert 'href="#indicator=na4' not in page  # of several records: none has it
 
 
-def test_set_of_healthy_records_and_of_one_specimen_still_give_a_page(make_dataset: Any, tmp_path: Path) -> None:
+def test_set_of_healthy_records_and_of_one_specimen_still_give_blocks(make_dataset: Any) -> None:
     import pyarrow.compute as pc
 
     healthy = make_dataset(("test", "test"))
     healthy.table = healthy.table.filter(pc.equal(healthy.table.column("state"), "healthy"))
     single = make_dataset(("test",))
-    for name, dataset in (("healthy", healthy), ("single", single)):
-        page = write_indicator_report(dataset, ranking_table(record_table(dataset), dataset), tmp_path / name, SETTINGS)
-        assert "Definitions" in page.read_text(encoding="utf-8")
+    for dataset in (healthy, single):
+        assert "Ranking" in blocks(dataset, ranking_table(record_table(dataset), dataset))
 
 
 def test_noise_curve_falls_where_noise_covers_the_effect() -> None:
@@ -109,10 +123,9 @@ def test_states_of_several_kinds_are_noted_with_their_kinds(dataset: Any) -> Non
     assert "pitting: slight; pitting through the face: severe" in note
 
 
-def test_page_carries_the_note_on_kinds(make_dataset: Any, tmp_path: Path) -> None:
+def test_notes_carry_the_one_on_kinds(make_dataset: Any) -> None:
     dataset = make_dataset(("train", "test"))
     state = dataset.table.column("state").to_pylist()
     mixed = with_labels(dataset, through_face=[name == "severe" for name in state])
     table = ranking_table(record_table(mixed), mixed)
-    write_indicator_report(mixed, table, tmp_path, SETTINGS)
-    assert "pitting through the face: severe" in (tmp_path / "indicators.html").read_text(encoding="utf-8")
+    assert "pitting through the face: severe" in blocks(mixed, table)

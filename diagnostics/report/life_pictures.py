@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from diagnostics.explore.set_page import Lives
 from diagnostics.indicators.table import RecordTable
-from diagnostics.page.style import png_bytes
+from diagnostics.page.style import png_bytes, styled
 from diagnostics.report.life_detection import CAPTION
 from diagnostics.report.life_figure import life_figure
 from diagnostics.report.life_rows import inspections_of
@@ -23,6 +23,13 @@ SEED = 0
 LIFE_COLUMNS = (("age_h", "Age [h]"), ("rul_h", "Remaining life [h]"))
 
 
+def lives_of(dataset: Dataset, table: RecordTable) -> Lives:
+    """Return age and remaining life of all records, and what draws a gearbox over its life."""
+    ages = of_records(dataset, dataset.labels(columns=["record_id"]).column("record_id").to_pylist())
+    labels = {name: np.array([row[name] for row in ages], dtype=object) for name, _ in LIFE_COLUMNS}
+    return Lives(labels, LIFE_COLUMNS, figure_of(dataset, table))
+
+
 def of_records(dataset: Dataset, record_ids: Sequence[int]) -> list[dict[str, float | None]]:
     """Return age and remaining life of records; None where a gearbox was taken out."""
     rows = sorted(dataset.life("inspections").to_pylist(), key=lambda row: row["record_id"])
@@ -31,15 +38,18 @@ def of_records(dataset: Dataset, record_ids: Sequence[int]) -> list[dict[str, fl
     return [{name: rows[place][name] for name, _ in LIFE_COLUMNS} for place in places.tolist()]
 
 
-def life_pictures(dataset: Dataset, table: RecordTable, chosen: Sequence[int]) -> dict[str, dict[str, Any]]:
-    """Return figure and caption of gearboxes over their lives; none where too few failed to learn from."""
+def figure_of(dataset: Dataset, table: RecordTable) -> Callable[[int], dict[str, str]] | None:
+    """Return what draws a gearbox over its life, with its caption; None where too few failed to learn from."""
     try:
         found = inspections_of(dataset, table)
     except DatasetError:
-        return {}
+        return None
     predicted = {HISTORY: history_predictions(found, SEED), OUTLOOK: found.outlook_h}
-    lives = unit_lives(dataset, found, watches(found), predicted, chosen)
-    return {
-        str(unit): {"png": base64.b64encode(png_bytes(life_figure(one))).decode("ascii"), "caption": CAPTION}
-        for unit, one in lives.items()
-    }
+    seen = watches(found)
+
+    def figure(gearbox: int) -> dict[str, str]:
+        (life,) = unit_lives(dataset, found, seen, predicted, [gearbox]).values()
+        with styled():
+            return {"png": base64.b64encode(png_bytes(life_figure(life))).decode("ascii"), "caption": CAPTION}
+
+    return figure

@@ -1,0 +1,98 @@
+"""The part of a page on which records are looked at, and the page that holds nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.explore.payload import PageSource, Shown, page_axes, page_details, page_head
+from diagnostics.explore.record_views import PageAxes
+from diagnostics.page import html
+from diagnostics.page.live import Live
+from diagnostics.page.wording import counted
+
+FOLDER = Path(__file__).with_name("page")
+SCRIPTS = (
+    *("vendored/uPlot.LICENSE", "vendored/uPlot.iife.min.js", "unpack.js", "charts.js", "waveform.js", "spectra.js"),
+    *("averages.js", "internals.js", "flank.js", "life.js", "indicators.js", "histogram.js", "scatter.js"),
+    *("waterfall.js", "records.js", "explorer.js"),
+)
+STYLES = ("vendored/uPlot.min.css", "look.css")
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """Records on a page.
+
+    Attributes
+    ----------
+    block : str
+        Its place in the document.
+    live : Live
+        What draws it.
+    source : PageSource
+    axes : PageAxes
+        By which a server makes the details of further records.
+    """
+
+    block: str
+    live: Live
+    source: PageSource
+    axes: PageAxes
+
+    def detail(self, row: int) -> dict[str, Any]:
+        """Return signals, spectra, averages and damage of one record."""
+        return page_details(self.source, self.axes, np.array([row]), silent_stage)[row]
+
+    def life(self, gearbox: int) -> dict[str, str]:
+        """Return figure and caption of a gearbox over its life."""
+        return self.source.life(gearbox) if self.source.life else {}
+
+
+def look_of(source: PageSource, shown: Shown, stage: Stage, *, full: bool = False, served: bool = False) -> Look:
+    """Return records as a part of a page.
+
+    Parameters
+    ----------
+    source : PageSource
+    shown : Shown
+    stage : Stage
+        Told of every record.
+    full : bool
+        Whether all samples are kept, as far as 30 MB allow.
+    served : bool
+        Whether a server gives what the page does not hold.
+    """
+    axes = page_axes(source, full=full)
+    details = page_details(source, axes, source.kept, stage) if source.kept.size else {}
+    data: dict[str, Any] = {"look-data": page_head(source, axes, shown, served=served)}
+    data |= {f"look-record-{row}": detail for row, detail in details.items()}
+    if source.life is not None:
+        gearboxes = sorted({int(source.labels["specimen_id"][row]) for row in source.kept})
+        data |= {f"look-life-{gearbox}": source.life(gearbox) for gearbox in gearboxes}
+    live = Live(_files(STYLES), _files(SCRIPTS), data, served=served)
+    return Look((FOLDER / "look.html").read_text(encoding="utf-8"), live, source, axes)
+
+
+def look_page(title: str, look: Look) -> str:
+    """Return a page of nothing but records."""
+    records = int(look.source.labels["record_id"].size)
+    noun = "recording" if look.source.measured else "record"
+    held = "all signals" if look.source.kept.size == records else f"signals of {look.source.kept.size}"
+    said = f"{counted(records, noun)}, {counted(len(look.source.channels), 'channel')}, {held}."
+    how = "Choose by any column, open a record in the table or by a point. Drag over a chart to zoom."
+    return html.page(title, [html.heading(title, 1), html.paragraph(f"{said} {how}"), look.block], look.live)
+
+
+def _files(names: tuple[str, ...]) -> str:
+    return "\n".join(_text(name) for name in names)
+
+
+def _text(name: str) -> str:
+    """Return a file of the package; a licence as a comment, since it must go along with every copy."""
+    text = (FOLDER / name).read_text(encoding="utf-8")
+    return f"/*\n{text}*/" if name.endswith("LICENSE") else text

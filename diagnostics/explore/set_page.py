@@ -1,0 +1,234 @@
+"""Records of a set on a page: chosen, zoomed, compared; the report holds them, and they make a page of their own.
+
+What a saved classifier names every record of a set, for the page's columns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.explore.chosen_records import chosen_records, missing_parts
+from diagnostics.explore.look import Look, look_of, look_page
+from diagnostics.explore.payload import PageSource, Shown
+from diagnostics.explore.set_source import set_source
+from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.page.wording import counted
+from diagnostics.prediction.released_model import load_model
+from diagnostics.records.named_set import words_of
+from diagnostics.records.record_classes import set_classes
+from diagnostics.records.state_classes import HEALTHY
+from diagnostics.training.splits import TEST
+from siggen.dataset.reading import Dataset
+from siggen.errors import UsageError
+
+RIGHT, WRONG = "rightly", "wrongly"
+SEEN, UNSEEN = "seen in training", "no"
+
+LIMIT = 100
+COLUMNS = (
+    *(("record_id", "Record"), ("state", "State"), ("damaged_area_mm2", "Area [mm²]"), ("speed_hz", "Speed [Hz]")),
+    *(("torque_nm", "Load [N m]"), ("split", "Split"), ("specimen_id", "Gearbox")),
+)
+FILTERS = (("state", "State"), ("split", "Split"), ("specimen_id", "Gearbox"))
+NAMED_COLUMNS = (("predicted", "Predicted"), ("named", "Named"), ("seen", "Seen"))
+NAMED_FILTERS = (("class", "Class"), *NAMED_COLUMNS)
+CODE = """import diagnostics
+import siggen
+
+table = diagnostics.table(siggen.open("SET"))  # a row per record; SET: your path to the set
+values = table.values[:, table.names.index("COLUMN")]
+healthy = table.labels["fault"] == "healthy"
+limit = sorted(values[healthy])[int(0.95 * healthy.sum())]  # one of twenty healthy records is above it
+print(table.labels["record_id"][values > limit])"""
+"""What the page offers to copy; an indicator of the user's own is named besides."""
+
+
+def predicted_labels(
+    table: RecordTable, dataset: Dataset, folder: Path, own: Sequence[OwnIndicator] = ()
+) -> dict[str, np.ndarray]:
+    """Return columns `class`, `predicted`, `named`, `seen`, (records,) each, by a model folder's logistic regression.
+
+    A record is seen where its split is one that the model learnt from or was chosen on, of the very set.
+
+    Parameters
+    ----------
+    table : RecordTable
+        Indicators of the whole set.
+    dataset : siggen Dataset
+        The set; what its classes are is for the model to say.
+    folder : Path
+        What `siggen-diagnostics report` wrote.
+    own : sequence of OwnIndicator
+        The user's indicators that the model takes.
+
+    Raises
+    ------
+    UsageError
+        If the folder holds no model, or one of other channels.
+    """
+    released = load_model(folder, own)
+    model = released.classifier
+    labels, present = table.labels(), set(table.names())
+    if lost := [name for name in model.features if name not in present]:
+        raise UsageError(
+            f"{folder}: this model takes {len(lost)} columns that the set does not have, such as {lost[0]}; allowed: a "
+            f"model of the channels {', '.join(table.channels)}. Train one: siggen-diagnostics report"
+        )
+    probability = model.probability(table.values(model.features))
+    predicted = np.array(model.classes)[probability.argmax(axis=1)]
+    healthy = labels["fault"] == HEALTHY
+    known = [name for name in np.unique(labels["state"][healthy]).tolist() if name in model.classes]
+    truth = set_classes(dataset, released.facts.class_kind, known[0] if known else None).of(labels["state"])
+    seen = (labels["split"] != TEST) & (released.facts.identity == _identity(dataset))
+    return {
+        "class": truth,
+        "predicted": predicted,
+        "named": np.where(predicted == truth, RIGHT, WRONG),
+        "seen": np.where(seen, SEEN, UNSEEN),
+    }
+
+
+def seen_sentence(seen: Sequence[str]) -> str:
+    """Say how many of the records the model has learnt from; empty where none."""
+    count = sum(one == SEEN for one in seen)
+    if count == 0:
+        return ""
+    return (
+        f"{count} of {counted(len(seen), 'record')} are of the gearboxes that the model was trained or chosen on: they "
+        f"are marked \N{LEFT DOUBLE QUOTATION MARK}{SEEN}\N{RIGHT DOUBLE QUOTATION MARK}. That these are rightly named "
+        "says nothing about other gearboxes."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class LookOptions:
+    """What goes on the page.
+
+    Attributes
+    ----------
+    limit : int
+        Most records whose signals it holds, of whole gearboxes.
+    full : bool
+        Whether all samples are kept, as far as 30 MB allow.
+    served : bool
+        Whether a server adds the signals, so that the page itself holds none.
+    workers : int
+        Processes that take indicators.
+    model : Path, optional
+        Folder of a model that names every record.
+    own : sequence of OwnIndicator
+        The user's indicators.
+    first : sequence of int
+        Gearboxes whose signals come before all others.
+    ranked : sequence of str
+        Indicators, the best first.
+    """
+
+    limit: int = LIMIT
+    full: bool = False
+    served: bool = False
+    workers: int = 1
+    model: Path | None = None
+    own: Sequence[OwnIndicator] = ()
+    first: Sequence[int] = ()
+    ranked: Sequence[str] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Lives:
+    """What a set of lives adds: labels of its records with their titles, and figure and caption of a gearbox."""
+
+    labels: Mapping[str, np.ndarray]
+    titles: tuple[tuple[str, str], ...]
+    figure: Callable[[int], dict[str, str]] | None
+
+
+NO_LIVES = Lives({}, (), None)
+LivesOf = Callable[[Dataset, RecordTable], Lives]
+
+
+def set_look(
+    dataset: Dataset,
+    options: LookOptions,
+    stage: Stage = silent_stage,
+    lives_of: LivesOf | None = None,
+    table: RecordTable | None = None,
+) -> Look:
+    """Return the records of a set as a part of a page.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    options : LookOptions
+    stage : Stage
+        Told of the progress.
+    lives_of : callable, optional
+        Returns what a set of lives adds.
+    table : RecordTable, optional
+        Indicators of the set, where they are there.
+
+    Raises
+    ------
+    DatasetError
+        If the set holds no records.
+    UsageError
+        If the model is none of this set's channels.
+    """
+    labels = dataset.labels(columns=["record_id", "specimen_id"])
+    if table is None:
+        with stage("indicators", labels.num_rows) as advance:
+            table = record_table(dataset, own=options.own, workers=options.workers, advance=advance)
+    said = predicted_labels(table, dataset, options.model, options.own) if options.model else {}
+    lives = lives_of(dataset, table) if lives_of else NO_LIVES
+    specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
+    kept = np.empty(0, np.int64) if options.served else chosen_records(specimens, options.limit, options.first)
+    source = set_source(dataset, table, kept)
+    source = replace(source, labels={**source.labels, **lives.labels, **said}, life=lives.figure)
+    shown = _shown(dataset, source, options, lives)
+    return look_of(source, shown, stage, full=options.full, served=options.served)
+
+
+def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Lives) -> Shown:
+    """Return how the page lists the records."""
+    known, words = options.model is not None, words_of(dataset)
+    damaged = bool((source.labels["fault"] != HEALTHY).any()) and hasattr(dataset, "damage")
+    missing = missing_parts(source.labels, source.overlay, damaged, bool(source.quantities), named=known)
+    own = ", ".join(f'"{one.function.__module__}:{one.function.__name__}"' for one in options.own)
+    return Shown(
+        columns=(*COLUMNS[:2], *(NAMED_COLUMNS if known else ()), *lives.titles, *COLUMNS[2:]),
+        filters=(*FILTERS, *(NAMED_FILTERS if known else ())),
+        missing=missing,
+        seen=seen_sentence([str(one) for one in source.labels["seen"]]) if known else "",
+        code=CODE.replace("SET", dataset.path.name, 1).replace("))", f"), indicators=[{own}])" if own else "))", 1),
+        ranked=[words.column(name) for name in options.ranked],
+    )
+
+
+def write_set_page(
+    dataset: Dataset,
+    path: Path,
+    options: LookOptions | None = None,
+    stage: Stage = silent_stage,
+    lives_of: LivesOf | None = None,
+) -> Path:
+    """Write the records of a set as a page of its own and return its path; parameters and errors as of `set_look`."""
+    look = set_look(dataset, options or LookOptions(), stage, lives_of)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(look_page(f"Records of {set_name(dataset)}", look), encoding="utf-8")
+    return path
+
+
+def set_name(dataset: Dataset) -> str:
+    """Return what a set is called."""
+    return str(dataset.manifest.get("name") or dataset.path.name)
+
+
+def _identity(dataset: Dataset) -> str:
+    return str(dataset.manifest.get("identity", ""))

@@ -1,0 +1,146 @@
+"""What a reader sees first: order spectra of one gearbox by the size of its damage, an answer, and how sure it is."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.page.sideband_marks import mark_handles, order_words
+from diagnostics.page.style import state_colours, styled
+from diagnostics.page.wording import capitalised, counted, decimal, limits, percent, rounded
+from diagnostics.records.state_classes import HEALTHY, kind_name
+from diagnostics.report.drawing import BEHIND_COLOUR, DECADES_SHOWN, around, draw_spectrum, strongest
+from diagnostics.report.examples import Example, ExampleSet
+from diagnostics.statistics.detector import Detector, FoundSize
+from diagnostics.training.detectors import FEWEST_SPECIMENS, Detectors
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_SIZES = 4
+"""Rows of the figure; more do not fit the first screen."""
+
+SPACE = "\N{NO-BREAK SPACE}"
+SIZE_IN, ORDERS = (6.6, 1.1, 1.05), 4.6
+"""Width, and height of the frame and of a row [in]; how far from the mesh line spectra are shown."""
+
+
+def first_figure(
+    examples: ExampleSet, matrix: FeatureMatrix, classes: tuple[str, ...], best: Detector | None
+) -> Figure | None:
+    """Return the order spectrum of one gearbox with every size of damage, over its healthy one; None without spectra.
+
+    Parameters
+    ----------
+    examples : ExampleSet
+        One record of each state.
+    matrix : FeatureMatrix
+        With the labels of all records.
+    classes : tuple of str
+        States in their order, which gives them their colours.
+    best : Detector, optional
+        Says in which share of the records each state is found.
+    """
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    areas = dict(zip(matrix.labels["record_id"].tolist(), matrix.labels["damaged_area_mm2"].tolist(), strict=True))
+    shown = _by_size([one for one in examples.examples if one.fault != HEALTHY and one.spectrum], areas)
+    if not shown:
+        return None
+    spectra = [one.spectrum for one in examples.examples if one.spectrum]
+    harmonic = strongest(spectra[0], examples.mesh)
+    healthy = {one.state for one in examples.examples if one.fault == HEALTHY}
+    colours = state_colours(classes, healthy)
+    width, frame, row = SIZE_IN
+    with styled():
+        figure = Figure(figsize=(width, frame + row * len(shown)), layout="constrained")
+        axes = figure.subplots(len(shown), 1, squeeze=False, sharex=True, sharey=True)[:, 0]
+        for axis, one in zip(axes, shown, strict=True):
+            draw_spectrum(axis, one, examples, harmonic, colours[one.state])
+            axis.set_title(_row_title(one, areas, best), loc="left", fontweight="bold", color=colours[one.state])
+        top = max(around(one, examples, harmonic)[1].max() for one in spectra)
+        axes[0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
+        axes[0].set_xlim(-ORDERS, ORDERS)
+        mesh_hz = harmonic * examples.teeth[0] * examples.turns_hz
+        axes[-1].set_xlabel(f"Distance from mesh harmonic {harmonic} ({mesh_hz:.0f} Hz) [{order_words(examples.mesh)}]")
+        figure.supylabel(f"Amplitude [{examples.unit}]", fontsize=10)
+        grey = Line2D([], [], color=BEHIND_COLOUR, linewidth=6, label="the same gearbox healthy")
+        figure.legend(handles=[grey, *mark_handles(examples.mesh)], loc="outside upper left", ncols=4, fontsize=9)
+    return figure
+
+
+def _by_size(examples: list[Example], areas: dict[int, float]) -> list[Example]:
+    """Return a few examples from the smallest to the largest damage."""
+    ordered = sorted(examples, key=lambda one: areas[one.record_id])
+    places = np.linspace(0, len(ordered) - 1, min(len(ordered), MOST_SIZES)).round().astype(int)
+    return [ordered[place] for place in places]
+
+
+def _row_title(example: Example, areas: dict[int, float], best: Detector | None) -> str:
+    area = areas[example.record_id]
+    size = f", {rounded(area)} mm²" if area > 0.0 else ""
+    found = best.states.get(example.state) if best else None
+    share = f": found in {percent(found.share.value)} of records" if found and found.share else ""
+    return f"{example.state}{size}{share}"
+
+
+def first_caption(examples: ExampleSet) -> str:
+    """Return what the figure shows, for a reader who has never seen one."""
+    return (
+        f"Vibration of one gearbox with growing damage (colour), over the same gearbox healthy (grey): specimen "
+        f"{examples.specimen_id}, {examples.channel}, {examples.speed_hz:.3g}{SPACE}Hz, "
+        f"{examples.torque_nm:.3g}{SPACE}N{SPACE}m. Damage lifts the marked sidebands of the tooth mesh. Sizes are "
+        "damaged area."
+    )
+
+
+def first_answer(found: Detectors) -> str:
+    """Say in a sentence which damage is found, from which size on, and by what; `**` marks what matters."""
+    best = found.strongest
+    if best is None:
+        return (
+            "**No answer**: that needs healthy and damaged records of "
+            f"**{FEWEST_SPECIMENS} gearboxes or more** in this set."
+        )
+    by = f"**{capitalised(detector_words(best))}**"
+    if not best.sizes:
+        name = max(best.states, key=lambda state: best.states[state].auc.value)
+        return f"{by} tells the state **{name}** best; {best.healthy} healthy records are too few to name a size."
+    kinds = list(dict.fromkeys(state.kind for state in best.states.values()))
+    reached = {kind: kind in best.sizes and best.sizes[kind].reached for kind in kinds}
+    order = sorted(kinds, key=lambda kind: not reached[kind])
+    said = [_kind_words(best, kind, best.sizes.get(kind), kind_name(kind, kinds)) for kind in order]
+    return f"{by} finds {'; '.join(part for part in said if part)}."
+
+
+def detector_words(best: Detector) -> str:
+    """Return what a detector is: of one that other gearboxes choose, what they chose most often."""
+    return max(best.picks, key=lambda pick: pick[1])[0] if best.picks else best.title
+
+
+def _kind_words(best: Detector, kind: str, size: FoundSize | None, name: str) -> str:
+    states = [found for found in best.states.values() if found.kind == kind]
+    largest = max(states, key=lambda found: found.area_mm2)
+    if size is not None and size.reached:
+        limit = size.smallest_mm2 if size.is_bound else size.area_mm2.value
+        smallest = ", the smallest of the set" if size.is_bound else ""
+        return f"**{name} from {rounded(limit)}{SPACE}mm²** on{smallest}, in nine of ten records"
+    share = percent(largest.share.value) if largest.share else "an unknown share"
+    area = f", up to {rounded(largest.area_mm2)}{SPACE}mm²," if largest.area_mm2 > 0.0 else ""
+    return f"of **{name}**{area} only **{share}**"
+
+
+def first_certainty(found: Detectors) -> str:
+    """Say in a sentence how sure the answer is."""
+    best = found.strongest
+    if best is None:
+        return "Nothing is known."
+    spread = f"95{SPACE}% limits {limits(best.every)}" if math.isfinite(best.every.low) else "no limits"
+    return (
+        f"Judged on **{counted(best.specimens, 'gearbox')} that it had not learnt from**, at 5{SPACE}% false alarms: "
+        f"**AUC {decimal(best.every.value)}** for all damage ({spread}; 0.5 is chance, 1 is perfect)."
+    )
