@@ -5,6 +5,7 @@ The set is the one of the short form, renamed: signals are equal to the bit.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from siggen.views.face_pressure import face_pressure
 from tests.command import command
 from tests.config.mill import mill
 from tests.config.staged import SLOW, SPALL, staged
+from tests.diagnostics.explore.unpacked import held
 
 COMMON: dict[str, Any] = {
     "specimens": 3, "fs_hz": 12_800.0, "duration_s": 0.3, "manufacture": {"accuracy_class": 6, "flank_waves": "on"},
@@ -41,7 +43,13 @@ def run(app: str, *arguments: object) -> str:
 
 
 def words_of(file: Path) -> str:
-    """Return all that a file says; of tables names, metadata and texts."""
+    """Return all that a file says; of tables names and texts, of what a page's program reads what it shows."""
+    if file.suffix == ".html":
+        listed = held(file).get("look-data", {})
+        columns = [one for group in ("labels", "indicators") for one in listed.get(group, [])]
+        shown = [one.get(text, "") for one in columns for text in ("title", "definition")]
+        document = re.sub(r"(?s)<script\b.*?</script>", "", file.read_text(encoding="utf-8"))
+        return "\n".join([document, *shown])
     if file.suffix != ".parquet":
         return file.read_bytes().decode("utf-8", "replace")
     table = pq.read_table(file)
