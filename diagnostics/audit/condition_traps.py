@@ -155,11 +155,12 @@ def chance_largest(measured: MeasuredSet, attackers: list[Attacker], state: str,
     state : str
     seed : int
     """
-    specimen = measured.labels["specimen_id"]
-    rows = np.flatnonzero(measured.healthy | (measured.labels["state"] == state))
+    specimen, of_state = measured.labels["specimen_id"], np.asarray(measured.labels["state"] == state)
+    able = [attacker for attacker in attackers if judged_rows(attacker, measured.healthy, of_state, specimen).size]
+    rows = np.flatnonzero(measured.healthy | of_state)
     turns = PERMUTATIONS * len(damaged_states(measured))
     ways = permuted(~measured.healthy[rows], exchange_blocks(measured)[rows], specimen[rows], seed, turns)
-    maxima = bank_maxima(attackers, rows, ways, specimen[rows], dealt_folds(specimen, seed)[:, rows])
+    maxima = bank_maxima(able, rows, ways, specimen[rows], dealt_folds(specimen, seed)[:, rows])
     return float(np.max(maxima, where=np.isfinite(maxima), initial=0.0))
 
 

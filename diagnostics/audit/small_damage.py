@@ -24,9 +24,8 @@ LEVELS = "levels"
 LARGER = 2.0
 """Times the mean damaged area of the smallest state from which a state of its kind must show more."""
 
-ALIKE = 0.15
-"""Distance from an AUC of 0.5 within which a larger state counts as like the smallest one: 1.5 standard deviations of
-18 and 18 records that are alike."""
+DEVIATIONS = 2.0
+"""Standard deviations of the AUC of records that are alike within which a larger state counts as like the smallest."""
 
 HARMONICS = 12
 TINY = 1e-30
@@ -124,6 +123,15 @@ def _attacker(measured: MeasuredSet, sizes: SizedStates, values: np.ndarray, nam
 
 
 def _alike(larger: np.ndarray, learnt: np.ndarray, positive: np.ndarray) -> np.ndarray:
-    """Return whether larger damage is told from the smallest by no column, (turns, columns) bool."""
-    above = np.stack([0.5 + 0.5 * np.sign(larger - row).mean(axis=0) for row in learnt])
-    return np.asarray(np.abs(positive @ above / positive.sum(axis=1, keepdims=True) - 0.5) <= ALIKE)
+    """Return in which columns larger damage is like the smallest, and moves no further, (turns, columns) bool."""
+    count = positive.sum(axis=1, keepdims=True)
+    # the variance of an AUC of 0.5: (n + m + 1) / (12 n m)
+    allowed = DEVIATIONS * np.sqrt((len(larger) + count + 1) / (12.0 * len(larger) * count))
+    apart = positive @ _wins(larger, learnt) / count - 0.5
+    further = positive @ _wins(np.abs(larger), np.abs(learnt)) / count - 0.5
+    return np.asarray((np.abs(apart) <= allowed) & (further <= allowed))
+
+
+def _wins(larger: np.ndarray, learnt: np.ndarray) -> np.ndarray:
+    """Return the share of larger damage that lies above each record to learn from, (records, columns)."""
+    return np.stack([0.5 + 0.5 * np.sign(larger - row).mean(axis=0) for row in learnt])
