@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from diagnostics.scoring.benchmark import LEARN, TESTS
 from siggen.errors import counted
 
+CLOSING, LICENCE = "## Licence, authors, citation\n", "license: "
 RULES = """* One number for each record of the split `test`: `damage`, which rises with damage. Columns of other
   tasks may stand beside it.
 * **Alone**: a record is judged by itself. **Beside**: the gearbox's record of the split `train`, which is healthy, may
@@ -27,31 +29,12 @@ these records is secret until labels are revealed.
 """
 
 
-def benchmark_card(facts: Mapping[str, Any], learn: Any) -> str:
-    """Return the card of the whole benchmark."""
-    names = list(facts["parts"])
-    rows = "\n".join(f"| `test/{name}` | {facts['records'][name]} |" for name in names)
-    front = "\n".join(
-        f"- config_name: {name}\n  data_files:\n  - split: test\n    path: test/{name}/data/test-*.parquet\n"
-        f"  - split: reference\n    path: test/{name}/data/train-*.parquet"
-        for name in names
-    )
-    return f"""---
-pretty_name: {facts["title"]}, {facts["tier"]}
-tags: [synthetic, vibration, gearbox, condition-monitoring, benchmark]
-configs:
-- config_name: learn
-  default: true
-  data_files:
-  - split: train
-    path: learn/data/train-*.parquet
-  - split: validation
-    path: learn/data/validation-*.parquet
-  - split: test
-    path: learn/data/test-*.parquet
-{front}
----
-# {facts["title"]}, {facts["tier"]}
+def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str) -> str:
+    """Return the card of the whole benchmark; licence, authors and citation are those of the card to learn from."""
+    _, closing, said = card.partition(CLOSING)
+    licence = next((line for line in card.splitlines() if line.startswith(LICENCE)), "")
+    rows = "\n".join(f"| `{TESTS}/{name}` | {facts['records'][name]} |" for name in facts["parts"])
+    return f"""{_front_matter(facts, licence)}# {facts["title"]}, {facts["tier"]}
 
 Damage of gears in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
 synthetic**: they were computed by siggen, simulation version {facts["simulation_version"]}, not measured. Labels of the
@@ -59,7 +42,7 @@ test parts are sealed until their maker reveals them.
 
 | part | records |
 |---|---|
-| `learn`, with labels | {facts["records"]["learn"]} |
+| `{LEARN}`, with labels | {facts["records"][LEARN]} |
 {rows}
 
 ## Rules
@@ -76,4 +59,32 @@ Digest: `{facts["digest"]}`. It is part of every score; a score of another diges
 
 `commitment.json` holds the SHA-256 of labels, salt, seeds and configurations, published before the first score.
 `revealed.json` is that file. `siggen.generate` makes the test parts again from its configurations.
+{closing}{said}"""
+
+
+def _front_matter(facts: Mapping[str, Any], licence: str) -> str:
+    """Return what Hugging Face reads: every part as a configuration of its own."""
+    learn = "\n".join(_files(split, f"{LEARN}/data/{split}-*.parquet") for split in ("train", "validation", "test"))
+    tests = "\n".join(
+        f"- config_name: {name}\n  data_files:\n"
+        + _files("test", f"{TESTS}/{name}/data/test-*.parquet")
+        + "\n"
+        + _files("reference", f"{TESTS}/{name}/data/train-*.parquet")
+        for name in facts["parts"]
+    )
+    said = f"{licence}\n" if licence else ""
+    return f"""---
+pretty_name: {facts["title"]}, {facts["tier"]}
+{said}tags: [synthetic, vibration, gearbox, condition-monitoring, benchmark]
+configs:
+- config_name: {LEARN}
+  default: true
+  data_files:
+{learn}
+{tests}
+---
 """
+
+
+def _files(split: str, path: str) -> str:
+    return f"  - split: {split}\n    path: {path}"

@@ -26,7 +26,7 @@ def read_secret(file: Path) -> bytes:
         If it is shorter than 32 bytes, which could be guessed.
     """
     if not file.exists():
-        file.parent.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         file.touch(mode=0o600)
         file.write_text(secrets.token_hex(FEWEST_BYTES) + "\n", encoding="ascii")
     found = file.read_bytes().strip()

@@ -16,14 +16,17 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.base.extras import missing_packages
 from diagnostics.bench.baselines import REFERENCE
-from diagnostics.page.html import Cell, heading, page, paragraph, summary, table
+from diagnostics.page.html import Cell, figure_block, figure_grid, heading, page, paragraph, summary, table
+from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import counted
 from diagnostics.scoring.benchmark import BASELINES, Benchmark
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
 from diagnostics.scoring.detect import DETECT, EVERY, LEAK
 from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
+from diagnostics.scoring.score_figure import score_figure
+from diagnostics.scoring.score_row import ScoreRow
 from diagnostics.scoring.sealed_labels import SealedLabels
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, bootstrap_weights, interval
 from diagnostics.statistics.scores import area_interval
@@ -125,10 +128,10 @@ def write_board(benchmark: Benchmark, entries: Sequence[Entry], folder: Path) ->
     facts = {"digest": benchmark.digest, "simulation_version": benchmark.simulation_version, "entries": numbers}
     (folder / NUMBERS).write_text(json.dumps(facts, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     title = f"Leaderboard of {benchmark.title}, {benchmark.tier}"
-    parts = [f"<h1>{title}</h1>", *summary(_sentences(benchmark, entries))]
+    parts = [heading(title, 1), *summary(_sentences(benchmark, tables))]
     for referenced, ordered in tables.items():
         if ordered:
-            parts += [heading(TRACKS[referenced]), *_table(ordered, benchmark.parts)]
+            parts += [heading(TRACKS[referenced]), _figure(ordered), *_table(ordered, benchmark.parts)]
     path = folder / BOARD
     path.write_text(page(title, parts), encoding="utf-8")
     return path
@@ -140,26 +143,46 @@ def _ordered(entries: Sequence[Entry], parts: Sequence[str], referenced: bool) -
     return sorted(own, key=lambda one: (len(one.every) < len(parts), -float(one.samples(MEAN)[0]), one.name))
 
 
-def _sentences(benchmark: Benchmark, entries: Sequence[Entry]) -> list[str]:
+def _sentences(benchmark: Benchmark, tables: Mapping[bool, list[Entry]]) -> list[str]:
+    entries = [entry for ordered in tables.values() for entry in ordered]
     sham = [(part, entry) for entry in entries for part in entry.sham]
-    outside = [
-        f"{entry.name} on {part}"
-        for part, entry in sham
-        if not _limits_hold_chance(area_interval(entry.sham[part], entry.gearboxes[part]))
-    ]
+    outside = [f"{entry.name} on {part}" for part, entry in sham if not _holds_chance(entry, part)]
     told = f" Outside: {', '.join(outside[:5])}." if outside else ""
     return [
-        f"{len(entries)} entries on {counted(len(benchmark.parts), 'test part')}. Scores are AUC of "
-        "damaged against healthy records of other gearboxes, with 95 % limits over gearboxes.",
+        *(_lead(TRACKS[referenced], ordered) for referenced, ordered in tables.items() if ordered),
         f"A sham is damage without effect. In {len(sham) - len(outside)} of {len(sham)} cases the limits of its AUC "
         f"hold 0.5; about one in 20 is outside by chance.{told}",
-        f"Digest {benchmark.digest}, simulation version {benchmark.simulation_version}. Only scores with the same two "
+        "Scores are AUC of damaged against healthy records of other gearboxes, with 95 % limits over gearboxes. "
+        f"Digest {benchmark.digest}, simulation version {benchmark.simulation_version}: only scores with the same two "
         "are comparable.",
     ]
 
 
-def _limits_hold_chance(found: Interval) -> bool:
+def _lead(track: str, ordered: Sequence[Entry]) -> str:
+    """Return who leads, and whether the gearboxes tell the second from it."""
+    first, score = ordered[0], ordered[0].score(MEAN)
+    said = f"{track}: {first.name} leads with a mean AUC of {score.value:.2f} ({score.low:.2f} to {score.high:.2f})"
+    if len(ordered) < 2 or len(ordered[1].every) < len(first.every):
+        return f"{said}."
+    behind = paired(first, ordered[1], MEAN)
+    telling = "" if behind.high < 0.0 else "; these gearboxes cannot tell the two apart"
+    return f"{said}, {ordered[1].name} follows {behind.value:+.2f} ({behind.low:+.2f} to {behind.high:+.2f}){telling}."
+
+
+def _holds_chance(entry: Entry, part: str) -> bool:
+    found = area_interval(entry.sham[part], entry.gearboxes[part])
     return not (found.low > 0.5 or found.high < 0.5)
+
+
+def _figure(ordered: Sequence[Entry]) -> str:
+    """Return the means as a figure; nothing without matplotlib."""
+    if missing_packages("matplotlib"):
+        return ""
+    whole = [entry for entry in ordered if len(entry.every) == len(ordered[0].every)]
+    rows = [
+        ScoreRow("detect", "AUC", "mean over the test parts", one.name, one.score(MEAN), 0.5, None) for one in whole
+    ]
+    return figure_grid([figure_block(png_bytes(score_figure(rows)), "Mean AUC with 95 % limits; dotted: chance.")])
 
 
 def _table(ordered: Sequence[Entry], parts: Sequence[str]) -> list[str]:
@@ -167,10 +190,10 @@ def _table(ordered: Sequence[Entry], parts: Sequence[str]) -> list[str]:
     leader = ordered[0]
     rows, apart = [], []
     for place, entry in enumerate(ordered, start=1):
-        whole = len(entry.every) == len(parts)
-        shown = [interval_cell(entry.score(part)) if whole or part in entry.every else Cell("–") for part in columns]
+        known = (*entry.every, *((MEAN,) if len(entry.every) == len(parts) else ()))
+        shown = [interval_cell(entry.score(part)) if part in known else Cell("–") for part in columns]
         rows.append([Cell(f"{place}. {entry.name}", value=float(place)), *shown])
-        pairs = [_behind(leader, entry, part) if whole or part in entry.every else Cell("–") for part in columns]
+        pairs = [_behind(leader, entry, part) if part in known else Cell("–") for part in columns]
         apart.append([Cell(entry.name), *pairs])
     behind = f"Entry minus the first, {leader.name}, paired on the same resampled gearboxes."
     return [
@@ -193,18 +216,22 @@ def paired(first: Entry, second: Entry, part: str) -> Interval:
 
 
 def _numbers(ordered: Sequence[Entry], benchmark: Benchmark) -> list[dict[str, Any]]:
+    """Return the numbers of a track; the mean only of entries that have all parts."""
     return [
         {
             "name": entry.name,
             "beside_a_healthy_record": entry.referenced,
-            "auc": {part: entry.score(part).numbers() for part in (MEAN, *entry.every)},
+            "auc": {part: entry.score(part).numbers() for part in _parts(entry, benchmark)},
             "sham": {part: area_interval(one, entry.gearboxes[part]).numbers() for part, one in entry.sham.items()},
             "minus_first": {
                 part: paired(ordered[0], entry, part).numbers()
-                for part in (MEAN, *entry.every)
-                if part == MEAN or part in ordered[0].every
+                for part in _parts(entry, benchmark)
+                if part in _parts(ordered[0], benchmark)
             },
         }
         for entry in ordered
-        if len(entry.every) == len(benchmark.parts) or entry is not ordered[0]
     ]
+
+
+def _parts(entry: Entry, benchmark: Benchmark) -> tuple[str, ...]:
+    return (*((MEAN,) if len(entry.every) == len(benchmark.parts) else ()), *entry.every)

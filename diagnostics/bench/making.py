@@ -42,6 +42,8 @@ class Wanted:
         Such as `duration_s=0.5`, for all parts.
     conditions : mapping
         As `CONDITIONS`.
+    facts : Path or None
+        Licence, authors, citation, as `siggen publish` takes them: the part to learn from is then a published set.
     """
 
     tier: str = "tiny"
@@ -49,6 +51,7 @@ class Wanted:
     config: str | Mapping[str, Any] = PRESET
     overrides: tuple[str, ...] = ()
     conditions: Mapping[str, Mapping[str, Any]] = field(default_factory=lambda: CONDITIONS)
+    facts: Path | None = None
 
 
 def make_benchmark(
@@ -80,7 +83,7 @@ def make_benchmark(
         raise UsageError(f"{hidden}: what is secret may not lie in {out}, nor that in it; name another folder")
     learn = siggen.load_config(wanted.config, [*wanted.overrides, f"specimens={wanted.size.learn}"])
     tests = {name: _test_config(learn, name, wanted, secret) for name in wanted.conditions}
-    _simulated(learn, out / LEARN, LEARN, workers, stage)
+    _write_learn(learn, out / LEARN, hidden, wanted.facts, (workers, stage))
     parts = {}
     for place, (name, config) in enumerate(tests.items()):
         dataset = _simulated(config, hidden / SIMULATED / name, name, workers, stage)
@@ -95,7 +98,8 @@ def make_benchmark(
         "parts": parts,
     }
     (hidden / SEALED).write_text(json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n", encoding="utf-8")
-    (out / CARD).write_text(benchmark_card(facts, learn), encoding="utf-8")
+    own = (out / LEARN / CARD).read_text(encoding="utf-8")
+    (out / CARD).write_text(benchmark_card(facts, learn, own), encoding="utf-8")
     (out / FACTS).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
     return open_benchmark(out)
 
@@ -105,6 +109,17 @@ def _test_config(learn: Any, name: str, wanted: Wanted, secret: bytes) -> Any:
     own = changed(learn.canonical(), wanted.conditions[name])
     own |= {"name": f"{learn.name}_{name}", "seed": seed_of(secret, name), "specimens": wanted.size.test}
     return siggen.load_config(own)
+
+
+def _write_learn(config: Any, folder: Path, hidden: Path, facts: Path | None, how: tuple[int | None, Stage]) -> None:
+    """Write the part to learn from, with authors' facts as a set that is ready to be published."""
+    if facts is None:
+        _simulated(config, folder, LEARN, *how)
+        return
+    _simulated(config, hidden / SIMULATED / LEARN, LEARN, *how)
+    if not (folder / "manifest.json").is_file():
+        shutil.rmtree(folder, ignore_errors=True)
+        siggen.publish(hidden / SIMULATED / LEARN, folder, facts)
 
 
 def _simulated(config: Any, folder: Path, title: str, workers: int | None, stage: Stage) -> Dataset:

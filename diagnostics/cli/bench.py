@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from diagnostics.cli.set_options import Open, Seed, opened
+from siggen.cli.option_groups import grouped
 
 Bench = Annotated[Path, typer.Argument(metavar="BENCH", help="Folder of a benchmark.", show_default=False)]
 Sealed = Annotated[
@@ -24,16 +26,25 @@ bench = typer.Typer(
 )
 
 
-@bench.command()
-def make(
-    out: Annotated[Path, typer.Argument(metavar="BENCH", help="Folder to publish, new.", show_default=False)],
-    tier: Annotated[str, typer.Option(metavar="tiny|small|full", help="How many gearboxes it has.")] = "tiny",
+@dataclass(frozen=True, slots=True)
+class SizeOptions:
+    """How many gearboxes."""
+
+    tier: Annotated[str, typer.Option(metavar="tiny|small|full", help="How many gearboxes it has.")] = "tiny"
     learn: Annotated[
         int | None, typer.Option(min=1, help="Gearboxes to learn from, instead of the tier's.", show_default=False)
-    ] = None,
+    ] = None
     test: Annotated[
         int | None, typer.Option(min=2, help="Gearboxes of each test part, instead of the tier's.", show_default=False)
-    ] = None,
+    ] = None
+
+
+@bench.command()
+@grouped
+def make(
+    out: Annotated[Path, typer.Argument(metavar="BENCH", help="Folder to publish, new.", show_default=False)],
+    *,
+    size: SizeOptions,
     hidden: Annotated[
         Path | None,
         typer.Option(
@@ -48,6 +59,10 @@ def make(
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE", help="Replace a value in all parts.", show_default=False),
+    ] = None,
+    facts: Annotated[
+        Path | None,
+        typer.Option("--facts", help="Licence, authors, citation, as `siggen publish` takes them.", show_default=False),
     ] = None,
     workers: Annotated[
         int | None, typer.Option(min=0, help="Worker processes, default one per core.", show_default=False)
@@ -65,12 +80,13 @@ def make(
     from diagnostics.bench.making import SECRET_FILE, Wanted, make_benchmark
     from siggen.errors import UsageError
 
-    if tier not in TIERS:
-        raise UsageError(f"--tier: received {tier!r}; allowed are {', '.join(TIERS)}")
-    size, folder = TIERS[tier], _secret_folder(out, hidden)
-    chosen = Tier(learn or size.learn, test or size.test)
-    named = tier if chosen == size else f"{tier} ({chosen.learn} gearboxes to learn from, {chosen.test} in a test part)"
-    wanted = Wanted(named, chosen, config, tuple(overrides or ()))
+    if size.tier not in TIERS:
+        raise UsageError(f"--tier: received {size.tier!r}; allowed are {', '.join(TIERS)}")
+    usual, folder = TIERS[size.tier], _secret_folder(out, hidden)
+    chosen = Tier(size.learn or usual.learn, size.test or usual.test)
+    numbers = f" ({chosen.learn} gearboxes to learn from, {chosen.test} in a test part)" if chosen != usual else ""
+    named = f"{size.tier}{numbers}"
+    wanted = Wanted(named, chosen, config, tuple(overrides or ()), facts=facts)
     found = make_benchmark(out, folder, read_secret(folder / SECRET_FILE), wanted, workers, terminal_stage)
     typer.echo(str(found))
     typer.echo(f"publish {out}; never {folder}", err=True)

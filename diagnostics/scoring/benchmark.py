@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,8 @@ from siggen.errors import DatasetError, UsageError
 FACTS, COMMITMENT, REVEALED = "benchmark.json", "commitment.json", "revealed.json"
 LEARN, TESTS, BASELINES = "learn", "test", "baselines"
 FORMAT = "siggen benchmark"
+NAME = re.compile(r"[a-z0-9_]{1,60}")
+"""Of a test part: that of a folder."""
 PER_PART = 1_000_000
 """Numbers of records of a part begin at its place, from 1, times this: one file may hold predictions for all parts."""
 BOUND = ("data/", "metadata/")
@@ -87,12 +90,17 @@ def open_benchmark(path: Path) -> Benchmark:
     if not is_benchmark(path):
         raise UsageError(f"{path}: holds no {FACTS}; allowed: a folder that `siggen-diagnostics bench make` wrote")
     facts = _json(path / FACTS)
-    found = benchmark_facts(path, str(facts["title"]), str(facts["tier"]), tuple(facts["parts"]))
+    try:
+        title, tier, parts = str(facts["title"]), str(facts["tier"]), tuple(map(str, facts["parts"]))
+    except (KeyError, TypeError) as error:
+        raise UsageError(f"{path / FACTS}: is not what `bench make` writes ({error}); fetch it again") from error
+    if wrong := [name for name in parts if not NAME.fullmatch(name)]:
+        raise UsageError(f"{path / FACTS}: received the part {wrong[0]!r}; allowed: lower-case letters, digits, _")
+    found = benchmark_facts(path, title, tier, parts)
     if found != facts:
         changed = ", ".join(name for name in found if found[name] != facts.get(name))
         raise DatasetError(f"{path}: its parts are not those that were published (other: {changed}); fetch them again")
-    named = {name: facts[name] for name in ("title", "tier", "digest", "simulation_version")}
-    return Benchmark(path=path, parts=tuple(facts["parts"]), **named)
+    return Benchmark(path, title, tier, str(found["digest"]), int(found["simulation_version"]), parts)
 
 
 def benchmark_facts(path: Path, title: str, tier: str, parts: tuple[str, ...]) -> dict[str, Any]:

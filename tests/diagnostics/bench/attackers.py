@@ -39,7 +39,7 @@ def attackers(folder: Path, *, blind: bool = True) -> tuple[np.ndarray, dict[str
         reference = references.get(row["specimen_id"], row)
         own = sorted(one["record_id"] for one in tests if one["specimen_id"] == row["specimen_id"])
         _tell_keys(tell, row, place, own.index(row["record_id"]), reference["record_id"])
-        tell("bytes of its row group", sizes[place])
+        tell(f"{SIGNAL}bytes of its row group", sizes[place])
         for name, value in row.items():
             if isinstance(value, int | float) and not isinstance(value, bool) and np.isfinite(value):
                 tell(f"column {name}", value)
@@ -94,4 +94,5 @@ def _tell_signals(tell, row, columns: list[str], reference) -> None:  # type: ig
 
 def _group_bytes(file: pq.ParquetFile) -> np.ndarray:
     groups = [file.metadata.row_group(k) for k in range(file.metadata.num_row_groups)]
-    return np.repeat([group.total_byte_size for group in groups], [group.num_rows for group in groups])
+    sizes = [sum(group.column(k).total_compressed_size for k in range(group.num_columns)) for group in groups]
+    return np.repeat(sizes, [group.num_rows for group in groups])

@@ -57,9 +57,9 @@ class Made(NamedTuple):
         return self.hidden / SIMULATED / part
 
 
-def make(folder: Path, gearboxes: int = GEARBOXES, secret: bytes = SECRET) -> Made:
+def make(folder: Path, gearboxes: int = GEARBOXES, secret: bytes = SECRET, facts: Path | None = None) -> Made:
     conditions: dict[str, Any] = {"same": {}, **OTHERS}
-    wanted = Wanted("tiny", Tier(6, gearboxes), CONFIG, (), conditions)
+    wanted = Wanted("tiny", Tier(6, gearboxes), CONFIG, (), conditions, facts)
     return Made(make_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
 
 

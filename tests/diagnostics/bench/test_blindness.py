@@ -11,6 +11,7 @@ import pytest
 
 import siggen
 from diagnostics.statistics.evaluation import column_auc
+from tests.command import command
 from tests.diagnostics.bench.attackers import SIGNAL, attackers
 from tests.diagnostics.bench.conftest import GEARBOXES, Made
 
@@ -105,3 +106,13 @@ def test_columns_of_a_test_part_follow_from_their_roles(made: Made, role: str) -
     unknown = part.labels("test").to_pylist()
     assert {row["state"] for row in unknown} == {row["fault"] for row in unknown} == {"unknown"}
     assert all(np.isnan(row["damaged_area_mm2"]) and np.isnan(row["mesh_stiffness_loss"]) for row in unknown)
+
+
+def test_a_test_part_verifies_by_its_hashes_and_is_not_published_alone(made: Made, tmp_path: Path) -> None:
+    folder = made.benchmark.path / "test" / "same"
+    found = command("siggen", "verify", str(folder), "--sample", "2")
+    assert found.returncode == 0, found.stderr
+    assert "what its rows were made of is secret" in found.stdout
+    refused = command("siggen", "publish", str(folder), "--to", str(tmp_path / "upload"))
+    assert refused.returncode == 2
+    assert "is a test part of a benchmark" in refused.stderr

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+import diagnostics
 from diagnostics.bench.baselines import BESIDE, CHANCE, KURTOGRAM, STACK
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
 from tests.command import command
@@ -74,3 +75,24 @@ def test_the_board_orders_entries_and_pairs_their_differences(made: Made, learne
     chance = rows[CHANCE]["auc"]["same"]
     assert chance["low"] < 0.5 < chance["high"]
     assert rows[CHANCE]["minus_first"]["same"]["high"] < 0.0
+
+
+def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_elsewhere(
+    made: Made, learned: Path
+) -> None:
+    bench = diagnostics.open_benchmark(learned)
+    learn = diagnostics.table(bench.learn())
+    model = diagnostics.LogisticBaseline(strengths=(0.01,)).fit(learn.values, learn.labels["class"], learn.groups)
+    rows: dict[str, list[np.ndarray]] = {}
+    for name in bench.parts:
+        asked = diagnostics.table(bench.part(name)).split("test")
+        rows.setdefault("record_id", []).append(asked.labels["record_id"])
+        for label, column in zip(model.classes_, model.predict_proba(asked.values).T, strict=True):
+            rows.setdefault(f"p_{label}", []).append(column)
+    mine = {name: np.concatenate(columns) for name, columns in rows.items()}
+    found = diagnostics.score_benchmark(bench, mine, labels=made.sealed)
+    tasks = {scores.set_name: {row.task for row in scores.rows} for scores in found.parts}
+    assert tasks == {"same": {"detect", "grade", "abstain"}, "other_fault": {"detect"}}
+    shown = str(found)
+    assert "kurtogram" in shown
+    assert bench.digest[:12] in shown

@@ -19,6 +19,16 @@ from tests.command import Ended, command
 from tests.diagnostics.bench.conftest import SECRET, Made, make
 
 AREA = "damaged_area_mm2"
+FACTS = """
+license: cc-by-4.0
+title: A benchmark
+version: 1.0.0
+published: 2026-11-30
+publisher: An institute
+url: https://example.org/benchmark
+citation: A citation
+authors: [{name: "Family, Given"}]
+"""
 
 
 def diagnostics_command(*arguments: str) -> Ended:
@@ -82,7 +92,9 @@ def test_what_is_revealed_makes_the_test_parts_again(made: Made) -> None:
 
 
 def test_the_secret_alone_decides_seeds_and_order(made: Made, tmp_path: Path) -> None:
-    same, other = make(tmp_path / "same", 3), make(tmp_path / "other", 3, SECRET + b"!")
+    facts = tmp_path / "publication.yaml"
+    facts.write_text(FACTS)
+    same, other = make(tmp_path / "same", 3), make(tmp_path / "other", 3, SECRET + b"!", facts)
     again = make(tmp_path / "same", 3)
     assert again.benchmark.digest == same.benchmark.digest != other.benchmark.digest
     assert again.sealed.read_bytes() == same.sealed.read_bytes()
@@ -91,6 +103,10 @@ def test_the_secret_alone_decides_seeds_and_order(made: Made, tmp_path: Path) ->
         for found in (same, other)
     )
     assert len({*seeds.values(), *others.values()}) == 4
+    card = (other.benchmark.path / "README.md").read_text()
+    assert "license: cc-by-4.0" in card
+    assert "Cite as: A citation" in card
+    assert (other.benchmark.path / "learn" / "croissant.json").is_file()
     learned = json.loads((made.benchmark.path / "learn" / "manifest.json").read_text())["seed"]
     assert learned not in (*seeds.values(), *others.values())
 
