@@ -18,7 +18,7 @@ import pyarrow as pa
 
 from diagnostics.base.extras import missing_packages
 from diagnostics.bench.baselines import REFERENCE
-from diagnostics.page.html import Cell, figure_block, figure_grid, heading, page, paragraph, summary, table
+from diagnostics.page.html import Cell, figure_block, figure_grid, heading, minus, page, paragraph, summary, table
 from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
 from diagnostics.scoring.benchmark import BASELINES, Benchmark
@@ -166,7 +166,8 @@ def _lead(track: str, ordered: Sequence[Entry]) -> str:
         return f"{said}."
     behind = paired(first, ordered[1], MEAN)
     telling = "" if behind.high < 0.0 else "; these gearboxes cannot tell the two apart"
-    return f"{said}, {ordered[1].name} follows {behind.value:+.2f} ({behind.low:+.2f} to {behind.high:+.2f}){telling}."
+    apart = minus(f"{behind.value:+.2f} ({behind.low:+.2f} to {behind.high:+.2f})")
+    return f"{said}, {ordered[1].name} follows with {apart}{telling}."
 
 
 def _holds_chance(entry: Entry, part: str) -> bool:

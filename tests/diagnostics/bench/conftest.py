@@ -40,7 +40,8 @@ OTHERS = {
         "states": [*CONFIG["states"][:2], {"name": "many", "severity": "slight", "damage": PITS | {"count": 20}}]
     }
 }
-GEARBOXES = 20
+GEARBOXES = 14
+SMALL = Tier(2, 2)
 
 
 class Made(NamedTuple):
@@ -57,15 +58,16 @@ class Made(NamedTuple):
         return self.hidden / SIMULATED / part
 
 
-def make(folder: Path, gearboxes: int = GEARBOXES, secret: bytes = SECRET, facts: Path | None = None) -> Made:
-    conditions: dict[str, Any] = {"same": {}, **OTHERS}
-    wanted = Wanted("tiny", Tier(6, gearboxes), CONFIG, (), conditions, facts)
+def make(folder: Path, size: Tier = SMALL, secret: bytes = SECRET, facts: Path | None = None) -> Made:
+    """Make a benchmark; without an argument a small one of one test part, in which attackers would see nothing."""
+    conditions: dict[str, Any] = {"same": {}, **(OTHERS if size != SMALL else {})}
+    wanted = Wanted("tiny", size, CONFIG, (), conditions, facts)
     return Made(make_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
 
 
 @pytest.fixture(scope="session")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     """The benchmark, committed to, not revealed."""
-    found = make(tmp_path_factory.mktemp("bench"))
+    found = make(tmp_path_factory.mktemp("bench"), Tier(6, GEARBOXES))
     commit(found.benchmark, found.sealed)
     return found

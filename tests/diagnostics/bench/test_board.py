@@ -12,18 +12,23 @@ import pyarrow.parquet as pq
 import pytest
 
 import diagnostics
-from diagnostics.bench.baselines import BESIDE, CHANCE, KURTOGRAM, STACK
+from diagnostics.base.progress import silent_stage
+from diagnostics.bench.baselines import BESIDE, CHANCE, KURTOGRAM, NETWORK, STACK, detectors
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
+from diagnostics.bench.seen_records import benchmark_records, seen_records
+from diagnostics.scoring.benchmark import open_benchmark
 from tests.command import command
 from tests.diagnostics.bench.conftest import Made
 
 
 @pytest.fixture(scope="module")
 def learned(made: Made, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the benchmark with its baselines, those with a network left out for time."""
+    """A copy of the benchmark with its baselines; for time without a network, with fewer folds and convolutions."""
     bench = Path(shutil.copytree(made.benchmark.path, tmp_path_factory.mktemp("learned") / "bench"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("diagnostics.bench.baselines.missing_packages", lambda *_: ("torch",))
+        patch.setattr("diagnostics.bench.baselines.FOLDS", 2)
+        patch.setattr("diagnostics.audit.signal_attackers.DILATIONS", (1, 8))
         ended = command("diagnostics", "bench", "baselines", str(bench))
     assert ended.returncode == 0, ended.stderr
     return bench
@@ -96,3 +101,17 @@ def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_
     shown = str(found)
     assert "kurtogram" in shown
     assert bench.digest[:12] in shown
+
+
+@pytest.mark.slow  # trains the network once
+def test_the_network_learns_from_the_records_that_it_may_see_alone(learned: Path) -> None:
+    pytest.importorskip("torch")
+    seen = seen_records(benchmark_records(open_benchmark(learned), silent_stage), referenced=True)
+    network = detectors(0)[NETWORK]
+    unique = np.unique(seen.gearbox)
+    half = np.isin(seen.gearbox, unique[: unique.size // 2])
+    score = network(seen, half)
+    assert score.size == seen.learn + seen.tests().size
+    assert np.isfinite(score).all()
+    seen.damaged[~half] = ~seen.damaged[~half]
+    assert np.array_equal(network(seen, half), score)
