@@ -23,7 +23,7 @@ SIGGEN_ROOMS = (
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",
-    "prediction", "machine", "audit", "calibration", "explore", "report", "cli",
+    "prediction", "machine", "audit", "bench", "calibration", "explore", "report", "cli",
 )  # fmt: skip
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")

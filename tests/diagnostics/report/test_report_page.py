@@ -21,23 +21,30 @@ import pytest
 from diagnostics.audit.audit import ALONE
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.table import RecordTable
 from diagnostics.page.provenance import without_path
+from diagnostics.report import report
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.report import PageOptions, write_report
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.realism import meaning_of_scores
+from diagnostics.training.training import Training
 from siggen.errors import DatasetError, UsageError
 
 
 @pytest.fixture(scope="module")
-def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(dataset: Any, measured: RecordTable, training: Training, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of the set, whose table and training are those that other files share."""
     out = tmp_path_factory.mktemp("report")
     labels = dataset.labels("test", ["record_id", "damaged_area_mm2"])
     mine = labels.rename_columns(["record_id", "damage"])
     pyarrow.csv.write_csv(mine, out / "mine.csv")
     page = PageOptions(out / "mine.csv", limit=12)
-    write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False), page=page)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(report, "measured_table", lambda *_, **__: measured)
+        patch.setattr(report, "train_models", lambda *_, **__: training)
+        write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False), page=page)
     return out
 
 
