@@ -6,7 +6,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
-from importlib.abc import MetaPathFinder
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import ModuleType
 from typing import ParamSpec, TypeVar
@@ -47,13 +48,17 @@ def _known_to_be_missing(name: str) -> Iterator[None]:
         sys.meta_path.remove(finder)
 
 
-class _Missing(MetaPathFinder):
-    """Finds nothing, and ends the search for one name."""
+class _Missing(MetaPathFinder, Loader):
+    """Finds a name that cannot be loaded, which ends the search for it; who only asks whether it is there goes on."""
 
     def __init__(self, name: str) -> None:
         self._name = name
 
-    def find_spec(self, fullname: str, path: object, target: ModuleType | None = None) -> None:  # noqa: ARG002
+    def find_spec(self, fullname: str, path: object, target: ModuleType | None = None) -> ModuleSpec | None:  # noqa: ARG002
+        """Return what cannot be loaded for the name, nothing for others."""
+        return ModuleSpec(fullname, self) if fullname == self._name else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
         """Refuse the name.
 
         Raises
@@ -61,5 +66,7 @@ class _Missing(MetaPathFinder):
         ModuleNotFoundError
             As the search would end.
         """
-        if fullname == self._name:
-            raise ModuleNotFoundError(f"No module named {fullname!r}", name=fullname)
+        raise ModuleNotFoundError(f"No module named {spec.name!r}", name=spec.name)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Do nothing: no module is ever made."""

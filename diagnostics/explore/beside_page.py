@@ -17,7 +17,7 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.chosen_records import chosen_records, missing_parts
 from diagnostics.explore.look import look_of, look_page
 from diagnostics.explore.measured_page import ShownRecording, missing_sentences, recordings_source
-from diagnostics.explore.packed import packed_floats, unpacked_floats
+from diagnostics.explore.packed import packed_column, unpacked_column
 from diagnostics.explore.payload import PageSource, Shown
 from diagnostics.explore.set_page import LookOptions, set_name
 from diagnostics.explore.set_source import set_source
@@ -160,12 +160,10 @@ def _renamed(measured: PageSource, named: Mapping[str, str], numbers: Mapping[in
 def _indicators(measured: PageSource, simulated: PageSource, named: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return the indicators of the set, with the values of recordings before them."""
     ours = measured.labels["record_id"].size
-    values = {
-        _renamed_column(one["name"], one["channel"], named): unpacked_floats(one["data"]) for one in measured.indicators
-    }
+    values = {_renamed_column(one["name"], one["channel"], named): unpacked_column(one) for one in measured.indicators}
     none = np.full(ours, np.nan)
     return [
-        {**one, "data": packed_floats(np.concatenate([values.get(one["name"], none), unpacked_floats(one["data"])]))}
+        {**one, **packed_column(np.concatenate([values.get(one["name"], none), unpacked_column(one)]))}
         for one in simulated.indicators
     ]
 

@@ -1,14 +1,17 @@
-"""Arrays as short texts: 16-bit integers with one step, or 32-bit floats, in base 64 and little-endian."""
+"""Arrays as short texts: 16-bit integers with one step, or floats, in base 64 and little-endian."""
 
 from __future__ import annotations
 
 import base64
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 LARGEST = 32_767
 UNDEFINED = -32_768
+MOST_EXACT = 2_000
+"""Records whose indicators have all digits of 32-bit floats."""
 
 
 def packed_steps(values: np.ndarray, step: float | None = None) -> dict[str, Any]:
@@ -34,9 +37,24 @@ def packed_floats(values: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(values, "<f4").tobytes()).decode("ascii")
 
 
-def unpacked_floats(data: str) -> np.ndarray:
-    """Return what `packed_floats` packed."""
-    return np.frombuffer(base64.b64decode(data), "<f4")
+def packed_column(values: np.ndarray) -> dict[str, str]:
+    """Return a column of all records, kind and data: 32-bit floats, or of many records their upper 16 bits.
+
+    Rounded to those a value errs by at most 0.4 %; a page of 10,000 records is half as large.
+    """
+    if values.size <= MOST_EXACT:
+        return {"kind": "float", "data": packed_floats(values)}
+    bits = np.ascontiguousarray(values, "<f4").view("<u4")
+    upper = ((bits + np.uint32(0x8000)) >> np.uint32(16)).astype("<u2")
+    return {"kind": "short", "data": base64.b64encode(upper.tobytes()).decode("ascii")}
+
+
+def unpacked_column(packed: Mapping[str, Any]) -> np.ndarray:
+    """Return what `packed_column` packed, (n,) float32."""
+    data = base64.b64decode(packed["data"])
+    if packed["kind"] == "float":
+        return np.frombuffer(data, "<f4")
+    return (np.frombuffer(data, "<u2").astype("<u4") << np.uint32(16)).view("<f4")
 
 
 def packed_places(values: np.ndarray) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnostics.base.progress import Stage
 from diagnostics.explore.detail import Detail, page_detail
-from diagnostics.explore.packed import packed_floats
+from diagnostics.explore.packed import packed_column
 from diagnostics.explore.page_labels import packed_labels, packed_rows
 from diagnostics.explore.record_views import PageAxes, highest_order, order_axis, record_views
 from diagnostics.indicators.registry import indicator_definitions, indicator_titles
@@ -204,9 +204,9 @@ def packed_indicators(
     for name, column in zip(names, values.T, strict=True):
         base, _, channel = name.rpartition("__") if name not in own else (name, "", "")
         if np.isfinite(column).any():
-            facts = {
+            facts: dict[str, Any] = {
                 "title": titles[held.get(channel, RECORDED).unit].get(base, name),
                 "definition": definitions.get(base, "your own indicator"),
             }
-            found.append({"name": name, "channel": channel, **facts, "data": packed_floats(column)})
+            found.append({"name": name, "channel": channel, **facts, **packed_column(column)})
     return found

@@ -10,7 +10,7 @@ import numpy as np
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.sideband_marks import mark_handles, order_words
 from diagnostics.page.style import state_colours, styled
-from diagnostics.page.wording import capitalised, counted, decimal, limits, percent, rounded
+from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, rounded
 from diagnostics.records.state_classes import HEALTHY, kind_name
 from diagnostics.report.drawing import BEHIND_COLOUR, DECADES_SHOWN, around, draw_spectrum, strongest
 from diagnostics.report.examples import Example, ExampleSet
@@ -20,11 +20,11 @@ from diagnostics.training.detectors import FEWEST_SPECIMENS, Detectors
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MOST_SIZES = 4
-"""Rows of the figure; more do not fit the first screen."""
+MOST_SIZES, MOST_KINDS = 4, 3
+"""Rows of the figure, and kinds of damage in the sentence; more do not fit the first screen."""
 
 SPACE = "\N{NO-BREAK SPACE}"
-SIZE_IN, ORDERS = (6.6, 1.1, 1.05), 4.6
+SIZE_IN, ORDERS = (5.6, 1.0, 1.0), 4.6
 """Width, and height of the frame and of a row [in]; how far from the mesh line spectra are shown."""
 
 
@@ -114,7 +114,8 @@ def first_answer(found: Detectors) -> str:
     reached = {kind: kind in best.sizes and best.sizes[kind].reached for kind in kinds}
     order = sorted(kinds, key=lambda kind: not reached[kind])
     said = [_kind_words(best, kind, best.sizes.get(kind), kind_name(kind, kinds)) for kind in order]
-    return f"{by} finds {'; '.join(part for part in said if part)}."
+    more = f"; further kinds of damage: {len(said) - MOST_KINDS}" if len(said) > MOST_KINDS else ""
+    return f"{by} finds {'; '.join(said[:MOST_KINDS])}{more}."
 
 
 def detector_words(best: Detector) -> str:
@@ -134,13 +135,29 @@ def _kind_words(best: Detector, kind: str, size: FoundSize | None, name: str) ->
     return f"of **{name}**{area} only **{share}**"
 
 
-def first_certainty(found: Detectors) -> str:
-    """Say in a sentence how sure the answer is."""
+def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
+    """Say how sure the answer is, and what takes from it.
+
+    Parameters
+    ----------
+    found : Detectors
+    error_free : bool
+        Whether the gears have no manufacturing errors.
+    audit : str
+        What the audit says of traps in the set; its first sentence is told.
+    """
     best = found.strongest
     if best is None:
         return "Nothing is known."
     spread = f"95{SPACE}% limits {limits(best.every)}" if math.isfinite(best.every.low) else "no limits"
-    return (
+    parts = [
         f"Judged on **{counted(best.specimens, 'gearbox')} that it had not learnt from**, at 5{SPACE}% false alarms: "
         f"**AUC {decimal(best.every.value)}** for all damage ({spread}; 0.5 is chance, 1 is perfect)."
-    )
+    ]
+    sham = best.sham
+    lost = [name for name, state in best.states.items() if sham and not state.auc.value > sham.value]
+    if sham and lost:
+        parts.append(f"**Damage without effect is told too (AUC {decimal(sham.value)})**: {joined(lost)} is not found.")
+    if error_free:
+        parts.append("**The gears have no manufacturing errors**: on a real machine nothing is known.")
+    return " ".join([*parts, f"{audit.split('. ', maxsplit=1)[0].rstrip('.')}."])

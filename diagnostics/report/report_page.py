@@ -131,7 +131,8 @@ def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> st
     states = next((tuple(one.states) for one in detectors.alone.values()), ())
     figure = next((pictures[name] for name in (FIRST, ANSWER) if name in pictures), None)
     shown = html.figure_block(*figure, records_line("Records", state_links(states))) if figure else ""
-    said = [("What is found", first_answer(detectors)), ("How sure", first_certainty(detectors))]
+    sure = first_certainty(detectors, error_free=is_error_free(reported.dataset.config), audit=reported.audit)
+    said = [("What is found", first_answer(detectors)), ("How sure", sure)]
     return html.answer(said, shown)
 
 

@@ -35,7 +35,7 @@ sys.path.insert(0, str(ROOT))
 
 from diagnostics.base.progress import silent_stage  # noqa: E402
 from diagnostics.explore.look import look_of, look_page  # noqa: E402
-from diagnostics.explore.packed import packed_floats, unpacked_floats  # noqa: E402
+from diagnostics.explore.packed import packed_column, unpacked_column  # noqa: E402
 from diagnostics.explore.payload import PageSource, Shown  # noqa: E402
 from diagnostics.explore.set_page import COLUMNS, FILTERS  # noqa: E402
 from diagnostics.explore.set_source import set_source  # noqa: E402
@@ -52,14 +52,14 @@ SEEN: tuple[tuple[str, tuple[int, int], tuple[str, ...]], ...] = (
 )
 """How pages are looked at: name, window, flags of the browser."""
 
-WATCH = """<script>window.found={errors:[]};
+WATCH = """window.found={errors:[]};
 addEventListener("error",(e)=>found.errors.push(String(e.message)));
 addEventListener("unhandledrejection",(e)=>found.errors.push(String(e.reason)));
 addEventListener("securitypolicyviolation",(e)=>found.errors.push("policy: "+e.violatedDirective+" "+e.blockedURI));
 for(const kind of ["error","warn"]){const was=console[kind];
 console[kind]=(...a)=>{found.errors.push(a.join(" "));was(...a)}}
-</script>"""
-MEASURE = """<script>(async()=>{
+"""
+MEASURE = """(async()=>{
 const frame=()=>new Promise((done)=>requestAnimationFrame(()=>setTimeout(done,0)));
 await frame();found.first=performance.now();
 const plot=Explore.plots.get(document.querySelector("#look-waveform .plot")),x=plot.data[0];
@@ -72,38 +72,38 @@ Explore.open(k+1);await frame();found.open.push(performance.now()-begun)}
 found.asked=performance.getEntriesByType("resource").map((one)=>one.name);
 if(window.axe){const all=(await axe.run(document)).violations;
 found.axe=all.map((v)=>({id:v.id,impact:v.impact,nodes:v.nodes.length,first:v.nodes[0].html.slice(0,160)}))}
-await fetch("done",{method:"POST",body:JSON.stringify(found)})})()</script>""".replace("TIMES", str(TIMES))
+await fetch("done",{method:"POST",body:JSON.stringify(found)})})()""".replace("TIMES", str(TIMES))
 
 
-ASK = """<script>addEventListener("load",async()=>{
+ASK = """addEventListener("load",async()=>{
 await new Promise((done)=>setTimeout(done,400));
 found.wide=Math.max(0,document.documentElement.scrollWidth-document.documentElement.clientWidth);
 found.asked=performance.getEntriesByType("resource").map((one)=>one.name);
 for(const body of document.querySelectorAll("tbody"))[...body.rows].slice(20).forEach((row)=>row.remove());
 if(window.axe){const all=(await axe.run(document)).violations;
 found.axe=all.map((v)=>({id:v.id,impact:v.impact,nodes:v.nodes.length,first:v.nodes[0].html.slice(0,160)}))}
-await fetch("done",{method:"POST",body:JSON.stringify(found)})})</script>"""
+await fetch("done",{method:"POST",body:JSON.stringify(found)})})"""
 
 
 def axe_source(file: Path | None) -> str:
-    """Return axe-core as a script element; nothing where it is not installed."""
+    """Return axe-core; nothing where it is not installed."""
     places = [file] if file else []
     for package in ("axe_core_python", "axe_playwright_python"):
         found = find_spec(package)
         places += [Path(folder) / "axe.min.js" for folder in (found.submodule_search_locations or [])] if found else []
     place = next((path for path in places if path.is_file()), None)
-    return f"<script>{place.read_text(encoding='utf-8')}</script>" if place else ""
+    return place.read_text(encoding="utf-8") if place else ""
 
 
 def instrumented(page: str, more: str, asked: str = MEASURE) -> str:
     """Return the page with what watches it and asks it, with leave to run both and to send back what they found."""
-    scripts = [part.split("</script>")[0] for part in f"{more}{asked}".split("<script>")[1:]]
-    allowed = " ".join(script_hash(script) for script in scripts)
+    scripts = [script for script in (more, asked) if script]
+    allowed = " ".join(map(script_hash, scripts))
     page = page.replace("default-src 'none';", "default-src 'none'; connect-src 'self';", 1)
     page = page.replace("script-src ", f"script-src {allowed} ", 1)
-    return page.replace('<meta charset="utf-8">', f'<meta charset="utf-8">{WATCH}', 1).replace(
-        "</body>", f"{more}{asked}</body>", 1
-    )
+    elements = "".join(f"<script>{script}</script>" for script in scripts)
+    watched = page.replace('<meta charset="utf-8">', f'<meta charset="utf-8"><script>{WATCH}</script>', 1)
+    return watched.replace("</body>", f"{elements}</body>", 1)
 
 
 def measured(program: str, page: str, size: tuple[int, int], flags: Sequence[str] = ()) -> dict[str, Any]:
@@ -188,9 +188,7 @@ def many(source: PageSource) -> PageSource:
     labels = {name: np.tile(values, MANY) for name, values in source.labels.items()}
     labels["record_id"] = np.arange(MANY * records)
     labels["specimen_id"] = labels["specimen_id"] + GEARBOXES * np.repeat(np.arange(MANY), records)
-    indicators = [
-        {**one, "data": packed_floats(np.tile(unpacked_floats(one["data"]), MANY))} for one in source.indicators
-    ]
+    indicators = [{**one, **packed_column(np.tile(unpacked_column(one), MANY))} for one in source.indicators]
     over = [None if row is None else row + k * records for k in range(MANY) for row in source.overlay]
     return replace(source, labels=labels, indicators=indicators, further={}, overlay=over)
 

@@ -26,10 +26,10 @@ PARTS = {
 }
 """Picture -> the elements from whose top to whose bottom it reaches."""
 
-PLACES = """<script>addEventListener("load",async()=>{await new Promise((done)=>setTimeout(done,1500));
+PLACES = """addEventListener("load",async()=>{await new Promise((done)=>setTimeout(done,1500));
 const at=(name)=>document.querySelector(name).getBoundingClientRect();
 found.at=PARTS.map(([first,last])=>[at(first).top+scrollY,Math.max(at(first).bottom,at(last).bottom)+scrollY]);
-await fetch("done",{method:"POST",body:JSON.stringify(found)})})</script>"""
+await fetch("done",{method:"POST",body:JSON.stringify(found)})})"""
 
 
 def places(program: str, page: str) -> list[tuple[float, float]]:

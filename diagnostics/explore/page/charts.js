@@ -88,7 +88,7 @@ Explore.line = (label, colour, more = {}) => ({
   value: (_, value) => (value == null ? "–" : Explore.number(value)), ...more,
 });
 
-// what: {title, caption, x, y, series, data, marks, range, group, height, start, cursor, summary, hooks, xAxis, yAxis, scaleY, bare}
+// what: {title, caption, x, y, series, data, marks, range, group, height, start, short, cursor, summary, hooks, xAxis, yAxis, scaleY, bare}
 Explore.chart = (host, what) => {
   const figure = Explore.element("figure");
   const area = Explore.element("div", "", { class: "plot", tabindex: "0", role: "img", "aria-label": `${what.title}. ${what.summary || ""} Keys plus, minus, arrows and 0 zoom.` });
@@ -101,7 +101,7 @@ Explore.chart = (host, what) => {
     scales: { x: { time: false }, y: what.scaleY || {} },
     axes: [Explore.axis(what.x, false, what.xAxis), Explore.axis(what.y, true, what.yAxis)],
     legend: { show: !what.bare },
-    series: [{ label: what.x, value: (_, value) => (value == null ? "–" : Explore.number(value)) }, ...what.series],
+    series: [{ label: what.short || what.x, value: (_, value) => (value == null ? "–" : Explore.number(value)) }, ...what.series],
     cursor: { drag: { x: true, y: false }, focus: { prox: 16 }, ...(what.group ? { sync: { key: what.group, setSeries: false } } : {}), ...what.cursor },
     hooks: {
       drawClear: what.marks ? [Explore.markHook(what.marks)] : [],

@@ -83,10 +83,13 @@ Explore.drawAll = () => {
   Explore.draw();
 };
 
-// Charts are drawn before the page knows that it is printed: dark ones would be pale on paper.
+// Charts are drawn before the page knows that it is printed: dark ones would be pale on paper, and wide ones cut.
+Explore.PAPER = 330; // half a sheet [px]
 Explore.drawForPaper = (printed) => {
   document.documentElement.classList.toggle("print", printed);
   if (matchMedia("(prefers-color-scheme: dark)").matches) Explore.drawAll();
+  if (!printed) return Explore.resize();
+  for (const plot of Explore.plots.values()) plot.setSize({ width: Explore.PAPER, height: plot.height });
 };
 
 // Channel, and what the chosen record is laid over.

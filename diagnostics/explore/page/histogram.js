@@ -56,7 +56,7 @@ Explore.drawHistogram = () => {
   const others = Explore.data.measured ? "others" : "damaged";
   const named = bars.texts && { values: (_, splits) => splits.map((value) => (Number.isInteger(value) ? bars.texts[value] ?? "" : "")) };
   Explore.chart(body, {
-    title: column.title, x: column.title, y: "records", height: 220, data: [bars.x, ...bars.counts], range: bars.range, xAxis: named || {},
+    title: column.title, x: column.title, short: "at", y: "records", height: 220, data: [bars.x, ...bars.counts], range: bars.range, xAxis: named || {},
     series: [series(`all, ${others} above`, "record"), series("healthy", "healthy")], scaleY: { range: (_, low, high) => [0, high || 1] },
     summary: `${Explore.shown.length} records from ${Explore.number(bars.range[0])} to ${Explore.number(bars.range[1])}.`,
     caption: bars.texts ? "Choose a value in the fields above." : "Drag to choose a range, or write its ends.",

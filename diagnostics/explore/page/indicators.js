@@ -6,12 +6,16 @@ Explore.quantile = (sorted, share) => {
   return sorted[low] + (at - low) * (sorted[Math.min(low + 1, sorted.length - 1)] - sorted[low]);
 };
 
+Explore.MOST_HEALTHY = 400;
+
 // Rows of healthy records of other gearboxes: at the same operating point where these are five or more.
 Explore.healthyRows = (row) => {
   const { records } = Explore;
   const others = records.flatMap((record, k) => (record.fault === "healthy" && record.kind !== "recording" && record.specimen_id !== records[row].specimen_id ? [k] : []));
   const near = others.filter((k) => records[k].operating_point_id === records[row].operating_point_id);
-  return near.length >= 5 ? [near, "at the same operating point"] : [others, "at any operating point"];
+  const [found, where] = near.length >= 5 ? [near, "at the same operating point"] : [others, "at any operating point"];
+  const count = Math.min(found.length, Explore.MOST_HEALTHY); // evenly spread: of so many, more change no quartile
+  return [Array.from({ length: count }, (_, k) => found[Math.floor((k * found.length) / count)]), where];
 };
 
 Explore.place = (values, row, healthy) => {
@@ -26,7 +30,18 @@ Explore.place = (values, row, healthy) => {
 
 Explore.MOST_INDICATORS = 20;
 
+// It looks through all indicators of all healthy records, so it waits until it comes into view.
 Explore.showIndicators = (section, row, channel) => {
+  Explore.indicatorsWatch?.disconnect();
+  Explore.indicatorsWatch = new IntersectionObserver((seen) => {
+    if (!seen.some((entry) => entry.isIntersecting)) return;
+    Explore.indicatorsWatch.disconnect();
+    Explore.fillIndicatorsOf(section, row, channel);
+  });
+  Explore.indicatorsWatch.observe(section);
+};
+
+Explore.fillIndicatorsOf = (section, row, channel) => {
   const body = section.querySelector(".body");
   const controls = section.querySelector(".controls");
   const [healthy, where] = Explore.healthyRows(row);

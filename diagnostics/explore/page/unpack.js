@@ -52,14 +52,15 @@ Explore.revolutions = (samples, pulses) => {
 Explore.unpackLabel = ({ kind, names, data }) => {
   if (kind === "text") return Array.from(new Uint16Array(Explore.bytes(data)), (code) => (code ? names[code - 1] : null));
   if (kind === "whole") return Array.from(new Int32Array(Explore.bytes(data)));
-  return Array.from(Explore.floats(data), (value) => (Number.isFinite(value) ? value : null));
+  const floats = kind === "short" ? new Float32Array(Uint32Array.from(new Uint16Array(Explore.bytes(data)), (upper) => upper << 16).buffer) : Explore.floats(data);
+  return Array.from(floats, (value) => (Number.isFinite(value) ? value : null));
 };
 
 // Everything that records can be chosen and drawn by: labels, then indicators; values are unpacked when they are wanted.
 Explore.columns = [
   ...Explore.data.labels.map((label) => ({ ...label, group: "labels", indicator: null })),
   ...Explore.data.indicators.map((one) => ({
-    name: one.name, title: one.channel ? `${one.title} (${one.channel})` : one.title, kind: "float", data: one.data,
+    name: one.name, title: one.channel ? `${one.title} (${one.channel})` : one.title, kind: one.kind, data: one.data,
     group: one.channel ? `indicators of ${one.channel}` : "your indicators", indicator: one,
   })),
 ];

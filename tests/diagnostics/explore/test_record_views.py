@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from diagnostics.explore.packed import packed_places, packed_steps
+from diagnostics.explore.packed import MOST_EXACT, packed_column, packed_places, packed_steps, unpacked_column
 from diagnostics.explore.record_views import drawn_signal, extreme_points
 from tests.diagnostics.explore.unpacked import places, steps
 
@@ -49,3 +49,12 @@ def test_packed_values_come_back_within_half_a_step() -> None:
 @pytest.mark.parametrize("found", [[0, 3, 3 + 65_535], [5, 70_000, 5_000_000], []])
 def test_packed_places_come_back_exactly(found: list[int]) -> None:
     assert places(packed_places(np.array(found, dtype=np.int64))).tolist() == found
+
+
+def test_a_column_keeps_its_digits_up_to_many_records_and_then_errs_by_four_in_a_thousand() -> None:
+    values = np.random.default_rng(1).lognormal(0.0, 6.0, MOST_EXACT + 1)
+    values[7] = np.nan
+    np.testing.assert_array_equal(unpacked_column(packed_column(values[:-1])), values[:-1].astype("<f4"))
+    short = packed_column(values)
+    assert len(short["data"]) < 0.6 * len(packed_column(values[:-1])["data"])
+    np.testing.assert_allclose(unpacked_column(short), values, rtol=2.0**-8)  # 7 bits of mantissa, rounded

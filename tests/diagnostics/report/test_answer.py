@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 from diagnostics.report.answer import LOOKS, answer_figure, answer_sentences
+from diagnostics.report.first_screen import first_answer, first_certainty
 from diagnostics.statistics.detector import Detector, FoundSize, StateFound
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.detectors import CHOSEN, CLASSIFIER, INDICATOR, NETWORKS, Detectors
@@ -122,3 +123,25 @@ def test_the_figure_has_a_mark_for_the_chosen_size_and_says_where_sizes_are_too_
     drawn = [line.get_linestyle() for line in above.lines if line.get_color() == LOOKS[CHOSEN][1]]
     assert underlined == drawn
     assert len(set(drawn)) == 2
+
+
+def test_the_first_screen_names_damage_size_detector_and_certainty() -> None:
+    found = Detectors({CLASSIFIER: detector(0.8, 4.0), CHOSEN: detector(0.8, 4.0)}, {})
+    answer = first_answer(found).replace("\xa0", " ")
+    assert answer == "**Logistic regression** finds **pitting from 4 mm²** on, in nine of ten records."
+    never = Detectors({CHOSEN: detector(0.8, math.inf)}, {})
+    assert first_answer(never).replace("\xa0", " ").endswith("finds of **pitting**, up to 8 mm², only **40 %**.")
+    sure = first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")
+    assert sure == (
+        "Judged on **24 gearboxes that it had not learnt from**, at 5 % false alarms: **AUC 0.80** for all damage "
+        "(95 % limits 0.70 to 0.90; 0.5 is chance, 1 is perfect). No trap was found."
+    )
+
+
+def test_what_takes_from_the_answer_stands_on_the_first_screen() -> None:
+    leaking = Detectors({CHOSEN: replace(detector(0.8, 4.0), sham=Interval(0.7, 0.6, 0.8))}, {})
+    sure = first_certainty(leaking, error_free=True, audit="A trap was found. More.")
+    assert "**Damage without effect is told too (AUC 0.70)**: slight is not found." in sure
+    assert "**The gears have no manufacturing errors**" in sure
+    assert sure.endswith("A trap was found.")
+    assert first_answer(Detectors({}, {})).startswith("**No answer**")
