@@ -52,7 +52,7 @@ def pages(*, slow: bool) -> list[Path]:
 
 @pytest.fixture(scope="module")
 def things(tmp_path_factory: pytest.TempPathFactory) -> Given:
-    return Given(tmp_path_factory.mktemp("given"), reader_environment())
+    return Given(tmp_path_factory.mktemp("given"))
 
 
 @pytest.fixture
