@@ -61,9 +61,9 @@ def leaking(clean: PlantedSet) -> PlantedSet:
     return replace(clean, table=table.append_column("made_at", pa.array(made)))
 
 
-def test_six_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: PlantedSet) -> None:
+def test_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: PlantedSet) -> None:
     found = {finding.trap: finding for finding in separability_findings(measured_set(leaking(clean)))}
-    for layer in ("channels", "lines", "edges", "offsets", "lags", "texts"):
+    for layer in ("channels", "lines", "edges", "offsets", "lags", "texts", "levels"):
         assert f"state_told_by_{layer}" in found
     assert f"of {CHANNELS[2]} at 0.49" in found["state_told_by_lines"].measured
     assert "first" in found["state_told_by_edges"].measured

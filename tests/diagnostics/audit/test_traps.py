@@ -85,7 +85,7 @@ def test_of_ten_traps_one_per_layer_each_is_found_and_named(clean: MeasuredSet, 
 
 def test_attackers_that_never_see_the_gears_stay_below_chance_on_a_clean_set(clean: MeasuredSet) -> None:
     assert condition_traps(clean) == []
-    raw = {"edges", "offsets", "lines"}
+    raw = {"edges", "offsets", "lines", "samples", "ends", "clock"}
     assert set(condition_layers(clean)) == {"metadata", "texts", "order", "bytes", "noise", "channels"} | raw
     shown = [name for _, names in condition_layers(clean).values() for name in names]
     assert not {"record_id", "damaged_area_mm2", "snr_lid_x_db", "mesh_stiffness_loss"} & set(shown)
