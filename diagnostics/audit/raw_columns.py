@@ -18,7 +18,7 @@ from diagnostics.audit.quiet_ends import quiet_ends
 from diagnostics.audit.raw_edges import edge_ranks, offsets
 from diagnostics.audit.raw_lines import line_columns, line_contrast, shaft_rates_hz
 from diagnostics.audit.stored_samples import sample_marks, stored_numbers, without_ends
-from diagnostics.audit.time_templates import level_course, template_product, whitened_codes
+from diagnostics.audit.time_templates import level_course, template_products, whitened_codes
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.recording import Recording
 
@@ -85,11 +85,7 @@ def raw_columns(records: Iterable[Recording]) -> RawColumns:
     layers = {layer: _columns([one.layers[layer] for one in found]) for layer in found[0].layers}
     layers[STORED] = without_ends(layers[STORED])
     layers[LINES] = line_columns([one.lines for one in found]) | _of_all_records(layers[LINES])
-    courses = np.stack([one.course for one in found]).astype(np.float64)
-    templates = {
-        "spectra": template_product([one.codes for one in found]),
-        "courses of the level": courses @ courses.T,
-    }
+    templates = template_products([one.codes for one in found], [one.course for one in found])
     return RawColumns(layers, _columns([one.levels for one in found]), [one.marks for one in found], fs_hz, templates)
 
 

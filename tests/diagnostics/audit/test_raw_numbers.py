@@ -9,7 +9,7 @@ from diagnostics.audit.label_digits import digit_columns
 from diagnostics.audit.mesh_clock import clock_drift, mesh_fractions
 from diagnostics.audit.quiet_ends import quiet_ends
 from diagnostics.audit.stored_samples import stored_numbers, without_ends
-from diagnostics.audit.time_templates import template_product, whitened_codes
+from diagnostics.audit.time_templates import level_course, template_products, whitened_codes
 
 FS_HZ, TEETH, RATE_HZ = 12_800.0, 18, 31.7
 TIME_S = np.arange(16_384) / FS_HZ
@@ -83,9 +83,11 @@ def test_noise_far_below_that_of_a_record_is_found_again_in_another_one() -> Non
     # records start at any angle
     turned = [np.roll(50.0 * strokes(), 97 * seed) * (seed % 2) for seed in range(8)]
     own = [whitened_codes(noise(10 + k) + turned[k] + common * (k < 4)) for k in range(8)]
-    product = template_product(own)
+    products = template_products(own, [level_course(noise(20 + k)) for k in range(8)])
+    assert len(products) == 5
+    product = products["spectra, lines 2048 to 8192"]
     same, other = product[:4, :4][np.triu_indices(4, 1)], product[4:, 4:][np.triu_indices(4, 1)]
-    # 16384 numbers: independent spectra scatter by 1/128
+    # 12288 numbers: independent spectra scatter by 1/110
     assert same.mean() > 0.02
     assert abs(other.mean()) < 0.015
 
