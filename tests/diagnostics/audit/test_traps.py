@@ -20,14 +20,14 @@ LAYER = "state_told_by_"
 
 
 @pytest.fixture(scope="module")
-def clean() -> MeasuredSet:
-    return measured(Plant())
+def clean(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
+    return measured(Plant(), tmp_path_factory)
 
 
 @pytest.fixture(scope="module")
-def twice() -> MeasuredSet:
+def twice(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
     """Return a clean set with two records of every state of a gearbox at one operating point."""
-    return measured(Plant(points=1, repeats=2))
+    return measured(Plant(points=1, repeats=2), tmp_path_factory)
 
 
 def traps(found: MeasuredSet) -> list[str]:
@@ -71,8 +71,10 @@ def test_labels_of_the_damage_itself_are_no_tie(clean: MeasuredSet) -> None:
     ],
     ids=["sidebands_tooth", "errors_noise", "length_channels_start"],
 )
-def test_traps_in_the_signals_give_exactly_their_findings(plant: Plant, expected: list[str]) -> None:
-    assert named(measured(plant)) == expected
+def test_traps_in_the_signals_give_exactly_their_findings(
+    plant: Plant, expected: list[str], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    assert named(measured(plant, tmp_path_factory)) == expected
 
 
 @pytest.mark.parametrize("layer", TRAPS)
