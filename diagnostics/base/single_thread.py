@@ -6,7 +6,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
-from importlib.abc import MetaPathFinder
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import ModuleType
 from typing import ParamSpec, TypeVar
@@ -47,19 +48,28 @@ def _known_to_be_missing(name: str) -> Iterator[None]:
         sys.meta_path.remove(finder)
 
 
-class _Missing(MetaPathFinder):
-    """Finds nothing, and ends the search for one name."""
+class _Missing(MetaPathFinder, Loader):
+    """Ends the search for one name: whoever imports it is told at once that it is not there.
+
+    The refusal comes with the import, not with the search: PyTorch searches for pandas and takes no exception for it.
+    """
 
     def __init__(self, name: str) -> None:
         self._name = name
 
-    def find_spec(self, fullname: str, path: object, target: ModuleType | None = None) -> None:  # noqa: ARG002
-        """Refuse the name.
+    def find_spec(self, fullname: str, path: object, target: ModuleType | None = None) -> ModuleSpec | None:  # noqa: ARG002
+        """Return a module without a file for the name, nothing for others."""
+        return ModuleSpec(fullname, self) if fullname == self._name else None
+
+    def create_module(self, spec: ModuleSpec) -> None:
+        """Refuse the import.
 
         Raises
         ------
         ModuleNotFoundError
             As the search would end.
         """
-        if fullname == self._name:
-            raise ModuleNotFoundError(f"No module named {fullname!r}", name=fullname)
+        raise ModuleNotFoundError(f"No module named {spec.name!r}", name=spec.name)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Run nothing: there is no module."""
