@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+from importlib.util import find_spec
 
 import pytest
 
@@ -13,16 +14,14 @@ NOBODYS = "no_package_has_this_name"
 
 
 def test_a_missing_package_is_missed_at_once_in_nested_calls_too() -> None:
-    before = list(sys.meta_path)
     with known_to_be_missing(NOBODYS), known_to_be_missing(NOBODYS):
-        assert len(sys.meta_path) == len(before) + 1
-        with pytest.raises(ModuleNotFoundError, match=f"No module named '{NOBODYS}'"):
+        with pytest.raises(ModuleNotFoundError, match=NOBODYS):
             importlib.import_module(NOBODYS)
+        assert find_spec(NOBODYS) is None  # who only searches for it, as PyTorch does, is told so
         assert importlib.import_module("json").loads("1") == 1
-    assert sys.meta_path == before
+    assert NOBODYS not in sys.modules
 
 
 def test_a_package_that_is_there_stays_there() -> None:
-    before = list(sys.meta_path)
     with known_to_be_missing("numpy"):
-        assert sys.meta_path == before
+        assert importlib.import_module("numpy").ones(2).sum() == 2.0
