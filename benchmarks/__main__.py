@@ -38,7 +38,7 @@ DEFAULT = (
         "workers",
         "quickstart",
     ),
-    *("indicators", "pages", "house", "engines", "audit"),
+    *("indicators", "pages", "house", "engines", "audit", "scoring"),
 )
 """CPU time and memory first, then wall time, then what takes long."""
 APART = ("contact", "faults", "anywhere")

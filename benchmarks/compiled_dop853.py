@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate._ivp import dop853_coefficients as table
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 STAGES, ALL_STAGES = table.N_STAGES, table.N_STAGES_EXTENDED
 A, B, C = np.ascontiguousarray(table.A), np.ascontiguousarray(table.B), np.ascontiguousarray(table.C)
@@ -21,7 +21,7 @@ POWERS = table.INTERPOLATOR_POWER
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 
 
-@njit()
+@entry()
 def dop853(
     rate: Any, model: Any, start: FloatArray, rate_hz: float, step_s: float, tolerance: tuple[float, float]
 ) -> FloatArray:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.mesh.mesh_force import MeshLaw, mesh_stiffness
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
@@ -48,7 +48,7 @@ def compiled_rate(motion: Motion, speed_input: int, pitches: FloatArray, inputs:
     return _linear_rate, (motion.equations, motion.law, pitches, inputs)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def stiffness_along(law: MeshLaw, pitches: FloatArray) -> FloatArray:
     """Return the mesh stiffness (k,) [N/m] of the linear law at angles (k,) in base pitches."""
     found = np.empty_like(pitches)
@@ -57,7 +57,7 @@ def stiffness_along(law: MeshLaw, pitches: FloatArray) -> FloatArray:
     return found
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _pair_rate(
     model: tuple[PairEquations, tuple[PairLaw, ...], tuple[FloatArray, ...], int, FloatArray, FloatArray],
     place: float,
@@ -82,7 +82,7 @@ def _pair_rate(
             rate[half + i] += value * equations.external_input[k, i]
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _linear_rate(
     model: tuple[Equations, MeshLaw, FloatArray, FloatArray], place: float, state: FloatArray, rate: FloatArray
 ) -> None:

@@ -21,6 +21,7 @@ from diagnostics.records.recording import Recording
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
 from diagnostics.signal.spectral_kurtosis import spectral_kurtosis
+from diagnostics.signal.spectrum import hann_amplitude
 from diagnostics.signal.synchronous_average import synchronous_average
 
 FS_HZ = 51_200.0
@@ -81,7 +82,9 @@ def _candidates(record: Recording) -> dict[str, Candidate]:
         "times of the angle steps": lambda: angle_grid(record.tacho_s, TEETH[0] * tooth),
         "resampling to angle": lambda: resample_to_angle(signal, FS_HZ, grid),
         "averages and indicators of both shafts": lambda: [_shaft_values(steps, s, settings) for s in shafts],
-        "log spectrum over orders": lambda: shaft_log_spectrum(steps, grid.revolutions, TEETH[0], highest),
+        "log spectrum over orders": lambda: shaft_log_spectrum(
+            hann_amplitude(steps), grid.revolutions, TEETH[0], highest
+        ),
         "spectral kurtosis": lambda: spectral_kurtosis(signal, settings.frame_samples),
     }
     return {name: Candidate(lambda _, call=call: call()) for name, call in functions.items()}  # type: ignore[misc]

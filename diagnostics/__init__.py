@@ -11,12 +11,24 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from diagnostics.indicators.classifier_table import table
     from diagnostics.loader.window_arrays import windows
+    from diagnostics.scoring.benchmark import open_benchmark
+    from diagnostics.scoring.benchmark_scores import score_benchmark
     from diagnostics.scoring.score import score
     from diagnostics.training.estimators import BoostingBaseline, LogisticBaseline
 
-__all__ = ["BoostingBaseline", "LogisticBaseline", "score", "table", "windows"]
+__all__ = [
+    "BoostingBaseline",
+    "LogisticBaseline",
+    "open_benchmark",
+    "score",
+    "score_benchmark",
+    "table",
+    "windows",
+]
 
 _HOMES = {
+    "open_benchmark": "diagnostics.scoring.benchmark",
+    "score_benchmark": "diagnostics.scoring.benchmark_scores",
     "score": "diagnostics.scoring.score",
     "table": "diagnostics.indicators.classifier_table",
     "windows": "diagnostics.loader.window_arrays",

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from siggen.dataset.reading import open
     from siggen.dataset.spreadsheet import write_csv
     from siggen.planning.plan import plan
+    from siggen.publication.publish import publish
     from siggen.record.simulation import simulate
     from siggen.sets.extension import extend
     from siggen.sets.generation import generate
@@ -32,6 +33,7 @@ __all__ = [
     "mesh_stiffness_meaning",
     "open",
     "plan",
+    "publish",
     "simulate",
     "write_card_section",
     "write_csv",
@@ -48,6 +50,7 @@ _HOMES = {
     "mesh_stiffness_meaning": ("siggen.views.stiffness_curves", "mesh_stiffness_meaning"),
     "open": ("siggen.dataset.reading", "open"),
     "plan": ("siggen.planning.plan", "plan"),
+    "publish": ("siggen.publication.publish", "publish"),
     "simulate": ("siggen.record.simulation", "simulate"),
     "write_card_section": ("siggen.dataset.card_section", "write_card_section"),
     "write_csv": ("siggen.dataset.spreadsheet", "write_csv"),

@@ -1,8 +1,10 @@
-"""njit: numba's compiler as this package uses it, with a cache wherever the package may lie.
+"""njit, entry: numba's compiler as this package uses it, with a cache wherever the package may lie.
 
-A function that C code could call by its address costs a wrapper, 13 % of all compilation; nothing here does that. Where
-neither the package's folder nor the user's can be written to, numba refuses to cache: then a private folder of the
-temporary ones is taken. `NUMBA_CACHE_DIR` goes before all of them.
+What Python calls needs a wrapper that takes its objects apart, what C code calls another one. Together they are a
+quarter of all compilation. So only an `entry` has the first, and nothing the second.
+
+Where neither the package's folder nor the user's can be written to, numba refuses to cache: then a private folder of
+the temporary ones is taken. `NUMBA_CACHE_DIR` goes before all of them.
 
 numba takes a function from its cache as long as the file of that function is the same, whatever became of those that it
 calls. Then a machine that has run an older version would go on with parts of it. So what is cached is of use for the
@@ -30,13 +32,39 @@ WITH_COMPILED_CODE = (
 """Files that compiled code may come from, constants included."""
 
 
+def entry(**options: Any) -> Callable[[Function], Function]:
+    """Return the decorator of compiled functions that Python calls, be it a test; options as of `njit`."""
+    return _decorator(options)
+
+
 def njit(**options: Any) -> Callable[[Function], Function]:
-    """Return the decorator that compiles a function on its first call; options as of `numba.njit`.
+    """Return the decorator of functions that compiled code alone calls; options as of `numba.njit`.
 
     But inline="always" is done by LLVM. numba itself would copy the untyped tree into each caller, with all that was
     copied into it before: of the loop's compilation that is a third, and code of the same bytes takes more cycles. So a
     function keeps its own error_model and fastmath where it is inlined; a caller's do not reach into it.
+
+    Called from Python, they raise a TypeError.
     """
+    decorated = _decorator({**options, "no_cpython_wrapper": True})
+    return lambda function: _kept_from_python(decorated(function))
+
+
+def _kept_from_python(function: Any) -> Any:
+    """Let Python see no version of a compiled function: it would jump to where there is nothing."""
+
+    def refuse(*_: object, **__: object) -> None:
+        name = f"{function.py_func.__module__}.{function.py_func.__qualname__}"
+        raise TypeError(f"{name} is compiled for compiled code alone; decorate it with @entry to call it from Python")
+
+    def keep(result: Any) -> None:
+        function.overloads[tuple(result.signature.args)] = result
+
+    function.add_overload, function._compile_for_args = keep, refuse
+    return function
+
+
+def _decorator(options: dict[str, Any]) -> Callable[[Function], Function]:
     if options.pop("inline", "") == "always":
         options["forceinline"] = True
 

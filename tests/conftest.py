@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Iterator
 
+import pytest
 from hypothesis import settings
 
 # No deadline: the first example of a property compiles its kernels. The same examples in every run, so that a failure
@@ -12,6 +14,15 @@ from hypothesis import settings
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None, max_examples=500)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def one_worker() -> Iterator[None]:
+    """Commands that are not told how many workers start one, not one per core: each start costs ten short records."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("siggen.engines.registry.default_workers", lambda: 1)
+        yield
+
 
 gc.disable()  # while tests are collected, which leaves nearly nothing and takes a sixth longer with it
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from siggen.compiled import WITH_COMPILED_CODE, private_folder
+from siggen.compiled import WITH_COMPILED_CODE, entry, njit, private_folder
 
 WITHOUT_A_FOLDER = """
 import numba.core.caching as caching
@@ -57,12 +58,27 @@ def test_a_folder_that_others_can_write_to_or_that_leads_elsewhere_is_not_taken(
     assert private_folder(tmp_path / "nowhere") is None
 
 
+def test_python_is_refused_by_a_function_for_compiled_code_alone() -> None:
+    def plus_one(x: float) -> float:
+        return x + 1.0
+
+    inner = njit(cache=False)(plus_one)
+
+    @entry(cache=False)
+    def outer(x: float) -> float:
+        return 2.0 * inner(x)
+
+    assert outer(3.0) == 8.0
+    with pytest.raises(TypeError, match=r"plus_one is compiled for compiled code alone; decorate it with @entry"):
+        inner(3.0)
+
+
 CALLED = "from siggen.compiled import njit\n\n@njit(cache=True)\ndef called(x):\n    return x + {added}\n"
 CALLER = """
-from siggen.compiled import is_cached, njit
+from siggen.compiled import entry, is_cached
 from siggen.dynamics.called import called
 
-@njit(cache=True)
+@entry(cache=True)
 def calling(x):
     return 2.0 * called(x)
 
@@ -91,5 +107,5 @@ def test_a_change_in_a_called_file_compiles_its_callers_again(tmp_path: Path) ->
 
 def test_the_sources_of_the_cache_hold_every_file_that_compiles() -> None:
     package = Path("siggen")
-    compiling = {path for path in package.rglob("*.py") if "njit" in path.read_text(encoding="utf-8")}
+    compiling = {path for path in package.rglob("*.py") if re.search("@(njit|entry)", path.read_text(encoding="utf-8"))}
     assert compiling <= {path for pattern in WITH_COMPILED_CODE for path in package.glob(pattern)}

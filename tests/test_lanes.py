@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numba.core.errors import TypingError
 
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.lanes import (
     LANES,
     aligned,
@@ -42,7 +42,7 @@ ODD = (0.0, -0.0, np.nan, np.inf, -np.inf, 5e-324, -5e-324, 1e308, -1e308)
 RESULTS = 13
 
 
-@njit(_nrt=False, error_model="numpy")
+@entry(_nrt=False, error_model="numpy")
 def _in_lanes(a, b, table, results):
     for first in range(0, a.size, LANES):
         x, y = load(a, first), load(b, first)
@@ -63,7 +63,7 @@ def _in_lanes(a, b, table, results):
         store(results, 12 * a.size + first, splat(0.0) + float(bits(x > y)))
 
 
-@njit(_nrt=False, error_model="numpy")
+@entry(_nrt=False, error_model="numpy")
 def _one_by_one(a, b, table, results):
     n = a.size
     for i in range(n):
@@ -96,7 +96,7 @@ def _law(x, y, table):
     return found, select(x != y, 1.0, 0.0)
 
 
-@njit(_nrt=False, error_model="numpy")
+@entry(_nrt=False, error_model="numpy")
 def _law_in_lanes(a, b, table, results):
     for first in range(0, a.size, LANES):
         found, apart = _law(load(a, first), load(b, first), table)
@@ -104,13 +104,13 @@ def _law_in_lanes(a, b, table, results):
         store(results, a.size + first, apart)
 
 
-@njit(_nrt=False, error_model="numpy")
+@entry(_nrt=False, error_model="numpy")
 def _law_of_scalars(a, b, table, results):
     for i in range(a.size):
         results[i], results[a.size + i] = _law(a[i], b[i], table)
 
 
-@njit(_nrt=False, error_model="numpy")
+@entry(_nrt=False, error_model="numpy")
 def _law_by_hand(a, b, table, results):
     for i in range(a.size):
         x, y = a[i], b[i]
@@ -122,7 +122,7 @@ def _law_by_hand(a, b, table, results):
         results[a.size + i] = 1.0 if x != y else 0.0
 
 
-@njit(_nrt=False, error_model="numpy")
+@entry(_nrt=False, error_model="numpy")
 def _weighted(table, weights, results):
     """Write weighted sums of the rows of a table over its 16 columns, in two registers."""
     total = _wide(0.0)
@@ -180,7 +180,7 @@ def test_sums_over_rows_are_those_of_the_written_order() -> None:
     assert table.ctypes.data % (8 * LANES) == 0
 
 
-@njit()
+@entry()
 def _first(values: np.ndarray) -> float:
     return extract(load(values, 0), 0)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.contact.record_case import SIGNAL_S, STEPS, RecordCase, record_case
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.drive.excitation import Turning
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import PairPlace, Spring, pair_spring
@@ -145,7 +145,7 @@ def _read(law: layout.PairLaw, pairs: FloatArray, i: int) -> tuple[float, float]
     return found.force, found.moment
 
 
-@njit(error_model="numpy")
+@entry(error_model="numpy")
 def _spring(law: layout.PairLaw, row: int, point: int, tilt: float, penetration_m: float) -> Spring:
     """Return the spring of a row of the tables at a point."""
     cell = min(point, law.places[layout.POINTS] - 2)

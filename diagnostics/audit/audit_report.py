@@ -24,6 +24,7 @@ from diagnostics.audit.best_indicator import best_indicators
 from diagnostics.audit.condition_traps import level_attackers
 from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
 from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
+from diagnostics.audit.held_out import Attacker
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
 from diagnostics.audit.separability_findings import separability_findings, verdict
@@ -251,15 +252,20 @@ def _attacks(
         bank = signal_attackers(measured, seed, advance)
     with stage("attacking", len(bank)) as advance:
         found = bank_detections(measured, bank, seed, advance)
-    sides = {
+    with stage("permuted states", len(damaged_states(measured))) as advance:
+        chance = chance_limit(measured, bank, seed, advance)
+    return found, chance, shams_found(measured, sham_sides(measured, bank), seed)
+
+
+def sham_sides(measured: MeasuredSet, bank: list[Attacker]) -> dict[str, list[Attacker]]:
+    """Return who is asked about shams, by what they see: a bank of attackers on signals, and those on raw levels."""
+    return {
         side: [
             *(one for one in bank if is_referenced(one.name) == (side == BESIDE)),
             *level_attackers(measured, referenced=side == BESIDE),
         ]
         for side in (SEEN_ALONE, BESIDE)
     }
-    with stage("permuted states", len(damaged_states(measured))) as advance:
-        return found, chance_limit(measured, bank, seed, advance), shams_found(measured, sides, seed)
 
 
 def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realism: bool) -> list[str]:

@@ -5,11 +5,8 @@ of all layers reaches in every one of 99 permutations per damaged state, of the 
 happens in at most 1 of 100 sets, since a state exceeds all of n permutations with probability 1/(n + 1). Measured:
 docs/understand/audit.md. Source: maximum statistic and Bonferroni, standard literature.
 
-Attackers that do not look at the gears: labels of the conditions, texts among them, order of the files, bytes of
-samples, noise over and between channels, edges, offsets and lines of raw records.
-
-Each layer is a table with one row per record. Its best column and all its columns together are tried, as they are and
-as differences from a healthy record of the same gearbox.
+Of each layer its best column and all its columns together are tried, as they are and as differences from a healthy
+record of the same gearbox.
 """
 
 from __future__ import annotations
@@ -21,28 +18,26 @@ import numpy as np
 
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.bank_detections import bank_maxima, damaged_states, permuted
-from diagnostics.audit.channel_lags import LAGS, lag_columns, sample_lags
+from diagnostics.audit.channel_lags import LAGS, lag_columns
 from diagnostics.audit.column_attackers import all_columns, best_column
-from diagnostics.audit.finding import Finding, must_not_tell
+from diagnostics.audit.condition_layers import (
+    BYTE,
+    CHANNELS,
+    METADATA,
+    NOISE,
+    ORDER,
+    TEXTS,
+    condition_changes,
+    condition_layers,
+    filled_columns,
+)
+from diagnostics.audit.finding import Finding
 from diagnostics.audit.held_out import Attacker, HeldOut, dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
-from diagnostics.audit.raw_columns import EDGES, LINES, OFFSETS
-from diagnostics.audit.residual_lines import line_array
-from diagnostics.audit.text_columns import text_columns
-from diagnostics.indicators.background_levels import NOISE_LEVELS
+from diagnostics.audit.raw_columns import CLOCK, EDGES, ENDS, LINES, OFFSETS, STORED
+from diagnostics.audit.small_damage import LEVELS, small_damage_attackers
+from diagnostics.audit.time_templates import TEMPLATES, template_attackers
 from diagnostics.records.planetary_members import is_planetary
-from diagnostics.records.sample_bytes import BYTES
-
-METADATA, TEXTS, BYTE, ORDER, NOISE, CHANNELS = "metadata", "texts", "bytes", "order", "noise", "channels"
-STEADY_BYTES = BYTES[:2]
-STEADY_NOISE = NOISE_LEVELS[4:]
-"""Bands in which a stroke has rung off within half a turn: from 637 Hz on at 25.6 kHz.
-
-With a damping ratio of 2 to 3 % an amplitude falls to a tenth in 19 to 29 ms at 637 Hz; half a turn at 25 Hz takes 20.
-Below, the quietest half turn still holds the strokes of severe damage. Measured: docs/understand/audit.md.
-"""
-
-PULSES = ("pulses_per_s", "speed_variation_percent", "start_turn")
 
 PERMUTATIONS = 99
 """For every damaged state."""
@@ -61,128 +56,49 @@ MENDS = {
     EDGES: "Cut all records out of longer ones, without fades.",
     OFFSETS: "Send all states through one amplifier, and take means off all or none.",
     LINES: "Record all states in one place, with the same machines and supplies near.",
+    STORED: "Send all states through one converter and one program, which keep every sample as it was.",
+    ENDS: "Draw noise per gearbox by one law for all states, and filter all states alike.",
+    CLOCK: "Record the tacho with the channels, by one clock, in all states.",
+    TEMPLATES: "Add nothing to records that stands at the same time in several of them.",
+    LEVELS: "Record all states of a gearbox at one gain, by one chain; damage may not change what its size does not.",
 }
 """How each layer is mended."""
 
 
-def condition_layers(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, tuple[str, ...]]]:
-    """Return the values (records, columns) of every layer with the names of its columns.
-
-    The order is that of the records in the files of the set, as a share of all. Labels are those that do not say what
-    the damage is or follows from it. Bytes and noise are means over the channels; `channels` holds the noise of each,
-    less the mean over all.
-    """
-    noise = {name: measured.values[name] for name in STEADY_NOISE if name in measured.values}
-    return {
-        METADATA: _stacked(_metadata(measured)),
-        ORDER: _stacked({"place in the files": np.arange(len(measured.healthy)) / max(len(measured.healthy), 1)}),
-        BYTE: _stacked(_bytes(measured)),
-        NOISE: _stacked({name: _mean(values) for name, values in noise.items()}),
-        CHANNELS: _stacked(_between_channels(noise, measured.channels)),
-        TEXTS: _stacked(_texts(measured)),
-        **{layer: _stacked(columns) for layer, columns in measured.raw.layers.items()},
-    }
-
-
-def _bytes(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    """Return means over the channels; step and odd mantissas of each channel besides, which no clipping moves."""
-    held = {name: measured.values[name] for name in BYTES if name in measured.values}
-    found = {name: _mean(values) for name, values in held.items()}
-    for name in [name for name in STEADY_BYTES if name in held] if len(measured.channels) > 1 else []:
-        found |= {f"{name} of {channel}": held[name][:, k] for k, channel in enumerate(measured.channels)}
-    return found
-
-
-def _between_channels(noise: dict[str, np.ndarray], channels: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Return the noise of every channel less the mean over those that are defined."""
-    found: dict[str, np.ndarray] = {}
-    for name, values in noise.items():
-        defined = np.isfinite(values)
-        mean = np.where(defined, values, 0.0).sum(axis=1) / np.maximum(defined.sum(axis=1), 1)
-        found |= {f"{name} of {channel}": values[:, k] - mean for k, channel in enumerate(channels)}
-    return found if len(channels) > 1 else {}
-
-
-def _texts(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    found: dict[str, np.ndarray] = {}
-    for name, values in measured.labels.items():
-        if values.ndim == 1 and values.dtype.kind not in "biuf" and must_not_tell(measured.roles, name):
-            found |= text_columns(name, values)
-    return found
-
-
-def _metadata(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    found = {
-        name: values.astype(np.float64)
-        for name, values in measured.labels.items()
-        if values.ndim == 1 and values.dtype.kind in "biuf" and must_not_tell(measured.roles, name)
-    }
-    return found | {name: measured.values[name][:, 0] for name in (*PULSES, "samples") if name in measured.values}
-
-
 def condition_attackers(measured: MeasuredSet) -> dict[str, list[Attacker]]:
-    """Return the attackers of every layer; order in the files is not compared with a reference.
-
-    Within a gearbox the records of a set stand in the order of its states by design.
-    """
-    reference, found = reference_records(measured), {}
+    """Return the attackers of every layer."""
+    reference = reference_records(measured)
+    has_reference = bool((reference >= 0).any())
+    changes = condition_changes(measured, reference) if has_reference else {}
+    found: dict[str, list[Attacker]] = {}
     for layer, (values, names) in condition_layers(measured).items():
-        if values.shape[1] == 0:
-            continue
-        filled = _filled(values)
-        attackers = [best_column(layer, filled, names), all_columns(f"all of {layer}", filled)]
-        if layer != ORDER and (reference >= 0).any():
-            change = np.where((reference >= 0)[:, None], filled - filled[reference], np.nan)
-            attackers += [
-                best_column(f"change of {layer}", change, names),
-                all_columns(f"change of all of {layer}", change),
-            ]
-        found[layer] = attackers
-    if (reference >= 0).any() and not is_planetary(measured.labels):
-        lags, names = _stacked(lag_columns(_lags(measured, reference), measured.channels))
-        found[LAGS] = [best_column(f"change of {LAGS}", lags, names)]
-    return found
+        if values.shape[1]:
+            filled = filled_columns(values)
+            found[layer] = [best_column(layer, filled, names), all_columns(f"all of {layer}", filled)]
+    for layer, (change, names) in changes.items():
+        found[layer] += [
+            best_column(f"change of {layer}", change, names),
+            all_columns(f"change of all of {layer}", change),
+        ]
+    if has_reference and not is_planetary(measured.labels):
+        lags = lag_columns(measured, reference)
+        found[LAGS] = [best_column(f"change of {LAGS}", np.stack(list(lags.values()), axis=1), tuple(lags))]
+    if has_reference:
+        found[LEVELS] = small_damage_attackers(measured, reference)
+    found[TEMPLATES] = template_attackers(measured.raw.templates)
+    return {layer: attackers for layer, attackers in found.items() if attackers}
 
 
 def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Attacker]:
     """Return the attackers that see raw levels, or their change from a healthy record; damage moves them too."""
-    values, names = _stacked(measured.raw.levels)
-    if not names:
+    if not measured.raw.levels:
         return []
+    values, names = np.stack(list(measured.raw.levels.values()), axis=1), tuple(measured.raw.levels)
     if referenced:
         reference = reference_records(measured)
         values = np.where((reference >= 0)[:, None], values - values[reference], np.nan)
     suffix = REFERENCED if referenced else ""
     return [best_column(f"raw levels{suffix}", values, names), all_columns(f"all raw levels{suffix}", values)]
-
-
-def _lags(measured: MeasuredSet, reference: np.ndarray) -> np.ndarray:
-    """Return the lag of every channel behind the record's reference, (records, channels) [samples]."""
-    lines, teeth = line_array(measured.waveforms), measured.labels["teeth_pinion"]
-    per_turn = measured.raw.fs_hz / measured.values["pulses_per_s"][:, 0]
-    found = np.full(lines.shape[:2], np.nan)
-    for row in np.flatnonzero((reference >= 0) & np.isfinite(per_turn)).tolist():
-        found[row] = sample_lags(lines[row], lines[reference[row]], int(teeth[row]), float(per_turn[row]))
-    return found
-
-
-def _filled(values: np.ndarray) -> np.ndarray:
-    """Return columns with undefined values far below all others, so that being undefined tells something too."""
-    finite = np.isfinite(values)
-    kept = np.where(finite, values, np.nan)
-    with np.errstate(invalid="ignore"):
-        low = np.nanmin(np.where(finite.any(axis=0), kept, 0.0), axis=0)
-        span = np.nanmax(np.where(finite.any(axis=0), kept, 0.0), axis=0) - low
-    return np.asarray(np.where(finite, values, low - span - 1.0))
-
-
-def _mean(values: np.ndarray) -> np.ndarray:
-    """Return the mean over channels; NaN where one of them is undefined."""
-    return np.asarray(values.mean(axis=1))
-
-
-def _stacked(columns: dict[str, np.ndarray]) -> tuple[np.ndarray, tuple[str, ...]]:
-    return np.stack(list(columns.values()), axis=1) if columns else np.empty((0, 0)), tuple(columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,11 +155,12 @@ def chance_largest(measured: MeasuredSet, attackers: list[Attacker], state: str,
     state : str
     seed : int
     """
-    specimen = measured.labels["specimen_id"]
-    rows = np.flatnonzero(measured.healthy | (measured.labels["state"] == state))
+    specimen, of_state = measured.labels["specimen_id"], np.asarray(measured.labels["state"] == state)
+    able = [attacker for attacker in attackers if judged_rows(attacker, measured.healthy, of_state, specimen).size]
+    rows = np.flatnonzero(measured.healthy | of_state)
     turns = PERMUTATIONS * len(damaged_states(measured))
     ways = permuted(~measured.healthy[rows], exchange_blocks(measured)[rows], specimen[rows], seed, turns)
-    maxima = bank_maxima(attackers, rows, ways, specimen[rows], dealt_folds(specimen, seed)[:, rows])
+    maxima = bank_maxima(able, rows, ways, specimen[rows], dealt_folds(specimen, seed)[:, rows])
     return float(np.max(maxima, where=np.isfinite(maxima), initial=0.0))
 
 

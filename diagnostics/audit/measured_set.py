@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.audit.noted_records import noted_records
 from diagnostics.audit.raw_columns import RawColumns, raw_columns
 from diagnostics.indicators.classifier_table import check_table
 from diagnostics.indicators.indicator import base_name
@@ -180,6 +181,7 @@ def measured_set(
     table = record_table(dataset, own=own, advance=advance)
     check_table(table, dataset)
     labels = {name: _array(column) for name, column in _scalar_labels(dataset).items()}
+    labels |= noted_records(dataset.labels().schema, labels["record_id"])
     if not np.array_equal(table.labels()["record_id"], labels["record_id"]):
         raise DatasetError(f"{dataset.path}: labels and signals are not in the same order; `siggen verify` names why")
     indicators = _indicators(table)

@@ -14,9 +14,9 @@ Random convolutions of one revolution: shares of the angle at which a kernel's a
 
 Kernels of nine weights -1 and 2, all 84 choices of three twos, dilated; the answer's share above a level ("proportion
 of positive values") is the feature. Source: Dempster et al. 2021 (MiniRocket). Here convolutions are circular, so that
-nothing depends on where the revolution starts, levels are quantiles of the answers of all records of the set (no state
-is looked at), and the largest answer counts too. aeon and sktime hold MiniRocket, but bring some 20 packages and no
-circular convolution.
+nothing depends on where the revolution starts, levels are quantiles of the answers of all records of the set, or of
+those to learn from (no state is looked at), and the largest answer counts too. aeon and sktime hold MiniRocket, but
+bring some 20 packages and no circular convolution.
 """
 
 from __future__ import annotations
@@ -104,13 +104,15 @@ def revolution(lines: np.ndarray, steps: int = STEPS) -> np.ndarray:
     return np.asarray(fft.irfft(kept, n=steps, axis=-1) * (0.5 * steps), dtype=np.float32)
 
 
-def convolution_features(waves: np.ndarray) -> np.ndarray:
+def convolution_features(waves: np.ndarray, first: int | None = None) -> np.ndarray:
     """Return the features of every record, mean over its channels.
 
     Parameters
     ----------
     waves : (records, channels, steps) float32
         One revolution each, of comparable level; channels with NaN do not count.
+    first : int, optional
+        The first so many records set the levels; default all.
 
     Returns
     -------
@@ -123,15 +125,15 @@ def convolution_features(waves: np.ndarray) -> np.ndarray:
     used = np.ascontiguousarray(flat[defined])
     found = np.full((records * channels, len(KERNELS) * len(DILATIONS) * (len(LEVELS) + 1)), np.nan, dtype=np.float32)
     if used.size:
-        found[defined] = _of_waves(used)
+        found[defined] = _of_waves(used, int(defined[: channels * first].sum()) if first else len(used))
     split = found.reshape(records, channels, -1)
     counted = defined.reshape(records, channels).sum(axis=1)[:, None]
     with np.errstate(invalid="ignore"):
         return np.asarray(np.nansum(split, axis=1, dtype=np.float64) / np.where(counted > 0, counted, np.nan))
 
 
-def _of_waves(waves: np.ndarray) -> np.ndarray:
-    chosen = np.unique(np.linspace(0, len(waves) - 1, CALIBRATING).round().astype(int))
+def _of_waves(waves: np.ndarray, first: int) -> np.ndarray:
+    chosen = np.unique(np.linspace(0, first - 1, CALIBRATING).round().astype(int))
     found = []
     for dilation in DILATIONS:
         shifted = [np.roll(waves, (LENGTH // 2 - place) * dilation, axis=1) for place in range(LENGTH)]

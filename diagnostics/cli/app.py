@@ -11,6 +11,7 @@ import typer
 
 from diagnostics.cli.audit import audit
 from diagnostics.cli.baseline import baseline
+from diagnostics.cli.bench import bench
 from diagnostics.cli.calibrate import calibrate
 from diagnostics.cli.check import check
 from diagnostics.cli.explore import explore
@@ -40,6 +41,7 @@ COMMANDS: dict[str, tuple[Callable[..., None], ...]] = {
 for heading, commands in COMMANDS.items():
     for command in commands:
         app.command(rich_help_panel=heading)(command)
+app.add_typer(bench, name="bench", rich_help_panel="A benchmark with sealed labels")
 
 
 def _show_version(wanted: bool) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -9,11 +10,30 @@ import typer
 
 from diagnostics.cli.set_options import Classes, Seed
 from siggen.cli.json_output import AsJson, echo_json
+from siggen.cli.option_groups import grouped
 
 
+@dataclass(frozen=True, slots=True)
+class JudgedOptions:
+    """What predictions are judged by."""
+
+    labels: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Sealed labels of a benchmark; those that it reveals unless told.", show_default=False
+        ),
+    ] = None
+    split: Annotated[str, typer.Option(metavar="test|validation", help="Whose records are judged.")] = "test"
+    classes: Classes = "state"
+
+
+@grouped
 def score(
     directory: Annotated[
-        Path, typer.Argument(metavar="SET", help="Folder or s3://... of a finished set.", show_default=False)
+        Path,
+        typer.Argument(
+            metavar="SET", help="Folder or s3://... of a finished set, or folder of a benchmark.", show_default=False
+        ),
     ],
     predictions: Annotated[
         Path,
@@ -24,6 +44,7 @@ def score(
             show_default=False,
         ),
     ],
+    *,
     baselines: Annotated[
         Path | None,
         typer.Option(
@@ -33,29 +54,39 @@ def score(
             show_default=False,
         ),
     ] = None,
-    split: Annotated[str, typer.Option(metavar="test|validation", help="Whose records are judged.")] = "test",
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="TABLE", help="Write the rows too, .parquet or .csv.")
     ] = None,
-    classes: Classes = "state",
+    judged: JudgedOptions,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
     """Judge the predictions of your own classifier, with limits over gearboxes.
 
-    Missing, doubled and unknown records and values that cannot be are refused in one list.
+    Missing, doubled and unknown records and values that cannot be are refused in one list. Of a benchmark every test
+    part is judged that the predictions have rows for.
 
     Example: siggen-diagnostics score data/quickstart mine.parquet
     """
     from diagnostics.indicators.classifier_table import check_suffix, write_table
+    from diagnostics.scoring.benchmark import is_benchmark, open_benchmark
+    from diagnostics.scoring.benchmark_scores import BenchmarkScores, score_benchmark
+    from diagnostics.scoring.score import Scores
     from diagnostics.scoring.score import score as scored
     from siggen.dataset.reading import open as open_set
 
     if out:
         check_suffix(out)
-    found = scored(open_set(directory), predictions, baselines=baselines, split=split, seed=seed, classes=classes)
+    found: Scores | BenchmarkScores
+    if is_benchmark(directory):
+        found = score_benchmark(
+            open_benchmark(directory), predictions, labels=judged.labels, baselines=baselines, seed=seed
+        )
+    else:
+        own = {"split": judged.split, "classes": judged.classes}
+        found = scored(open_set(directory), predictions, baselines=baselines, seed=seed, **own)
     if as_json:
-        echo_json({"split": split, "classes": classes, "scores": found.numbers()})
+        echo_json({"split": judged.split, "classes": judged.classes, "scores": found.numbers()})
     else:
         typer.echo(str(found))
     if out:

@@ -96,7 +96,7 @@ def noise_share(revolutions: np.ndarray, average: np.ndarray) -> float:
     if count < 2:
         return math.nan
     variance = float(average.var())
-    left = float(revolutions.var(axis=0, ddof=1).mean()) / count
+    left = float(np.square(revolutions - average).sum()) / (revolutions.size - average.size) / count
     return min(left / variance, 1.0) if variance > 0.0 else math.nan
 
 

@@ -15,10 +15,12 @@ Source: derived. Proof that this hides motion and shows noise: docs/understand/a
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 
+from diagnostics.signal.spectrum import power
 from diagnostics.signal.synchronous_average import asynchronous_part, band_signal
 
 NOISE_BANDS = 10
@@ -59,13 +61,17 @@ CYCLIC = (
 BACKGROUND_LEVELS = (*SPECTRAL, *CYCLIC, *NOISE_LEVELS)
 
 
-def noise_levels(rest: np.ndarray, revolutions: int, bin_hz: float, fs_hz: float) -> dict[str, float]:
+def noise_levels(
+    rest: np.ndarray, spectrum: np.ndarray, revolutions: int, bin_hz: float, fs_hz: float
+) -> dict[str, float]:
     """Return the median power per Hz in bands of equal ratio, in dB; NaN where the record does not reach.
 
     Parameters
     ----------
     rest : (n,) float64
         What the averages of both shafts leave, in equal steps of angle.
+    spectrum : (n // 2 + 1,) complex128
+        Its transform.
     revolutions : int
         Of the pinion.
     bin_hz : float
@@ -76,14 +82,13 @@ def noise_levels(rest: np.ndarray, revolutions: int, bin_hz: float, fs_hz: float
     from scipy import fft
 
     edges = (np.geomspace(LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE * fs_hz, NOISE_BANDS + 1) / bin_hz).astype(int).tolist()
-    spectrum = fft.rfft(rest)
     every = dict(zip(NOISE_LEVELS, pairwise(edges), strict=True))
     bands = {name: (low, high) for name, (low, high) in every.items() if low < high <= spectrum.size}
     gate = np.tile(quiet_gate(spectrum, list(bands.values()), revolutions, rest.size // revolutions), revolutions)
-    power = np.square(np.abs(fft.rfft(rest * gate) / rest.size)) / (float(np.square(gate).mean()) * bin_hz)
+    density = power(fft.rfft(rest * gate)[: edges[-1]]) / (rest.size**2 * float(np.square(gate).mean()) * bin_hz)
     found = dict.fromkeys(NOISE_LEVELS, math.nan)
     for name, (low, high) in bands.items():
-        level = float(np.median(power[low:high]))
+        level = float(np.median(density[low:high]))
         found[name] = 10.0 * math.log10(level) if level > 0.0 else math.nan
     return found
 
@@ -97,9 +102,10 @@ def quiet_gate(spectrum: np.ndarray, bands: list[tuple[int, int]], revolutions: 
     for low, high in bands:
         if high - low < FEWEST_ORDERS * revolutions:
             continue
-        power = np.square(np.abs(band_signal(spectrum, low, high)))
-        sector = (np.arange(power.size) * (revolutions * SECTORS / power.size) % SECTORS).astype(int)
-        by_angle = np.bincount(sector, power, SECTORS) / np.bincount(sector, minlength=SECTORS)
+        energy = power(band_signal(spectrum, low, high))
+        turn = np.arange(energy.size) * (revolutions / energy.size)
+        sector = ((turn - np.floor(turn)) * SECTORS).astype(int)
+        by_angle = np.bincount(sector, energy, SECTORS) / np.bincount(sector, minlength=SECTORS)
         profile += by_angle / (by_angle.mean() or 1.0)
     width = round(OPEN_SHARE * SECTORS)
     running = np.convolve(np.r_[profile, profile[: width - 1]], np.ones(width), "valid")
@@ -136,18 +142,18 @@ def spectral_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int]) 
     density, step_hz = windows.mean(axis=0), shaft_hz / width
     hz = np.arange(density.size) * step_hz
 
-    def power(order: float) -> float:
+    def line(order: float) -> float:
         near = round(order * width)
         return float(density[near - 2 : near + 3].sum() * step_hz)
 
-    mesh = max(power(h * teeth[0]) for h in range(1, MESH_LINES + 1))
+    mesh = max(line(h * teeth[0]) for h in range(1, MESH_LINES + 1))
     floors = {name: _decibels(_floor(windows, hz, *band), mesh) for name, band in FLOORS.items()}
     lines = line_orders(density, hz, width, teeth[0])
     gear_order = teeth[0] / teeth[1]
     foreign = [order for order in lines if not any(_is_multiple(order, step) for step in (1.0, gear_order))]
     span_khz = 1e-3 * (min(HIGHEST_HZ, float(hz[-1])) - 5.5 * teeth[0] * shaft_hz)
     return {
-        **{f"shaft_{k}x_db": _decibels(power(float(k)), mesh) for k in (1, 2, 3, 4)},
+        **{f"shaft_{k}x_db": _decibels(line(float(k)), mesh) for k in (1, 2, 3, 4)},
         **floors,
         **{name: _tonality(windows, hz, *band) for name, band in TONALITIES.items()},
         "floor_slope_db": floors["floor_5_10khz_db"] - floors["floor_40_160hz_db"],
@@ -162,12 +168,17 @@ def window_densities(turns: np.ndarray, width: int, shaft_hz: float) -> np.ndarr
     from scipy import fft
 
     size = width * turns.shape[1]
-    hann = np.hanning(size)
+    hann = _hann(size)
     starts = range(0, turns.size - size + 1, size // 2)
     flat = turns.ravel()
-    found = [np.square(np.abs(fft.rfft(flat[start : start + size] * hann))) for start in starts]
+    found = [power(fft.rfft(flat[start : start + size] * hann)) for start in starts]
     scale = 2.0 / (float(np.square(hann).sum()) * turns.shape[1] * shaft_hz)
     return np.asarray(np.asarray(found) * scale)
+
+
+@lru_cache(maxsize=4)
+def _hann(samples: int) -> np.ndarray:
+    return np.hanning(samples)
 
 
 def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> list[float]:
@@ -180,8 +191,10 @@ def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> 
     if not peaks.size:
         return []
     around = np.lib.stride_tricks.sliding_window_view(density, 2 * LINE_REACH)[peaks - LINE_REACH]
-    floor = np.median(around, axis=1) / EXPONENTIAL_MEDIAN
-    return [float(k / width) for k in peaks[density[peaks] > LINE_OVER_FLOOR * floor].tolist()]
+    most = density[peaks] * (EXPONENTIAL_MEDIAN / LINE_OVER_FLOOR)
+    # the median lies below a number only if half of all values do: few peaks are left to take it of
+    low = np.count_nonzero(around < most[:, None], axis=1) >= LINE_REACH
+    return [float(k / width) for k in peaks[low][np.median(around[low], axis=1) < most[low]].tolist()]
 
 
 def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
@@ -190,7 +203,7 @@ def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs
 
     gear_order = teeth[0] / teeth[1]
     rest = asynchronous_part(turns, gear_order)
-    spectrum = fft.rfft(rest) / turns.size
+    spectrum = fft.rfft(rest)
     bin_hz = shaft_hz / turns.shape[0]
     found: dict[str, float] = {}
     for name, (low, high) in ENVELOPES.items():
@@ -198,7 +211,7 @@ def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs
         found |= {f"noise_kurtosis_{name}": _kurtosis(wave), f"noise_envelope_cv_{name}": _variation(wave)}
     depths = [_depth(_band(spectrum, *DEPTH_BAND_HZ, bin_hz), turns.shape[0] * order) for order in (1.0, gear_order)]
     found["shaft_depth"] = max(depths) if all(map(math.isfinite, depths)) else math.nan
-    return found | _repeated(turns) | noise_levels(rest, turns.shape[0], bin_hz, fs_hz)
+    return found | _repeated(turns) | noise_levels(rest, spectrum, turns.shape[0], bin_hz, fs_hz)
 
 
 def _band(spectrum: np.ndarray, low_hz: float, high_hz: float, bin_hz: float) -> np.ndarray:
@@ -210,22 +223,23 @@ def _band(spectrum: np.ndarray, low_hz: float, high_hz: float, bin_hz: float) ->
 
 def _kurtosis(wave: np.ndarray) -> float:
     """Return the kurtosis of the real band signal: 3/2 <|a|^4>/<|a|^2>^2, since its phase takes all values."""
-    power = np.square(np.abs(wave))
-    return float(1.5 * np.square(power).mean() / power.mean() ** 2) if wave.size and power.any() else math.nan
+    energy = power(wave)
+    return float(1.5 * np.square(energy).mean() / energy.mean() ** 2) if wave.size and energy.any() else math.nan
 
 
 def _variation(wave: np.ndarray) -> float:
-    envelope = np.abs(wave)
+    envelope = np.sqrt(power(wave))
     return float(envelope.std() / envelope.mean()) if wave.size and envelope.any() else math.nan
 
 
 def _depth(wave: np.ndarray, cycles: float) -> float:
     """Return the depth of a line of so many cycles over the record in the squared envelope."""
-    power = np.square(np.abs(wave))
-    if not power.any():
+    energy = power(wave)
+    if not energy.any():
         return math.nan
-    turned = np.exp(-2j * np.pi * cycles * np.arange(power.size) / power.size)
-    return float(2.0 * abs((power * turned).mean()) / power.mean())
+    angle = 2.0 * np.pi * cycles / energy.size * np.arange(energy.size)
+    line = complex(np.mean(energy * np.cos(angle)), np.mean(energy * np.sin(angle)))
+    return float(2.0 * abs(line) / energy.mean())
 
 
 def _repeated(turns: np.ndarray) -> dict[str, float]:
@@ -236,7 +250,7 @@ def _repeated(turns: np.ndarray) -> dict[str, float]:
     low, high = REPEATED_ORDERS
     halves = turns[: 2 * half].reshape(2, half, -1).mean(axis=1)
     first, second = fft.rfft(halves, axis=1)[:, low : high + 1]
-    size = math.sqrt(float(np.square(np.abs(first)).sum() * np.square(np.abs(second)).sum()))
+    size = math.sqrt(float(power(first).sum() * power(second).sum()))
     lines = np.zeros(turns.shape[1] // 2 + 1, dtype=np.complex128)
     lines[low : low + first.size] = first + second
     square = np.square(fft.irfft(lines))
@@ -248,15 +262,15 @@ def _repeated(turns: np.ndarray) -> dict[str, float]:
 
 
 def _floor(windows: np.ndarray, hz: np.ndarray, low: float, high: float) -> float:
-    inside = (hz >= low) & (hz < high)
-    if not inside.any() or hz[-1] < high:
+    inside = windows[:, slice(*np.searchsorted(hz, (low, high)))]
+    if not inside.shape[1] or hz[-1] < high:
         return math.nan
-    return float(np.mean(np.median(windows[:, inside], axis=1))) / EXPONENTIAL_MEDIAN
+    return float(np.mean(np.median(inside, axis=1))) / EXPONENTIAL_MEDIAN
 
 
 def _tonality(windows: np.ndarray, hz: np.ndarray, low: float, high: float) -> float:
     """Return mean over median of every window's density: 1.59 dB for noise, whatever the number of windows."""
-    inside = windows[:, (hz >= low) & (hz < high)]
+    inside = windows[:, slice(*np.searchsorted(hz, (low, high)))]
     if not inside.shape[1] or hz[-1] < high:
         return math.nan
     return _decibels(float(np.mean(inside.mean(axis=1) / np.median(inside, axis=1))), 1.0)

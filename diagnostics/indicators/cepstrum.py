@@ -13,13 +13,13 @@ BAND_SHARE = 0.8
 """Share of the band whose spectrum counts in the cepstrum; above, the anti-alias filter shapes it."""
 
 
-def shaft_log_spectrum(angle_signal: np.ndarray, revolutions: int, teeth: int, highest_order: int) -> np.ndarray:
+def shaft_log_spectrum(amplitude: np.ndarray, revolutions: int, teeth: int, highest_order: int) -> np.ndarray:
     """Return the log spectrum over orders of the pinion, mesh lines and mean taken out.
 
     Parameters
     ----------
-    angle_signal : (n,) float64
-        Record in equal steps of pinion angle over `revolutions` whole pinion revolutions.
+    amplitude : (bins,) float64
+        Hann amplitudes over whole pinion revolutions, see `hann_amplitude`.
     revolutions : int
         Whole pinion revolutions.
     teeth : int
@@ -32,7 +32,7 @@ def shaft_log_spectrum(angle_signal: np.ndarray, revolutions: int, teeth: int, h
     (highest_order revolutions + 1,) float64
         Nepers; its cepstrum has 2 highest_order steps per pinion revolution.
     """
-    kept = log_amplitude(angle_signal)[: highest_order * revolutions + 1]
+    kept = log_amplitude(amplitude, highest_order * revolutions + 1)
     flat = without_lines(kept, teeth * revolutions)
     return np.asarray(flat - flat.mean())
 

@@ -3,37 +3,60 @@
 Names that a formula may take: of the record `signal`, `spectral_kurtosis`; of a shaft `average`, `regular`, `residual`,
 `difference`, `lines`, `sideband_lines`, `revolutions`, `modulation`, `residual_band`, `teeth`, `log_spectrum`,
 `period_steps`, `shaft_lines`; of the record over angle `angle_signal`, `ripple_bins`; and the fields of its columns
-(`harmonic`, `sideband` ...). A column that belongs to no shaft is the record's or the
-first shaft's.
+(`harmonic`, `sideband` ...). A column that belongs to no shaft is the record's or the first shaft's.
 """
 
 from __future__ import annotations
 
 import math
-from functools import cached_property
-from typing import Any
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from diagnostics.indicators.cepstrum import BAND_SHARE, shaft_log_spectrum
 from diagnostics.indicators.history import central_moments, dominant_harmonic
-from diagnostics.indicators.indicator import Indicator
+from diagnostics.indicators.indicator import Formula, Indicator
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.signal.member_average import Carrier, member_signals, passing_lines
-from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_baseband
-from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signal
+from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_basebands
+from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signals
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_lines import ripple_bins, shaft_lines
 from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals, without_mesh_lines
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES, spectral_kurtosis
+from diagnostics.signal.spectrum import hann_amplitude, power
 
-SHAFT_SIGNALS = ("average", "lines", "sideband_lines", "sideband_average")
-PARTS = ("regular", "residual", "difference")
-_BANDS = {band_name(*band): band for band in ORDER_BANDS}
+SHAFT_SIGNALS = frozenset({"average", "lines", "sideband_lines", "sideband_average"})
+PARTS = frozenset({"regular", "residual", "difference"})
+_BANDS = {band_name(*band): place for place, band in enumerate(ORDER_BANDS)}
 
 
 class UndefinedSignalError(Exception):
     """The record does not hold what a formula asks for; the indicator is then undefined."""
+
+
+class _Column(NamedTuple):
+    """One column of a channel: its name, its formula, what that takes, its shaft, and the fields it differs by."""
+
+    name: str
+    formula: Formula
+    parameters: tuple[str, ...]
+    shaft: str
+    fields: dict[str, Any]
+
+
+@lru_cache(maxsize=16)
+def _columns(
+    indicators: tuple[Indicator, ...], settings: IndicatorSettings, shafts: tuple[str, ...]
+) -> tuple[_Column, ...]:
+    """Return the columns of all indicators that need one record alone; the same for every record of a set."""
+    return tuple(
+        _Column(column, entry.function, entry.parameters, str(fields.get("shaft", shafts[0])), fields)
+        for entry in indicators
+        if not entry.history
+        for column, fields in entry.columns(settings, shafts)
+    )
 
 
 class ChannelSignals:
@@ -68,13 +91,19 @@ class ChannelSignals:
         self._carrier = carrier
         self._of_shaft: dict[str, ShaftSignals] = {}
         self._without_front = np.empty(0)
-        self._modulations: dict[tuple[str, int], Modulation] = {}
-        self._bands: dict[tuple[str, str], np.ndarray] = {}
+        self._known: dict[tuple[str, str], Any] = {}
+        self._modulations: dict[str, tuple[Modulation, ...]] = {}
+        self._bands: dict[str, np.ndarray] = {}
 
     @cached_property
     def steps(self) -> np.ndarray:
         """(steps,) float64: the record over pinion angle."""
         return np.empty(0) if self.grid is None else resample_to_angle(self.signal, self.fs_hz, self.grid)
+
+    @cached_property
+    def amplitude(self) -> np.ndarray:
+        """(steps // 2 + 1,) float64: Hann amplitudes over whole pinion revolutions."""
+        return hann_amplitude(self.steps)
 
     @cached_property
     def spectral_kurtosis(self) -> np.ndarray:
@@ -89,7 +118,7 @@ class ChannelSignals:
         """Log spectrum over pinion orders without mesh lines, as of `shaft_log_spectrum`."""
         if self.grid is None:
             raise UndefinedSignalError
-        return shaft_log_spectrum(self.steps, self.grid.revolutions, self.shafts[0].teeth, self._highest_order)
+        return shaft_log_spectrum(self.amplitude, self.grid.revolutions, self.shafts[0].teeth, self._highest_order)
 
     @property
     def _highest_order(self) -> int:
@@ -137,25 +166,30 @@ class ChannelSignals:
 
     def values(self, indicators: tuple[Indicator, ...]) -> dict[str, float]:
         """Return the columns of all indicators that need this record alone, NaN where undefined."""
-        found, names = {}, tuple(shaft.name for shaft in self.shafts)
-        for entry in indicators:
-            if not entry.history:
-                for column, field in entry.columns(self.settings, names):
-                    found[column] = self._value(entry, field)
-        return found
+        known = _columns(indicators, self.settings, tuple(shaft.name for shaft in self.shafts))
+        return {column.name: self._value(column) for column in known}
 
-    def _value(self, entry: Indicator, field: dict[str, Any]) -> float:
-        shaft = str(field.get("shaft", self.shafts[0].name))
+    def _value(self, column: _Column) -> float:
+        fields, shaft = column.fields, column.shaft
         try:
             taken = {
-                name: field[name] if name in field else self._named(name, shaft, field) for name in entry.parameters
+                name: fields[name] if name in fields else self._taken(name, shaft, fields) for name in column.parameters
             }
         except UndefinedSignalError:
             return math.nan
-        return entry.function(**taken)
+        return column.formula(**taken)
 
-    def _named(self, name: str, shaft: str, field: dict[str, Any]) -> Any:
-        """Return what a formula takes by this name."""
+    def _taken(self, name: str, shaft: str, fields: dict[str, Any]) -> Any:
+        """Return what a formula takes by this name, which may differ by the fields of its column."""
+        if name == "modulation":
+            return self._modulation(shaft, int(fields["demodulated_harmonic"]))
+        if name == "residual_band":
+            return self._residual_band(shaft, str(fields["band"]))
+        if (shaft, name) not in self._known:
+            self._known[shaft, name] = self._named(name, shaft)
+        return self._known[shaft, name]
+
+    def _named(self, name: str, shaft: str) -> Any:
         if name in ("signal", "spectral_kurtosis"):
             return getattr(self, name)
         if name == "angle_signal":
@@ -168,47 +202,43 @@ class ChannelSignals:
             return self._shaft(shaft).teeth
         return {
             "revolutions": self._revolutions,
-            "modulation": self._modulation,
-            "residual_band": self._residual_band,
             "log_spectrum": self._shaft_log_spectrum,
             "period_steps": self._period_steps,
             "shaft_lines": self._shaft_lines,
             "ripple_bins": self._ripple_bins,
-        }[name](shaft, field)
+        }[name](shaft)
 
-    def _revolutions(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002 - one signature for all
+    def _revolutions(self, shaft: str) -> np.ndarray:
         size, steps = self.shaft(shaft).average.size, self._steps_of(self._shaft(shaft))
         return steps[: steps.size // size * size].reshape(-1, size)
 
-    def _modulation(self, shaft: str, field: dict[str, Any]) -> Modulation:
+    def _modulation(self, shaft: str, harmonic: int) -> Modulation:
         """Return amplitude and phase of a mesh harmonic; undefined where the first sideband is not resolved."""
-        signals, harmonic = self.shaft(shaft), int(field["demodulated_harmonic"])
+        signals, harmonics = self.shaft(shaft), self.settings.modulation_harmonics
         if not signals.shaft.resolved[0]:
             raise UndefinedSignalError
-        if (shaft, harmonic) not in self._modulations:
+        if shaft not in self._modulations:
             teeth, around = signals.shaft.teeth, signals.sideband_average
-            self._modulations[shaft, harmonic] = demodulated(around, teeth, harmonic, self._half_width(teeth))
-        return self._modulations[shaft, harmonic]
+            self._modulations[shaft] = demodulated(around, teeth, harmonics, self._half_width(teeth))
+        return self._modulations[shaft][harmonic - 1]
 
-    def _residual_band(self, shaft: str, field: dict[str, Any]) -> np.ndarray:
+    def _residual_band(self, shaft: str, name: str) -> np.ndarray:
         """Return a band of the residual, up to half the sampling rate where the record turns slowest."""
-        name = str(field["band"])
-        if (shaft, name) not in self._bands:
-            residual = self.shaft(shaft).parts.residual
-            self._bands[shaft, name] = band_signal(residual, *_BANDS[name], self._carried_order(shaft))
-        return self._bands[shaft, name]
+        if shaft not in self._bands:
+            self._bands[shaft] = band_signals(self.shaft(shaft).parts.residual, self._carried_order(shaft))
+        return np.asarray(self._bands[shaft][_BANDS[name]])
 
     def _carried_order(self, shaft: str) -> float:
         if self.grid is None:
             return math.inf
         return 0.5 * self.fs_hz / self.grid.slowest_hz * self._shaft(shaft).teeth / self.shafts[0].teeth
 
-    def _shaft_log_spectrum(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002
+    def _shaft_log_spectrum(self, shaft: str) -> np.ndarray:
         if self._shaft(shaft).revolutions < 2:
             raise UndefinedSignalError
         return self.log_spectrum
 
-    def _period_steps(self, shaft: str, field: dict[str, Any]) -> float:  # noqa: ARG002
+    def _period_steps(self, shaft: str) -> float:
         """Return one revolution of a shaft in steps of the cepstrum: the gear takes z2/z1 pinion revolutions."""
         own = self._shaft(shaft)
         return 2.0 * self._highest_order * (own.period or own.teeth) / self.shafts[0].teeth
@@ -219,13 +249,13 @@ class ChannelSignals:
             raise UndefinedSignalError
         return self.steps
 
-    def _shaft_lines(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002
+    def _shaft_lines(self, shaft: str) -> np.ndarray:
         mine, other = self._shaft(shaft), next(found for found in self.shafts if found.name != shaft)
         if mine.revolutions < 1:
             raise UndefinedSignalError
         return shaft_lines(self.steps, mine.teeth, other.teeth, self.settings.samples_per_tooth)
 
-    def _ripple_bins(self, shaft: str, field: dict[str, Any]) -> tuple[int, int]:  # noqa: ARG002
+    def _ripple_bins(self, shaft: str) -> tuple[int, int]:  # noqa: ARG002 - one signature for all
         teeth = (self.shafts[0].teeth, self.shafts[-1].teeth)
         return ripple_bins(self.steps.size / (teeth[0] * self.settings.samples_per_tooth), teeth)
 
@@ -242,8 +272,8 @@ class ChannelSignals:
             signals, name, teeth = self.shaft(shaft.name), shaft.name, shaft.teeth
             found[f"residual_fourth_{name}"], found[f"residual_second_{name}"] = central_moments(signals.parts.residual)
             found[f"dominant_{name}"] = float(dominant_harmonic(signals.lines, teeth, self.settings.mesh_harmonics))
-            for h in range(1, self.settings.mesh_harmonics + 1):
-                lines_of = signals.average if self._carrier is None else signals.sideband_average
-                envelope = np.abs(mesh_baseband(lines_of, teeth, h, self._half_width(teeth)))
+            lines_of = signals.average if self._carrier is None else signals.sideband_average
+            bands = mesh_basebands(lines_of, teeth, self.settings.mesh_harmonics, self._half_width(teeth))
+            for h, envelope in enumerate(np.sqrt(power(bands)), start=1):
                 found[f"envelope_fourth_{name}_h{h}"], found[f"envelope_second_{name}_h{h}"] = central_moments(envelope)
         return found

@@ -29,7 +29,12 @@ def rms(signal: np.ndarray) -> float:
     Gaussian: sigma; sine: amplitude / sqrt(2). MATLAB's `gearConditionMetrics` takes it of the synchronous average.
     Source: standard literature.
     """
-    return float(np.sqrt(np.mean(np.square(signal))))
+    return math.sqrt(mean(np.square(signal)))
+
+
+def mean(values: np.ndarray) -> float:
+    """Return the mean of values (n,) as `numpy.mean` does, whose overhead is most of its time on one revolution."""
+    return float(np.add.reduce(values)) / values.size
 
 
 def moment_ratio(signal: np.ndarray, order: int, reference_rms: float | None = None) -> float:
@@ -48,16 +53,16 @@ def moment_ratio(signal: np.ndarray, order: int, reference_rms: float | None = N
     -----
     k = 4, 6, 8: Gaussian 3, 15, 105; sine 1.5, 2.5, 4.375. Source: standard literature.
     """
-    centred = signal - signal.mean()
+    centred = signal - mean(signal)
     squared = centred * centred
-    variance = float(squared.mean())
+    variance = mean(squared)
     reference = rms(signal) if reference_rms is None else reference_rms
     if not math.sqrt(variance) > UNDEFINED_BELOW * reference:
         return math.nan
     if order == 4:
-        return float(np.mean(squared * squared)) / variance**2
+        return mean(squared * squared) / variance**2
     scaled = centred / math.sqrt(variance)
-    return float(np.mean((scaled * scaled) ** (order // 2)))
+    return mean((scaled * scaled) ** (order // 2))
 
 
 @indicator(

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from diagnostics.indicators.background_levels import BACKGROUND_LEVELS, background_levels
-from diagnostics.signal.spectrum import OrderLines, noise_density, order_lines
+from diagnostics.signal.spectrum import OrderLines, noise_density
 
 REVOLUTIONS_AVERAGED = 10
 
@@ -52,15 +52,15 @@ def synchronous_ratio_db(turns: np.ndarray, averaged: int = REVOLUTIONS_AVERAGED
     return 10.0 * math.log10(signal / rest)
 
 
-def record_levels(turns: np.ndarray, duration_s: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
+def record_levels(turns: np.ndarray, lines: OrderLines, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
     """Return all levels of one channel.
 
     Parameters
     ----------
     turns : (revolutions, steps) float64
         The channel at equal angle steps, one row per pinion revolution.
-    duration_s : float
-        Time from the first to the last pulse [s].
+    lines : OrderLines
+        Its Hann spectrum.
     teeth : (int, int)
         Teeth of pinion and gear.
     fs_hz : float
@@ -68,8 +68,8 @@ def record_levels(turns: np.ndarray, duration_s: float, teeth: tuple[int, int], 
     """
     return {
         "synchronous_ratio_db": synchronous_ratio_db(turns),
-        **line_levels(order_lines(turns, duration_s), teeth),
-        **background_levels(turns, turns.shape[0] / duration_s, teeth, fs_hz),
+        **line_levels(lines, teeth),
+        **background_levels(turns, turns.shape[0] * lines.bin_hz, teeth, fs_hz),
     }
 
 

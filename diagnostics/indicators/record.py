@@ -29,6 +29,7 @@ from diagnostics.records.usable_records import refused_parts
 from diagnostics.signal.mesh_pulses import mesh_pulses
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, speed_variation_percent
+from diagnostics.signal.spectrum import OrderLines
 from siggen.errors import UsageError
 
 WAVEFORM_HARMONICS = 20
@@ -191,18 +192,22 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
         turns, notes = revolutions(meshes[0]), shaft_notes(meshes)
         for name in usable:
             taken = taken_of(record.quantities.get(name, RECORDED.word))
-            channels[name] = _channel_result(meshes, name, taken, record.channels[name], pulses)
+            channels[name] = _channel_result(meshes, name, taken, channels[name].conditions, pulses)
     conditions = _pulse_conditions(pulses)
     return RecordResult(record.labels, channels, pulses, turns, conditions, notes, problems, refused, clipped)
 
 
 def _channel_result(
-    meshes: tuple[MeshSignals, ...], channel: str, taken: tuple[Indicator, ...], raw: np.ndarray, pulses: np.ndarray
+    meshes: tuple[MeshSignals, ...],
+    channel: str,
+    taken: tuple[Indicator, ...],
+    conditions: dict[str, float],
+    pulses: np.ndarray,
 ) -> ChannelResult:
     signals = meshes[0].channels[channel]
     values = {name: value for mesh in meshes for name, value in mesh.values(channel, taken).items()}
     moments = {name: value for mesh in meshes for name, value in mesh.moments(channel).items()}
-    conditions, grid = _channel_conditions(raw), signals.grid
+    grid = signals.grid
     if grid is None or grid.revolutions < FEWEST_AUDIT_TURNS:
         return ChannelResult(values | dict.fromkeys(LEVELS, math.nan), moments, conditions=conditions)
     values |= _levels(signals, grid, pulses)
@@ -221,7 +226,8 @@ def _channel_result(
 def _levels(signals: ChannelSignals, grid: AngleGrid, pulses: np.ndarray) -> dict[str, float]:
     turns = signals.steps.reshape(grid.revolutions, grid.samples_per_revolution)
     teeth = (signals.shafts[0].teeth, signals.shafts[-1].teeth)
-    return record_levels(turns, float(pulses[-1] - pulses[0]), teeth, signals.fs_hz)
+    lines = OrderLines(signals.amplitude, grid.revolutions, 1.0 / float(pulses[-1] - pulses[0]))
+    return record_levels(turns, lines, teeth, signals.fs_hz)
 
 
 def _waveform(average: np.ndarray, teeth: int) -> np.ndarray:

@@ -53,19 +53,29 @@ def matched_columns(table: pa.Table, truth: Truth, where: Any) -> dict[str, np.n
     UsageError
         Listing every record that is missing, comes twice or is unknown, and every value that cannot be.
     """
+    columns, problems = checked_columns(table, truth)
+    if problems:
+        raise UsageError(refusal(where, problems, truth))
+    return columns
+
+
+def checked_columns(table: pa.Table, truth: Truth) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Return the columns as `matched_columns`, as far as they can be used, and everything that is wrong."""
     problems: list[str] = []
     place = _places(table, truth, problems)
-    columns = {} if place is None else _columns(table.take(pa.array(place)), truth, problems)
-    if problems:
-        lines = "\n".join(f"  {problem}" for problem in problems)
-        takes = "; ".join(f"{task.name} takes {task.takes}" for task in TASKS if task.parts(truth))
-        classes = f" Classes: {', '.join(truth.classes)}." if truth.classes else ""
-        raise UsageError(
-            f"{where}: {counted(len(problems), 'problem')}\n{lines}\nOne row is needed for each of the "
-            f"{counted(truth.record_id.size, 'record')} of the split {truth.split}, with {RECORD} and the columns of a "
-            f"task: {takes}.{classes}"
-        )
-    return columns
+    return ({} if place is None else _columns(table.take(pa.array(place)), truth, problems)), problems
+
+
+def refusal(where: Any, problems: Sequence[str], truth: Truth) -> str:
+    """Return the message about predictions with problems: all of them, and what is allowed."""
+    lines = "\n".join(f"  {problem}" for problem in problems)
+    takes = "; ".join(f"{task.name} takes {task.takes}" for task in TASKS if task.parts(truth))
+    classes = f" Classes: {', '.join(truth.classes)}." if truth.classes else ""
+    return (
+        f"{where}: {counted(len(problems), 'problem')}\n{lines}\nOne row is needed for each of the "
+        f"{counted(truth.record_id.size, 'record')} of the split {truth.split}, with {RECORD} and the columns of a "
+        f"task: {takes}.{classes}"
+    )
 
 
 def _places(table: pa.Table, truth: Truth, problems: list[str]) -> np.ndarray | None:

@@ -59,6 +59,8 @@ class Scores:
     rows : tuple of ScoreRow
     classes : str
         What a class is: `state` or `fault`; empty in sets of lives, which have none.
+    simulation_version : int
+        Of the set; 0 where it says none.
     """
 
     set_name: str
@@ -68,6 +70,7 @@ class Scores:
     gearboxes: int
     rows: tuple[ScoreRow, ...]
     classes: str = STATE
+    simulation_version: int = 0
 
     def to_table(self) -> pa.Table:
         """Return one row per score: task, measure, records, name, score, low, high, chance, difference with limits."""
@@ -99,7 +102,8 @@ class Scores:
     def _entry(self, row: ScoreRow) -> dict[str, object]:
         apart = row.difference or Interval(math.nan, math.nan, math.nan)
         return {
-            "set": self.set_name, "identity": self.identity, "split": self.split, "classes": self.classes,
+            "set": self.set_name, "identity": self.identity, "simulation_version": self.simulation_version,
+            "split": self.split, "classes": self.classes,
             "task": row.task, "measure": row.measure, "records": row.records, "name": row.name,
             "score": row.score.value, "low": row.score.low, "high": row.score.high, "chance": row.chance,
             "difference": apart.value, "difference_low": apart.low, "difference_high": apart.high,
@@ -183,13 +187,32 @@ def score(
     if file is not None:
         others = _by_classifier(prediction_table(file), truth, identity, file, file.parent.name)
         columns |= {name: found for name, found in others.items() if name not in columns}
+    return scores_of(dataset, truth, columns, first, seed)
+
+
+def scores_of(dataset: Dataset, truth: Truth, columns: dict[str, Answers], first: str, seed: int) -> Scores:
+    """Return the scores of checked columns by name, and the differences of the first from all others.
+
+    Raises
+    ------
+    UsageError
+        If the columns of the first answer no task.
+    """
     resamples = min(RESAMPLES, max(50, LARGEST_BLOCK // truth.record_id.size))
     weights = bootstrap_weights(truth.specimen, seed, resamples)
-    rows = [row for task in TASKS for row in _task_rows(task, columns, first, truth, weights)]
+    rows = tuple(row for task in TASKS for row in _task_rows(task, columns, first, truth, weights))
     if not rows:
-        raise UsageError(f"{dataset.path}: the split {split} has nothing that these columns tell apart")
-    kind = classes if truth.told else ""
-    return Scores(dataset.path.name, identity, split, truth.record_id.size, truth.gearboxes, tuple(rows), kind)
+        raise UsageError(f"{dataset.path}: the split {truth.split} has nothing that these columns tell apart")
+    return Scores(
+        set_name=dataset.path.name,
+        identity=str(dataset.manifest["identity"]),
+        split=truth.split,
+        records=truth.record_id.size,
+        gearboxes=truth.gearboxes,
+        rows=rows,
+        classes=truth.told.kind if truth.told else "",
+        simulation_version=int(dataset.manifest.get("simulation_version", 0)),
+    )
 
 
 def _by_classifier(table: pa.Table, truth: Truth, identity: str, where: Any, name: str) -> dict[str, Answers]:

@@ -10,24 +10,13 @@ import math
 
 import numpy as np
 
-from diagnostics.signal.synchronous_average import hann_weights
-
 FLOOR = 1e-9
 """Amplitudes below this share of the strongest line count as that much: the logarithm of an empty bin says nothing."""
 
 
-def log_amplitude(signal: np.ndarray) -> np.ndarray:
-    """Return the natural logarithm of the Hann-weighted amplitude spectrum, (n // 2 + 1,), floored at 1e-9 of its top.
-
-    Parameters
-    ----------
-    signal : (n,) float64
-        Record or angle signal.
-    """
-    from scipy import fft
-
-    amplitude = np.abs(fft.rfft(signal * hann_weights(signal.size)))
-    found: np.ndarray = np.log(np.maximum(amplitude, FLOOR * amplitude.max() + 1e-300))
+def log_amplitude(amplitude: np.ndarray, count: int) -> np.ndarray:
+    """Return the natural logarithm of the first amplitudes of a spectrum, (count,), floored at 1e-9 of its top."""
+    found: np.ndarray = np.log(np.maximum(amplitude[:count], FLOOR * amplitude.max() + 1e-300))
     return found
 
 

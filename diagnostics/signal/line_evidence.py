@@ -96,13 +96,18 @@ class LineEvidence:
         return total
 
     def _lines(self, speeds_hz: np.ndarray, orders: np.ndarray) -> _Lines:
-        ratio = speeds_hz / self.speed_hz
-        place = np.outer(ratio, orders[orders * speeds_hz.min() <= self.highest_hz])
-        inside = place * self.speed_hz <= self.highest_hz
-        cells = np.minimum(np.rint(place * self.revolutions), self.power.size - 1).astype(np.int64)
-        count = inside.sum(axis=1)
-        mean = np.sum(np.minimum(self.power[cells], STRONGEST) * inside, axis=1) / np.maximum(count, 1)
-        return _Lines(count, mean)
+        count = np.searchsorted(orders, self.highest_hz / speeds_hz, side="right")  # orders rise
+        cells = np.outer(speeds_hz * (self.revolutions / self.speed_hz), orders[: count.max(initial=0)])
+        np.rint(cells, out=cells)
+        np.minimum(cells, self.power.size - 1, out=cells)
+        found = self._limited[cells.astype(np.intp)]
+        all_have = count.min(initial=orders.size)
+        found[:, all_have:] *= np.arange(all_have, found.shape[1]) < count[:, None]
+        return _Lines(count, found.sum(axis=1) / np.maximum(count, 1))
+
+    @cached_property
+    def _limited(self) -> np.ndarray:
+        return np.asarray(np.minimum(self.power, STRONGEST))
 
     @cached_property
     def _groups(self) -> tuple[np.ndarray, ...]:

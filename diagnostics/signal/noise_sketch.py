@@ -14,6 +14,7 @@ from diagnostics.signal.synchronous_average import synchronous_average, whole_re
 
 SEGMENT_SAMPLES = 4096
 PHASES = 1024
+_HANN = np.hanning(SEGMENT_SAMPLES)
 SMALLEST_SHARE = 1e-5
 """What is left below this share of the signal's rms is rounding and interpolation, not noise."""
 FEWEST_TURNS = 4
@@ -60,7 +61,7 @@ def noise_sketch(
     if float(left.std()) < SMALLEST_SHARE * float(np.sqrt(np.mean(np.square(signal)))):
         return np.empty(0, dtype=np.complex64)
     # the upper half of the band, where what is locked to both gears is weakest
-    spectrum = fft.rfft(left * np.hanning(left.size))[-PHASES:]
+    spectrum = fft.rfft(left * _HANN)[-PHASES:]
     size = np.abs(spectrum)
     return np.asarray(spectrum / np.where(size > 0, size, 1.0), dtype=np.complex64)
 
@@ -72,7 +73,7 @@ def _locked(steps: np.ndarray, teeth: tuple[int, int], grid: AngleGrid, place: n
     found = _periodic(pinion.signal, place)
     if whole_revolutions(steps, teeth[1], per_tooth) < FEWEST_TURNS:
         return found
-    rest = steps - np.tile(pinion.signal, grid.revolutions)
+    rest = (steps.reshape(grid.revolutions, -1) - pinion.signal).ravel()
     return np.asarray(found + _periodic(synchronous_average(rest, teeth[1], per_tooth).signal, place))
 
 

@@ -8,6 +8,7 @@ kurtosis in bands after Antoni 2006; bands in shaft orders and the localised ene
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -26,34 +27,37 @@ def band_name(low: int, high: int) -> str:
     return f"o{low}_{high}"
 
 
-def band_signal(part: np.ndarray, low: int, high: int, highest_order: float = math.inf) -> np.ndarray:
-    """Return the analytic signal of a band of whole shaft orders of one averaged revolution.
+def band_signals(
+    part: np.ndarray, highest_order: float = math.inf, bands: Sequence[tuple[int, int]] = ORDER_BANDS
+) -> np.ndarray:
+    """Return the analytic signals of bands of whole shaft orders of one averaged revolution.
 
-    Its real part is the part of the average in the band, its magnitude the envelope. Orders are whole bins of the
-    revolution, so the band has sharp edges and nothing rings over the ends.
+    The real part is the part of the average in a band, the magnitude its envelope. Orders are whole bins of the
+    revolution, so bands have sharp edges and nothing rings over the ends.
 
     Parameters
     ----------
     part : (n,) float64
         One revolution at equal angle steps: an average, its residual, or its difference to a healthy one.
-    low, high : int
-        Orders low ... high - 1 are kept.
     highest_order : float
-        Highest order that the record carries (half its sampling rate over the shaft's speed); the band ends there.
+        Highest order that the record carries (half its sampling rate over the shaft's speed); bands end there.
+    bands : sequence of (int, int)
+        Orders low ... high - 1 of each are kept.
 
     Returns
     -------
-    (n,) complex128
-        NaN throughout where record or angle steps carry less than half of the band.
+    (bands, n) complex128
+        NaN throughout where record or angle steps carry less than half of a band.
     """
     from scipy import fft
 
-    end = min(high, math.floor(min(highest_order, (part.size - 1) / 2.0)) + 1)
-    if end - low < FEWEST_SHARE * (high - low):
-        return np.full(part.size, np.nan, dtype=np.complex128)
-    kept = np.zeros(part.size, dtype=np.complex128)
-    kept[low:end] = 2.0 * fft.rfft(part)[low:end]
-    return np.asarray(fft.ifft(kept))
+    lines, highest = 2.0 * fft.rfft(part), math.floor(min(highest_order, (part.size - 1) / 2.0)) + 1
+    kept = np.zeros((len(bands), part.size), dtype=np.complex128)
+    for row, (low, high) in zip(kept, bands, strict=True):
+        row[low : min(high, highest)] = lines[low : min(high, highest)]
+    found = np.asarray(fft.ifft(kept, axis=1))
+    found[[min(high, highest) - low < FEWEST_SHARE * (high - low) for low, high in bands]] = np.nan
+    return found
 
 
 def localised_energy(band: np.ndarray, teeth: int) -> float:

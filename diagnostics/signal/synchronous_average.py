@@ -32,8 +32,8 @@ def asynchronous_part(turns: np.ndarray, gear_order: float) -> np.ndarray:
     Of noise a share of one over the revolutions goes with each average. Source: standard literature.
     """
     rest = (turns - turns.mean(axis=0)).ravel()
-    place = np.arange(rest.size) * (gear_order / turns.shape[1]) % 1.0
-    bins = (place * GEAR_BINS).astype(np.int64)
+    place = np.arange(rest.size) * (gear_order / turns.shape[1])
+    bins = ((place - np.floor(place)) * GEAR_BINS).astype(np.int64)
     mean = np.bincount(bins, rest, GEAR_BINS) / np.maximum(np.bincount(bins, minlength=GEAR_BINS), 1)
     return np.asarray(rest - mean[bins])
 

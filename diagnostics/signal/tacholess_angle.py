@@ -13,12 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.signal.spectrum import power
 from siggen.errors import UsageError
 
 FRAME_REVOLUTIONS = 4.0
 """Revolutions per short spectrum: a Hann window of four keeps the sidebands one order away apart from the mesh line."""
 
 HOPS_PER_FRAME = 8
+MOST_VALUES = 200_000
+"""Values that are computed at once: frames times lines times candidates."""
+
 LARGEST_CHANGE_PER_HOP = 0.01
 PHASE_BANDWIDTH_ORDERS = 0.1
 """Standard deviation of the Gaussian low-pass of the phase; a sideband 0.38 orders away (18/47 teeth) is left with
@@ -94,20 +98,23 @@ def mesh_ridge(
     speeds = np.arange(low, high, 0.25 * fs_hz / size / teeth / max(used))
     starts = np.arange(0, signal.size - size + 1, size // HOPS_PER_FRAME)
     lines_hz = teeth * np.outer(used, speeds)
-    score = np.stack([_frame_excess(signal[i : i + size], fs_hz, lines_hz).sum(axis=0) for i in starts])
+    frames = np.lib.stride_tricks.sliding_window_view(signal, size)[starts]
+    at_once = max(1, MOST_VALUES // lines_hz.size)
+    pieces = (frames[k : k + at_once] for k in range(0, starts.size, at_once))
+    score = np.concatenate([_frame_excess(piece, fs_hz, lines_hz).sum(axis=1) for piece in pieces])
     reach = max(1, round(LARGEST_CHANGE_PER_HOP * 0.5 * (low + high) / (speeds[1] - speeds[0])))
     path = _best_path(score, reach)
     clarity = float(score[np.arange(starts.size), path].mean() / len(used))
     return MeshRidge((starts + 0.5 * size) / fs_hz, speeds[path], clarity)
 
 
-def _frame_excess(frame: np.ndarray, fs_hz: float, frequency_hz: np.ndarray) -> np.ndarray:
+def _frame_excess(frames: np.ndarray, fs_hz: float, frequency_hz: np.ndarray) -> np.ndarray:
     """Return the excess of log amplitude over the median of each row of frequencies, and over its noise.
 
     Parameters
     ----------
-    frame : (n,) float64
-        Piece of the record; weighted by a Hann window here.
+    frames : (frames, n) float64
+        Pieces of the record; weighted by a Hann window here.
     fs_hz : float
         Sampling frequency [Hz].
     frequency_hz : (lines, candidates) float64
@@ -115,16 +122,17 @@ def _frame_excess(frame: np.ndarray, fs_hz: float, frequency_hz: np.ndarray) -> 
 
     Returns
     -------
-    (lines, candidates) float64
+    (frames, lines, candidates) float64
         Zero where a line does not stand out.
     """
     from scipy import fft
 
-    padded = fft.next_fast_len(4 * frame.size, real=True)
-    spectrum = np.abs(fft.rfft(frame * np.hanning(frame.size), padded))
+    size = frames.shape[1]
+    padded = fft.next_fast_len(4 * size, real=True)
+    amplitude = np.sqrt(power(fft.rfft(frames * np.hanning(size), padded, axis=1)))
     bins = np.rint(frequency_hz * padded / fs_hz).astype(np.int64)
-    level = np.log(spectrum[bins] + 1e-12 * spectrum.max() + 1e-300)
-    excess = level - np.median(level, axis=1, keepdims=True)
+    level = np.log(amplitude[:, bins] + (1e-12 * amplitude.max(axis=1) + 1e-300)[:, None, None])
+    excess = level - np.median(level, axis=2, keepdims=True)
     return np.asarray(np.maximum(excess - NOISE_EXCESS, 0.0))
 
 
@@ -148,13 +156,12 @@ def _best_path(score: np.ndarray, reach: int) -> np.ndarray:
     """Return the candidate of each frame on the path of largest sum that moves at most `reach` per frame."""
     frames, candidates = score.shape
     came_from = np.zeros((frames, candidates), dtype=np.int64)
-    total = score[0]
+    padded = np.full(candidates + 2 * reach, -np.inf)
+    total, windows = padded[reach:-reach], np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)
+    total[:] = score[0]
     for frame in range(1, frames):
-        padded = np.pad(total, reach, constant_values=-np.inf)
-        windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)
-        best = windows.argmax(axis=1)
-        came_from[frame] = np.arange(candidates) + best - reach
-        total = score[frame] + windows[np.arange(candidates), best]
+        came_from[frame] = np.arange(candidates) + windows.argmax(axis=1) - reach
+        total[:] = score[frame] + total[came_from[frame]]
     path = np.empty(frames, dtype=np.int64)
     path[-1] = total.argmax()
     for frame in range(frames - 1, 0, -1):

@@ -97,18 +97,55 @@ def state_index(matrix: FeatureMatrix, classes: tuple[str, ...]) -> np.ndarray:
     return np.array([classes.index(name) for name in matrix.labels[CLASS].tolist()], dtype=np.int64)
 
 
-def logistic_pipeline(strength: float = DEFAULT_STRENGTH) -> Any:
-    """Return an unfitted pipeline: medians for undefined values, standardisation, logistic regression."""
+@dataclass(frozen=True, slots=True)
+class PreparedRecords:
+    """Records as logistic regression takes them, and how: fitted once, whatever labels and strengths follow.
+
+    Attributes
+    ----------
+    steps : tuple
+        Fitted: medians for undefined values, standardisation.
+    logs : (columns,) bool
+        Columns that are taken as logarithms.
+    names : tuple of str
+        Of the columns.
+    ready : (n, columns) float64
+        The records themselves.
+    """
+
+    steps: tuple[Any, Any]
+    logs: np.ndarray
+    names: tuple[str, ...]
+    ready: np.ndarray
+
+    def of(self, values: np.ndarray) -> np.ndarray:
+        """Return other records, (m, columns), prepared alike."""
+        imputer, scaler = self.steps
+        return np.asarray(scaler.transform(imputer.transform(with_logarithms(values, self.logs))))
+
+    def fitted(self, truth: np.ndarray, strength: float) -> Any:
+        """Return a logistic regression on these records, whose classes (n,) int are given."""
+        from sklearn.linear_model import LogisticRegression
+
+        return LogisticRegression(C=strength, max_iter=5000).fit(self.ready, truth)
+
+
+def prepared_records(matrix: FeatureMatrix, *, take_logarithms: bool = True) -> PreparedRecords:
+    """Return records prepared for a fit; see `fitted_classifier`."""
     from sklearn.impute import SimpleImputer
-    from sklearn.linear_model import LogisticRegression
-    from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import StandardScaler
 
-    return make_pipeline(
-        SimpleImputer(strategy="median", keep_empty_features=True),
-        StandardScaler(),
-        LogisticRegression(C=strength, max_iter=5000),
-    )
+    logs = _positive(matrix.values) if take_logarithms else np.zeros(len(matrix.names), dtype=bool)
+    imputer, scaler = SimpleImputer(strategy="median", keep_empty_features=True), StandardScaler()
+    ready = scaler.fit_transform(imputer.fit_transform(with_logarithms(matrix.values, logs)))
+    return PreparedRecords((imputer, scaler), logs, matrix.names, ready)
+
+
+def told(model: Any, ready: np.ndarray, classes: int) -> np.ndarray:
+    """Return the probabilities (n, classes) of prepared records; classes that training lacked get zero."""
+    found = np.zeros((len(ready), classes))
+    found[:, model.classes_] = model.predict_proba(ready)
+    return found
 
 
 def fitted_classifier(
@@ -137,9 +174,11 @@ def fitted_classifier(
     take_logarithms : bool
         Whether columns that are positive in all records are taken as logarithms.
     """
-    logs = _positive(matrix.values) if take_logarithms else np.zeros(len(matrix.names), dtype=bool)
-    pipeline = logistic_pipeline(strength).fit(with_logarithms(matrix.values, logs), truth)
-    taken = tuple(name for name, log in zip(matrix.names, logs.tolist(), strict=True) if log)
+    from sklearn.pipeline import make_pipeline
+
+    own = prepared_records(matrix, take_logarithms=take_logarithms)
+    pipeline = make_pipeline(*own.steps, own.fitted(truth, strength))
+    taken = tuple(name for name, log in zip(matrix.names, own.logs.tolist(), strict=True) if log)
     return FeatureClassifier(pipeline, matrix.names, classes, strength, note, logarithms=taken)
 
 
@@ -194,14 +233,16 @@ def _chosen_strength(
     if any(np.unique(own[fold != k]).size < 2 for k in np.unique(fold)):
         note = f"too few training specimens to choose by: C = {DEFAULT_STRENGTH} was taken as it is"
         return DEFAULT_STRENGTH, note
+    held_out = np.zeros((len(strengths), own.size, len(split.classes)))
+    for k in np.unique(fold):
+        rest = prepared_records(seen.rows(fold != k), take_logarithms=take_logarithms)
+        ready = rest.of(seen.values[fold == k])
+        for number, strength in enumerate(strengths):
+            model = rest.fitted(own[fold != k], strength)
+            held_out[number, fold == k] = told(model, ready, len(split.classes))
     areas = []
-    for strength in strengths:
-        held_out = np.zeros((own.size, len(split.classes)))
-        for k in np.unique(fold):
-            rest = seen.rows(fold != k)
-            model = fitted_classifier(rest, own[fold != k], split.classes, strength, take_logarithms=take_logarithms)
-            held_out[fold == k] = model.probability(seen.values[fold == k])
-        found = Predictions(split.classes, own, held_out, seen.labels["specimen_id"])
+    for probability in held_out:
+        found = Predictions(split.classes, own, probability, seen.labels["specimen_id"])
         areas.append(float(np.nan_to_num(macro_auroc(found, ones)[0], nan=0.5)))
     best = max(range(len(areas)), key=lambda k: (round(areas[k], 12), -k))
     return strengths[best], ""
@@ -236,11 +277,13 @@ def permutation_control(
     take the C that was chosen with the true labels.
     """
     truth, test = state_index(matrix, split.classes), matrix.rows(split.test)
-    areas = np.empty(repeats)
+    train = prepared_records(matrix.rows(split.train))
+    ready, areas = train.of(test.values), np.empty(repeats)
     for repeat in range(repeats):
-        permuted = permuted_target(truth, split, seed, repeat)
-        model = train_classifier(matrix, split, permuted, strengths=(strength,))
-        areas[repeat] = macro_auroc(model.predict(test), np.ones((1, test.values.shape[0])))[0]
+        model = train.fitted(permuted_target(truth, split, seed, repeat)[split.train], strength)
+        probability = told(model, ready, len(split.classes))
+        found = Predictions(split.classes, truth[split.test], probability, test.labels["specimen_id"])
+        areas[repeat] = macro_auroc(found, np.ones((1, test.values.shape[0])))[0]
         if advance:
             advance()
     return areas

@@ -49,6 +49,7 @@ def kept(found: MeasuredSet, rows: np.ndarray) -> MeasuredSet:
         labels={name: values[rows] for name, values in found.labels.items()},
         values={name: values[rows] for name, values in found.values.items()},
         checksums=found.checksums[rows],
+        raw=found.raw.of(places),
         **lists,
     )
 

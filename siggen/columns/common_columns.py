@@ -25,7 +25,12 @@ LABEL_COLUMNS = in_role(
     Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
     Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
     Column("damage_count", pa.int32(), "", "number of single damages on all teeth"),
-    Column("damaged_area_mm2", pa.float64(), "mm^2", "area of the union of all damage, all teeth"),
+    Column(
+        "damaged_area_mm2",
+        pa.float64(),
+        "mm^2",
+        "area along the flank of the union of all outlined damage, all teeth; 0 for cracks, wear and bearings",
+    ),
     Column("damaged_area_share", pa.float64(), "", "damaged share of the most damaged flank"),
     Column("damage_face_length_mm", pa.float64(), MILLIMETRE, "longest single damage across the face"),
     Column("damage_profile_length_mm", pa.float64(), MILLIMETRE, "longest single damage along the profile (arc)"),

@@ -14,5 +14,5 @@ WITHOUT_ROLES = "3"
 READ_VERSIONS = (WITHOUT_ROLES, SCHEMA_VERSION)
 """Versions that are read; nothing older was ever released."""
 
-SIMULATION_VERSION = 9
+SIMULATION_VERSION = 10
 """Raised, at most once per release, when a configuration of an earlier release comes to give a record other numbers."""

@@ -1,7 +1,7 @@
 """What the rest of siggen asks a kind of damage: the common part of all sections of damage.
 
 A kind is one module here: its section with the answers below. Where its physics is new, one module in `gears.damage`
-holds it, which knows no configuration. The registry names the kind; nothing else knows kinds.
+holds it, which knows no configuration. `kinds.py` names the kind; nothing else knows kinds.
 """
 
 from __future__ import annotations

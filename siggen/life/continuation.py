@@ -8,13 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 MOST_PITS = 256
 """That a gearbox may get until it fails; those after them are left out."""
 
 
-@njit(cache=True, error_model="numpy")
+@entry(cache=True, error_model="numpy")
 def failing_times(
     runs: int,
     rng: np.random.Generator,

@@ -29,7 +29,7 @@ class Inverter(Source):
         description="switching frequency, drawn per gearbox; its k-th sidebands have 1/(1 + k) of the amplitude"
     )
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="amplitude of a line, drawn per record and axis"
+        description="amplitude of a line, drawn per record and axis; with `background` per gearbox"
     )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> Part:

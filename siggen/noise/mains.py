@@ -21,7 +21,7 @@ class Mains(Source):
     meaning: ClassVar[str] = "RMS of mains hum in"
 
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="amplitude of a line, drawn per record and axis"
+        description="amplitude of a line, drawn per record and axis; with `background` per gearbox"
     )
     frequency_hz: Annotated[Number, Within(above=0)] = Field(
         default=50.0, description="frequency, drawn per gearbox for every line"

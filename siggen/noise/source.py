@@ -1,7 +1,7 @@
 """What the rest of siggen asks a source: the common part of all sections of noise and lines that channels get.
 
 A source is one module here: its section with the answers below. Its physics stands in `sensing`, which knows no
-configuration. The registry names the source; nothing else knows sources. White noise is no source:
+configuration. `kinds.py` names the source; nothing else knows sources. White noise is no source:
 `Recorder.convert` adds it.
 """
 

@@ -24,7 +24,7 @@ class Tones(Source):
     count: Annotated[Whole, Field(ge=1, le=40)] = Field(default=3, description="number of tones")
     frequency_hz: Annotated[Number, Within(above=0)] = Field(description="frequency, drawn per gearbox for every line")
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="amplitude of a line, drawn per record and axis"
+        description="amplitude of a line, drawn per record and axis; with `background` per gearbox"
     )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> Part:

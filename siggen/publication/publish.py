@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from siggen.dataset.card import faults_text, tags
 from siggen.dataset.card_making import quantities_text
-from siggen.dataset.manifest import CARD, INJECTED, MANIFEST
+from siggen.dataset.manifest import BLIND, CARD, INJECTED, MANIFEST
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import sealed
@@ -82,6 +82,8 @@ def publication(
     dataset = open_set(path)
     if INJECTED in dataset.inventory.files:
         raise UsageError(f"{path}: holds your recordings with injected damage; it is no set that siggen publishes")
+    if BLIND in dataset.inventory.files:
+        raise UsageError(f"{path}: is a test part of a benchmark, ready as it is; publish the part to learn from")
     facts = _facts(Path(path), facts_file)
     found = _audit_file(Path(path), audit)
     config = _config(dataset)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.friction.rubbing_course import rubbing_course
 from siggen.keys.number import at, constant
 from siggen.record.background_course import Course
@@ -174,7 +174,7 @@ def burst_rise(drawn: DrawnBursts, first: int, count: int) -> FloatArray:
     return rise
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _add_burst(rise: FloatArray, first: int, peak: float, memory: float) -> None:
     """Add peak e^(-i/memory) from sample `first` on, which may lie before the array, as long as it matters."""
     last = min(rise.size, first + int(memory * 12.0))

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 SHAFT_LINES = 3
 """Lines of a shaft's modulation."""
@@ -52,7 +52,7 @@ def replayed(angle_rad: FloatArray, order: float, pattern: FloatArray) -> FloatA
     return _read(angle_rad, order / (2.0 * np.pi), pattern)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _process(normals: FloatArray, keep: float, last: float, begins: bool) -> FloatArray:
     result = np.empty_like(normals)
     fresh = np.sqrt(1.0 - keep * keep)
@@ -62,7 +62,7 @@ def _process(normals: FloatArray, keep: float, last: float, begins: bool) -> Flo
     return result
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _read(angle_rad: FloatArray, per_rad: float, table: FloatArray) -> FloatArray:
     result, size = np.empty_like(angle_rad), table.size
     for i in range(angle_rad.size):

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 LOWEST_HZ = 0.01
 """Below, the noise is white: a wander over more than 16 s."""
@@ -74,7 +74,7 @@ def _residues(poles: FloatArray, zeros: FloatArray) -> FloatArray:
     return found
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _filtered(
     white: FloatArray, poles: FloatArray, shares: FloatArray, direct: float, states: FloatArray
 ) -> FloatArray:

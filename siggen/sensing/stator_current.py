@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 MEMORY = 16.0
 """Time constants over which the lag forgets how it began: 1e-7 is left."""
@@ -66,7 +66,7 @@ def active_current(motor: InductionMotor, uneven_rad: FloatArray, fs_hz: float, 
     return np.asarray(per_speed * speed[mirrored.size :])
 
 
-@njit(cache=True)
+@entry(cache=True)
 def lagging(course: FloatArray, step: float) -> FloatArray:
     """Return what lags (n,) behind a course (n,) that is straight between samples, `step` samples over time constants.
 

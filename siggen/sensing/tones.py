@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 BLOCK_SAMPLES = 256
 """Samples whose cosines are taken once; about the square root of a record's length."""
@@ -64,7 +64,7 @@ def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: in
     return signal
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _add_line(signal: FloatArray, step_rad: float, amplitude: float, phase_rad: float) -> None:
     """Add a cos(step i + phase), as a cos(p) cos(step k) - a sin(p) sin(step k) with the phase p at a block's start."""
     cosine, sine = np.empty(BLOCK_SAMPLES), np.empty(BLOCK_SAMPLES)

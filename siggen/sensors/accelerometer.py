@@ -43,7 +43,7 @@ class NoiseFloor(Section):
     """White noise of a given size; a distribution is drawn for every record and axis."""
 
     floor_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="standard deviation of the white noise, drawn per record and axis"
+        description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox"
     )
 
 

@@ -33,7 +33,8 @@ class TorqueSensor(Sensor):
         default=("rotation",), description="what it measures, one channel each"
     )
     floor_nm: Annotated[Number, Within(least=0)] = Field(
-        default=0.0, description="standard deviation of the white noise, drawn per record and axis"
+        default=0.0,
+        description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox",
     )
     range_nm: Annotated[Real, Field(gt=0)] = Field(description="readings are clipped at plus and minus this")
 

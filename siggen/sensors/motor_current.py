@@ -53,7 +53,8 @@ class MotorCurrent(Sensor):
         default=10.0, description="amplitude of the active current at the rated torque"
     )
     floor_a: Annotated[Number, Within(least=0)] = Field(
-        default=0.0, description="standard deviation of the white noise, drawn per record and axis"
+        default=0.0,
+        description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox",
     )
     range_a: Annotated[Real, Field(gt=0)] = Field(
         default=100.0, description="readings are clipped at plus and minus this"

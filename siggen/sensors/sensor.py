@@ -1,6 +1,6 @@
 """What the rest of siggen asks a kind of sensor: the common part of all sections of sensors.
 
-A kind is one module here: its section with the answers below. The registry names the kind; nothing else knows kinds.
+A kind is one module here: its section with the answers below. `kinds.py` names the kind; nothing else knows kinds.
 Where it reads what the model does not give yet, the model gives a new kind of `Input`.
 """
 
@@ -122,7 +122,10 @@ class Sensor(Section):
 
     @property
     def noise_floor(self) -> Number | None:
-        """Standard deviation of its white noise, in its unit, drawn per record and axis; None without."""
+        """Standard deviation of its white noise in its unit, drawn per record and axis; with `background` per gearbox.
+
+        None: it has none.
+        """
         return None
 
     @property

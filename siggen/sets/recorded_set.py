@@ -1,7 +1,8 @@
-"""A set whose rows hold recordings: the files of a generated set, so that every reader of sets takes it.
+"""A set of given rows: the files of a generated set, so that every reader of sets takes it.
 
-Where a generated set has gearboxes (`specimen_id`), it may have recordings; ids, labels and splits are those of the
-rows. No simulation makes such rows again, so `siggen verify` compares hashes alone, and it is never published.
+Rows hold recordings, or simulated records without what would tell their state (blind). Where a generated set has
+gearboxes (`specimen_id`), a set of recordings may have these; ids, labels and splits are those of the rows. Nobody can
+simulate such rows again, so `siggen verify` compares hashes alone. `siggen publish` takes neither.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from siggen.dataset.environment import environment
 from siggen.dataset.folder import config_bytes
 from siggen.dataset.id_ranges import id_ranges
 from siggen.dataset.manifest import (
+    BLIND,
     CARD,
     CONFIG,
     DAMAGE_FOLDER,
@@ -60,14 +62,21 @@ Row = Mapping[str, Any]
 
 
 def write_recorded_set(
-    config: Config, folder: Path, rows: Sequence[Row], origin: pa.Schema, facts: Mapping[str, Any], card: str
+    config: Config,
+    folder: Path,
+    rows: Sequence[Row],
+    origin: pa.Schema,
+    facts: Mapping[str, Any],
+    card: str,
+    *,
+    measured: Config | None = None,
 ) -> Path:
     """Write rows with signals into a new folder that `siggen.open` reads; return the folder.
 
     Parameters
     ----------
     config : Config
-        Gives channels, rate and the types of the labels.
+        Gives channels, rate and the types of the labels; stands in the folder.
     folder : Path
         New or empty.
     rows : sequence of mapping
@@ -76,9 +85,11 @@ def write_recorded_set(
     origin : pyarrow.Schema
         Further columns, which say where a row comes from, with `role` in the metadata of each.
     facts : mapping
-        What `injected.json` says.
+        What `injected.json` says, of blind rows `blind.json`.
     card : str
         README.md.
+    measured : Config, optional
+        What blind rows were made of. It gives their channels, and nothing else of it stands in the folder.
 
     Raises
     ------
@@ -89,26 +100,26 @@ def write_recorded_set(
     if storage.names():
         raise DatasetError(f"{folder}: is not empty; give a new folder")
     samples = min(len(signal) for row in rows for signal in row["signals"])
-    identity = _identity(rows, config.identity)
-    schema = _schema(config, origin, samples)
+    identity, heard, own_facts = _identity(rows, config.identity), measured or config, BLIND if measured else INJECTED
+    schema = _schema(config, heard, origin, samples)
     shares = {split: [row for row in rows if row["split"] == split] for split in SPLITS}
     sidecars = [_write_rows(storage, schema, split, identity, own) for split, own in shares.items() if own]
     tables = [table for sidecar in sidecars for table in _write_tables(storage, config, schema, sidecar, shares)]
     storage.put(CONFIG, config_bytes(config))
     storage.put(CARD, card.encode())
-    storage.put(INJECTED, json_bytes(facts))
+    storage.put(own_facts, json_bytes(facts))
     about = {
-        "name": f"{config.name}_recorded",
+        "name": f"{config.name}_{'blind' if measured else 'recorded'}",
         "identity": identity,
         "seed": config.seed,
         "specimens": len({row["specimen_id"] for row in rows}),
         "fs_hz": float(config.fs_hz),
         "duration_s": samples / float(config.fs_hz),
         "rows_per_group": GROUP_ROWS,
-        "channels": [asdict(channel) for channel in channels(config)],
+        "channels": [asdict(channel) for channel in channels(heard)],
         "columns": listed_columns(schema),
     }
-    storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, INJECTED])))
+    storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, own_facts])))
     return folder
 
 
@@ -120,10 +131,10 @@ def _identity(rows: Sequence[Row], configuration: str) -> str:
     return digest.hexdigest()
 
 
-def _schema(config: Config, origin: pa.Schema, samples: int) -> pa.Schema:
-    """Return the columns, those that a generated set has too as they are there."""
-    own = record_schema(config)
-    signals = [own.field(channel.column).with_type(list_of(pa.float32(), samples)) for channel in channels(config)]
+def _schema(config: Config, heard: Config, origin: pa.Schema, samples: int) -> pa.Schema:
+    """Return the columns, those that a generated set has too as they are there; signals as the other one's."""
+    own, others = record_schema(config), record_schema(heard)
+    signals = [others.field(channel.column).with_type(list_of(pa.float32(), samples)) for channel in channels(heard)]
     metadata = {**schema_metadata(config), "duration_s": repr(samples / float(config.fs_hz))}
     labels = [own.field(name) for name in (*IDS, *LABELS, *(name for name in own.names if name.startswith(TEETH)))]
     return pa.schema([*labels, *origin, *signals, TACHO_COLUMN.field()], metadata=metadata)

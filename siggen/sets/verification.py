@@ -15,6 +15,7 @@ from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts, sidecar_facts
 from siggen.dataset.inventory import HashedFiles, Inventory, PromisedFile
 from siggen.dataset.manifest import (
+    BLIND,
     CONFIG,
     DAMAGE_FOLDER,
     INJECTED,
@@ -144,6 +145,8 @@ def why_not_again(manifest: HashedFiles, sample: int) -> str:
     made_by, schema = manifest.simulation_version, manifest.schema_version[:20]
     if INJECTED in manifest.files:
         return f"{HASHES_ALONE}: its rows hold recordings, which no simulation makes again"
+    if BLIND in manifest.files:
+        return f"{HASHES_ALONE}: what its rows were made of is secret until it is revealed"
     head = f"{HASHES_ALONE}; {counted(min(sample, manifest.rows), 'record')} not simulated again: "
     if schema not in READ_VERSIONS:
         return f"{head}its files have schema version {schema}, this siggen reads {' and '.join(READ_VERSIONS)}"

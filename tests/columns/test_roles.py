@@ -59,6 +59,16 @@ def test_a_finished_set_says_the_roles_of_its_columns(tmp_path: Path) -> None:
     assert dataset.section("speed_hz") == "operating_points"
 
 
+def test_record_ids_tell_the_state_by_design_so_they_are_keys_and_no_input(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    dataset = siggen.open(tmp_path)
+    rows = dataset.labels().to_pylist()
+    states = 1 + max(row["state_id"] for row in rows)
+    of_a_state = len(rows) // states // len({row["specimen_id"] for row in rows})
+    assert all(row["record_id"] // of_a_state % states == row["state_id"] for row in rows)
+    assert {dataset.role(name) for name in ("record_id", "specimen_id", "state_id", "repeat", "split")} == {Role.KEY}
+
+
 def test_columns_that_a_stranger_does_not_list_are_conditions(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     manifest = tmp_path / "manifest.json"

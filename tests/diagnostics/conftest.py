@@ -17,6 +17,7 @@ from siggen.columns.damage_columns import DAMAGE_COLUMNS
 from siggen.config.names import NO_NAMES, Names
 from siggen.dataset.reading import RowGroup
 from tests.diagnostics.column_roles import ListedRoles
+from tests.shared import shared
 
 if TYPE_CHECKING:
     from diagnostics.indicators.table import RecordTable
@@ -184,19 +185,19 @@ def effectless() -> MemoryDataset:
 
 
 @pytest.fixture(scope="session")
-def measured(dataset: MemoryDataset) -> RecordTable:
+def measured(dataset: MemoryDataset, tmp_path_factory: pytest.TempPathFactory) -> RecordTable:
     """The one pass over the separable set, which many tests begin with."""
     from diagnostics.indicators.table import record_table
 
-    return record_table(dataset)
+    return shared(tmp_path_factory, "measured", lambda: record_table(dataset))
 
 
 @pytest.fixture(scope="session")
-def measured_effectless(effectless: MemoryDataset) -> RecordTable:
+def measured_effectless(effectless: MemoryDataset, tmp_path_factory: pytest.TempPathFactory) -> RecordTable:
     """The one pass over the set without effect."""
     from diagnostics.indicators.table import record_table
 
-    return record_table(effectless)
+    return shared(tmp_path_factory, "measured effectless", lambda: record_table(effectless))
 
 
 @pytest.fixture(scope="session")
@@ -208,12 +209,13 @@ def features(measured: RecordTable) -> pa.Table:
 
 
 @pytest.fixture(scope="session")
-def training(dataset: MemoryDataset, features: pa.Table) -> Training:
+def training(dataset: MemoryDataset, features: pa.Table, tmp_path_factory: pytest.TempPathFactory) -> Training:
     """What training without networks makes of the separable set."""
     from diagnostics.training.network_training import NetworkOptions
     from diagnostics.training.training import train_models
 
-    return train_models(dataset, features, 0, network=NetworkOptions(cnn=False))
+    options = NetworkOptions(cnn=False)
+    return shared(tmp_path_factory, "training", lambda: train_models(dataset, features, 0, network=options))
 
 
 @pytest.fixture(scope="session")

@@ -23,7 +23,7 @@ SIGGEN_ROOMS = (
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",
-    "prediction", "machine", "audit", "calibration", "report", "explore", "cli",
+    "prediction", "machine", "audit", "bench", "calibration", "report", "explore", "cli",
 )  # fmt: skip
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")

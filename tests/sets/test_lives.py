@@ -53,13 +53,15 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_record_of_a_life_is_the_static_record_of_its_damage(fleet: Path, tmp_path: Path) -> None:
     (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives()))
-    run(
-        "inspect", "life", str(tmp_path / "lives.yaml"), "--specimen", "1", "--as-states", str(tmp_path / "states.yaml")
-    )
-    siggen.generate(load_config(tmp_path / "states.yaml"), tmp_path / "set", workers=0)
-    own = [{**row, "record_id": 0} for row in rows(fleet) if row["specimen_id"] == 1]
-    static = [{**row, "record_id": 0} for row in rows(tmp_path / "set") if row["specimen_id"] == 1]
+    run("inspect", "life", str(tmp_path / "lives.yaml"), "--as-states", str(tmp_path / "states.yaml"))
+    siggen.generate(load_config(tmp_path / "states.yaml", ["specimens=1"]), tmp_path / "set", workers=0)
+    own = [{**row, "record_id": 0} for row in rows(fleet) if row["specimen_id"] == 0]
+    static = [{**row, "record_id": 0} for row in rows(tmp_path / "set")]
     assert own == static
+    other = ["--specimen", "1", "--as-states", str(tmp_path / "other.yaml")]
+    run("inspect", "life", str(tmp_path / "lives.yaml"), *other)
+    states = yaml.safe_load((tmp_path / "other.yaml").read_text())["states"]
+    assert len(states) == sum(row["specimen_id"] == 1 for row in rows(fleet))
     assert any(row["damaged_area_share"] > 0.04 for row in own)
 
 
@@ -85,14 +87,11 @@ def test_ids_have_a_fixed_stride_and_tables_tell_the_same_truth_as_labels(fleet:
 
 
 def test_more_gearboxes_leave_those_that_exist_as_they_are(fleet: Path, tmp_path: Path) -> None:
-    import shutil
-
-    shutil.copytree(fleet, tmp_path / "grown")
+    siggen.generate(load_config({**lives(), "specimens": 1}), tmp_path / "grown", workers=0)
     extend(tmp_path / "grown", "+1", 0)
-    siggen.generate(load_config({**lives(), "specimens": 3}), tmp_path / "once", workers=0)
-    assert rows(tmp_path / "grown") == rows(tmp_path / "once")
+    assert rows(tmp_path / "grown") == rows(fleet)
     for table in ("units", "inspections", "teeth", "pits", "outlook", "debris", "pictures"):
-        first, second = (siggen.open(tmp_path / name).life(table).to_pylist() for name in ("grown", "once"))
+        first, second = (siggen.open(folder).life(table).to_pylist() for folder in (tmp_path / "grown", fleet))
         assert sorted(map(str, first)) == sorted(map(str, second))
     assert "as its manifest promises" in run("verify", str(tmp_path / "grown"), "--sample", "1")
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Comb:
         return force
 
 
-@njit(cache=True)
+@entry(cache=True)
 def turns_of(angle_rad: FloatArray, order: float) -> ComplexArray:
     """Return exp(i order Θ) (k,)."""
     result = np.empty(angle_rad.size, dtype=np.complex128)
@@ -47,7 +47,7 @@ def turns_of(angle_rad: FloatArray, order: float) -> ComplexArray:
     return result
 
 
-@njit(cache=True)
+@entry(cache=True)
 def harmonic_sum(turns: ComplexArray, phasors: ComplexArray) -> FloatArray:
     """Return Re Σ_h p_h z^h (k,), h from 1, by Horner's rule."""
     result, last = np.empty(turns.size), turns.size - 1

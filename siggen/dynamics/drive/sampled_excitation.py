@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
 
@@ -93,7 +93,7 @@ class SampledExcitation:
         return bool((np.abs(spline(middle) - wanted) <= LARGEST_ERROR * np.abs(wanted).max(axis=0)).all())
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _evaluated(knots: FloatArray, coefficients: FloatArray, time_s: FloatArray) -> FloatArray:
     """Return the cubics (4, knots - 1, m) at times (k,), which ascend, to the last bit as scipy does.
 

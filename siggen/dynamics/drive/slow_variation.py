@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 KNOTS_PER_CORNER_PERIOD = 16
 """Knots per 1/f_c: the spline damps the process by 2.6 % at the corner and cuts it off around 8 f_c."""
@@ -99,7 +99,7 @@ def slow_variation(rng: np.random.Generator, corner_hz: float, start_s: float, e
     return SlowVariation(c, before, start_s, step_s)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _spline(
     c: FloatArray, before: FloatArray, start_s: float, step_s: float, times: FloatArray, what: int
 ) -> FloatArray:
@@ -123,7 +123,7 @@ def _spline(
     return result
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _process(normals: FloatArray, keep: float) -> FloatArray:
     """Return the process (k,) at its knots, stationary from the first."""
     result = np.empty_like(normals)

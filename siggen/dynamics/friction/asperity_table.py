@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.friction.asperity_share import RATIO_MODELS
 from siggen.dynamics.friction.contact_kinematics import Values, relative_radius
 from siggen.dynamics.friction.film_traction import film_traction
@@ -126,7 +126,7 @@ class LoadGrid(NamedTuple):
     per_log: float
 
 
-@njit(cache=True, error_model="numpy")
+@entry(cache=True, error_model="numpy")
 def mixed_contact(table: AsperityTable, layer: int, position_m: float, force_n: float) -> tuple[float, float]:
     """Return the asperity share La, 0 to 1, and the friction coefficient of the lubricated part; clamped to the table.
 
@@ -164,7 +164,7 @@ def cell_value(values: FloatArray, first: Whole, loads: int, a: Lanes, b: Lanes)
     return low * (1.0 - b) + (high_0 * (1.0 - a) + high_1 * a) * b
 
 
-@njit(cache=True)
+@entry(cache=True)
 def asperity_share(table: AsperityTable, layer: int, position_m: float, force_n: float) -> float:
     """Return the asperity share La of a contact, 0 to 1."""
     return mixed_contact(table, layer, position_m, force_n)[0]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.friction.asperity_table import AsperityTable, mixed_contact
 from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
 from siggen.lanes import Lanes, smaller
@@ -73,7 +73,7 @@ def friction_mixed(share: Lanes, boundary: float, fluid: Lanes) -> Lanes:
     return bounded + share * (boundary - bounded)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def friction_coefficient(law: FrictionLaw, layer: int, position_m: float, force_n: float) -> float:
     """Return the friction coefficient of a contact on the flank roughness `layer` of the table."""
     share, fluid = mixed_contact(law.table, layer, position_m, force_n)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.housing.boss_area import bore_area, boss_area
 from siggen.dynamics.housing.box import SIDES, Axis, Bolt, Box, Rib, Seat, Strip, copies, plane_axes
 from siggen.dynamics.housing.half_functions import HalfFunctions
 from siggen.dynamics.housing.line_functions import gauss_points
@@ -12,8 +13,8 @@ from siggen.dynamics.housing.ordered_sums import own_squares
 from siggen.dynamics.housing.plate_energy import Area, Energies, add_area, add_even_plate, sheet
 from siggen.dynamics.housing.shared_functions import PLATES
 
-RADII, ANGLES = 4, 16
-"""Points over a boss: Gauss's rule along the radius, even steps around."""
+SQUARED = 2.0
+"""Points of a boss and a bore over those of a line as long: functions are squared, and a bore takes away."""
 ALONG, THROUGH = 10, 2
 """Points of a rib along its length and over its height."""
 PATCH = 3
@@ -55,28 +56,10 @@ def _walls(plate: str) -> float:
 def _add_boss(box: Box, half: HalfFunctions, seat: Seat, energies: Energies) -> None:
     wall = sheet(box.material, box.thickness.walls_m)
     ring = sheet(box.material, seat.boss_thickness_m).less(wall).times(2.0)
-    add_area(half, "front", box.material, boss_area(box, seat), ring, energies)
-    add_area(half, "front", box.material, _ring(seat, 0.0, seat.bore_radius_m), wall.times(-2.0), energies)
-
-
-def boss_area(box: Box, seat: Seat) -> Area:
-    """Return points of a boss; where bosses meet, each point belongs to the one whose middle is relatively nearer."""
-    area = _ring(seat, seat.bore_radius_m, seat.boss_radius_m)
-    own = np.hypot(area.first_m - seat.x_m, area.second_m - seat.y_m) / seat.boss_radius_m
-    weight = area.weight_m2
-    for other in box.seats.values():
-        if other is not seat:
-            its = np.hypot(area.first_m - other.x_m, area.second_m - other.y_m) / other.boss_radius_m
-            weight = np.where(its < own, 0.0, weight)
-    return area._replace(weight_m2=weight)
-
-
-def _ring(seat: Seat, inner_m: float, outer_m: float) -> Area:
-    radius, weight = gauss_points(inner_m, outer_m, RADII)
-    angle = 2.0 * np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
-    x, y = seat.x_m + np.outer(radius, np.cos(angle)), seat.y_m + np.outer(radius, np.sin(angle))
-    area = np.repeat(weight * radius * 2.0 * np.pi / ANGLES, ANGLES)
-    return Area(x.ravel(), y.ravel(), area)
+    others = [other for other in box.seats.values() if other is not seat]
+    points_per_m = SQUARED * max((half.degrees.bubbles[axis] + 3) / half.size_m[axis] for axis in (Axis.X, Axis.Y))
+    add_area(half, "front", box.material, boss_area(seat, others, points_per_m), ring, energies)
+    add_area(half, "front", box.material, bore_area(seat, points_per_m), wall.times(-2.0), energies)
 
 
 def _add_strip(box: Box, half: HalfFunctions, strip: Strip, energies: Energies) -> None:

@@ -8,12 +8,12 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 BLOCK = 512
 
 
-@njit(cache=True, error_model="numpy")
+@entry(cache=True, error_model="numpy")
 def modal_sum(
     residues: FloatArray, natural: FloatArray, damping_ratio: FloatArray, residual: FloatArray, omega: FloatArray
 ) -> ComplexArray:

@@ -8,18 +8,18 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 AT_ONCE = 4
 
 
-@njit(cache=True)
+@entry(cache=True)
 def squares(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return leftᵀ right (n, m) of rows (points, n) and (points, m)."""
     return _summed(_filled(left), _filled(right), False)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def own_squares(rows: FloatArray) -> FloatArray:
     """Return rowsᵀ rows (n, n)."""
     filled = _filled(rows)

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import eigvalsh_tridiagonal
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 
 class LowestModes(NamedTuple):
@@ -61,7 +61,7 @@ def _largest(diagonal: FloatArray, beside: FloatArray, least: float) -> tuple[Fl
     return found, np.ascontiguousarray(tridiagonal_vectors(diagonal, beside, found).T)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def upper_root(matrix: FloatArray) -> FloatArray:
     """Return U (n, n), upper triangular with UᵀU the matrix; NaN where it is not positive definite."""
     n = matrix.shape[0]
@@ -80,7 +80,7 @@ def upper_root(matrix: FloatArray) -> FloatArray:
     return root
 
 
-@njit(cache=True)
+@entry(cache=True)
 def solve_lower(root: FloatArray, right: FloatArray) -> FloatArray:
     """Return U^-T right (n, m)."""
     n, m = right.shape
@@ -95,7 +95,7 @@ def solve_lower(root: FloatArray, right: FloatArray) -> FloatArray:
     return result
 
 
-@njit(cache=True)
+@entry(cache=True)
 def solve_upper(root: FloatArray, right: FloatArray) -> FloatArray:
     """Return U^-1 right (n, m)."""
     n, m = right.shape
@@ -110,7 +110,7 @@ def solve_upper(root: FloatArray, right: FloatArray) -> FloatArray:
     return result
 
 
-@njit(cache=True)
+@entry(cache=True)
 def tridiagonal(matrix: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return diagonal (n,) and neighbours (n - 1,) of a symmetric matrix, with the reflections that made them so.
 
@@ -162,7 +162,7 @@ NEAR = 1e-6
 PASSES = 3
 
 
-@njit(cache=True)
+@entry(cache=True)
 def tridiagonal_vectors(diagonal: FloatArray, beside: FloatArray, values: FloatArray) -> FloatArray:
     """Return unit vectors (m, n) of a symmetric tridiagonal matrix to its eigenvalues (m,), in descending order."""
     n, count = diagonal.size, values.size
@@ -223,7 +223,7 @@ def _inverse_step(diagonal: FloatArray, beside: FloatArray, value: float, tiny: 
         x[i] /= largest
 
 
-@njit(cache=True)
+@entry(cache=True)
 def reflect(reflections: FloatArray, scales: FloatArray, vectors: FloatArray) -> None:
     """Take vectors (n, m) of the tridiagonal matrix back to those of the symmetric one, in place."""
     n, m = vectors.shape

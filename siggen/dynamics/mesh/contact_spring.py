@@ -11,7 +11,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.tilted_spring import LEAST_M, RayPlace, along_ray, ray_before, tilted_answer
@@ -63,7 +63,7 @@ def flat_spring(stiffness: float, penetration_m: float, side: float) -> Spring:
     return Spring(force, stiffness, stiffness, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+@entry(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def pair_spring(law: PairLaw, pair: PairPlace, tilt: float, penetration_m: float) -> Spring:
     """Return the spring of the drive flank of a pair at a tilt [rad] and at an approach beyond missing material [m]."""
     nodes, values = law.places[layout.CONTACT_NODES], law.places[layout.CONTACT_VALUES]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import PairPlace, pair_spring
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -71,7 +71,7 @@ def _widened(edges: NDArray[np.bool_], before: int, after: int) -> NDArray[np.bo
     return np.ascontiguousarray(windows.any(axis=2))
 
 
-@njit(cache=True, error_model="numpy")
+@entry(cache=True, error_model="numpy")
 def _forces(law: PairLaw, rows: int, depth_m: float) -> FloatArray:
     """Return the force (rows, points) at a depth below the whole flank."""
     points = law.places[layout.POINTS]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.mesh import pair_columns as columns
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import PairPlace, Spring
@@ -81,7 +81,7 @@ _of_slot_0, _of_slot_1 = shuffle(0, 0, 2, 2, 4, 4, 6, 6), shuffle(1, 1, 3, 3, 5,
 _at_nodes = shuffle(0, 2, 4, 6, 0, 2, 4, 6)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+@entry(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def write_lane_forces(
     law: PairLaw, pitches_0: float, pitches_1: float, pairs: FloatArray, table: FloatArray, node: FloatArray
 ) -> int:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 if TYPE_CHECKING:
     from siggen.gears.stiffness.mesh_tables import MeshTables
@@ -79,7 +79,7 @@ def read_only(values: NDArray[Any], dtype: type) -> NDArray[Any]:
     return array
 
 
-@njit(cache=True)
+@entry(cache=True)
 def table_row(law: MeshLaw, pair: int) -> int:
     """Return the row of the table of engagement `pair` (any integer; negative before angle 0)."""
     teeth_1, teeth_2 = law.table_of_pair.shape
@@ -97,7 +97,7 @@ def row_stiffness(law: MeshLaw, row: int, pitches: float) -> float:
     return stiffness
 
 
-@njit(cache=True)
+@entry(cache=True)
 def mesh_stiffness(law: MeshLaw, pitches: float) -> float:
     """Return the sum of pair stiffnesses [N/m] at the pinion angle `pitches` = Θ z_1 / 2π."""
     pair = int(np.floor(pitches))
@@ -114,7 +114,7 @@ def in_contact(law: MeshLaw, approach_m: float) -> bool:
     return law.half_backlash_m == 0.0 or abs(approach_m) > law.half_backlash_m
 
 
-@njit(cache=True)
+@entry(cache=True)
 def mesh_force(law: MeshLaw, approach_m: float, approach_rate_m_s: float, pitches: float) -> float:
     """Return the mesh force [N] along the line of action, positive on the drive flank; the damper acts in contact."""
     if not in_contact(law, approach_m):

@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import sqrt
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import Spring
 from siggen.dynamics.mesh.load_spread import Part, spread
@@ -59,7 +59,7 @@ from siggen.dynamics.mesh.pair_loads import LEAST_CARRYING, damped, film_force, 
 from siggen.dynamics.mesh.pair_springs import coupling_of, write_springs
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@entry(cache=True, _nrt=False, error_model="numpy")
 def write_node_forces(
     law: PairLaw, nodes: FloatArray, weights: FloatArray, pitches_0: float, pitches_1: float, pairs: FloatArray,
     node: FloatArray, settled: float,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.mesh.node_forces import write_node_forces
 from siggen.dynamics.mesh.pair_columns import (
     NODE_APPROACH,
@@ -25,17 +25,17 @@ from siggen.dynamics.mesh.two_springs import EXACT_CHANGE
 _PLACE, _WEIGHT = np.zeros(1), np.ones(1)
 
 
-@njit(cache=True, _nrt=False)
+@entry(cache=True, _nrt=False)
 def write_forces(law: PairLaw, pitches: float, pairs: FloatArray) -> None:
     """Write the forces of all pairs into the table, and their sums into the node (NODE_ROWS, 1) that holds the state.
 
     It stands behind the first row of the table, where nothing need be allocated.
     """
-    node = pairs[:1, pairs.shape[1] - NODE_ROWS :].T
+    node = pairs[0, pairs.shape[1] - NODE_ROWS :].reshape(NODE_ROWS, 1)
     write_node_forces(law, _PLACE, _WEIGHT, pitches, pitches, pairs, node, EXACT_CHANGE)
 
 
-@njit(cache=True, _nrt=False)
+@entry(cache=True, _nrt=False)
 def pair_forces(
     law: PairLaw,
     approach_m: float,
@@ -49,13 +49,13 @@ def pair_forces(
 
     Tilt and its rate are those of the node behind the table.
     """
-    node = pairs[:1, pairs.shape[1] - NODE_ROWS :].T
+    node = pairs[0, pairs.shape[1] - NODE_ROWS :].reshape(NODE_ROWS, 1)
     node[NODE_APPROACH, 0], node[NODE_RATE, 0] = approach_m, rate_m_s
     node[NODE_SLIDING_0, 0], node[NODE_SLIDING_1, 0] = sliding_0_m_s, sliding_1_per_s
     write_forces(law, pitches, pairs)
 
 
-@njit(cache=True, _nrt=False)
+@entry(cache=True, _nrt=False)
 def static_force(law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray) -> float:
     """Return ΣN [N] at rest."""
     pair_forces(law, approach_m, 0.0, pitches, 0.0, 0.0, pairs)
@@ -83,7 +83,7 @@ def static_approach_m(law: PairLaw, force_n: float, pitches: float) -> float:
     return _halved(law, force_n, pitches, low, high, pairs)
 
 
-@njit(cache=True, _nrt=False)
+@entry(cache=True, _nrt=False)
 def _halved(law: PairLaw, force_n: float, pitches: float, low: float, high: float, pairs: FloatArray) -> float:
     """Return the approach between two at which the pairs carry a force."""
     # Monotone, so halving always ends; 80 halvings of 2 mm are below the rounding of a nanometre.

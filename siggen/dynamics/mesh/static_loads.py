@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.mesh.pair_columns import NORMAL, PENETRATION
 from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -34,7 +34,7 @@ def loads_at_rest(law: PairLaw, force_n: float, pitches: FloatArray) -> tuple[Fl
     return found[0], found[1]
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _loads(law: PairLaw, approaches_m: FloatArray, pitches: FloatArray, pairs: FloatArray) -> FloatArray:
     found = np.zeros((2, pitches.size))
     for i in range(pitches.size):

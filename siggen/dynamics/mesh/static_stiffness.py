@@ -13,7 +13,7 @@ from math import lcm
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.mesh import pair_law as at
 from siggen.dynamics.mesh.pair_forces import static_force
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -57,7 +57,7 @@ def _approach(law: PairLaw, force_n: float, pitches: float, guess_m: float, reac
     return np.nan
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _approaches(law: PairLaw, force_n: float, pitches: FloatArray, reach_m: float, pairs: FloatArray) -> FloatArray:
     result, guess = np.empty(pitches.size), FIRST_APPROACH_M
     for i in range(pitches.size):

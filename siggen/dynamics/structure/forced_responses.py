@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 TOGETHER = 104
 """Frequencies side by side: no power of two, so that columns do not fall on the same places of a cache; 1 MB in all."""
@@ -21,7 +21,7 @@ DOUBTFUL = 1e-12
 """Relative difference of two squared sizes below which the sizes themselves say which pivot is larger."""
 
 
-@njit(cache=True)
+@entry(cache=True)
 def forced_responses(
     mass: FloatArray,
     damping: FloatArray,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 PASS_EDGE = 0.45
 """Highest frequency passed unchanged, in units of the output rate."""
@@ -74,8 +74,10 @@ class Decimator:
     """
 
     def __init__(self, rows: FloatArray, taps: FloatArray, steps_per_sample: int) -> None:
-        self._taps, self._steps_per_sample = taps, steps_per_sample
-        channel, self._columns = np.nonzero(rows)
+        # copies, so that all filters are of one type, for which one version is compiled
+        self._taps, self._steps_per_sample = taps.copy(), steps_per_sample
+        channel, columns = np.nonzero(rows)
+        self._columns = columns.copy()
         self._weights = rows[channel, self._columns]
         self._ends = np.cumsum(np.count_nonzero(rows, axis=1))
         self._pending = np.empty((len(rows), 0))
@@ -91,7 +93,7 @@ class Decimator:
         return values
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _project(
     states: FloatArray, columns: NDArray[np.int64], weights: FloatArray, ends: NDArray[np.int64]
 ) -> FloatArray:
@@ -117,7 +119,7 @@ def _project(
     return result
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _filter(values: FloatArray, taps: FloatArray, steps_per_sample: int, result: FloatArray) -> None:
     """Add the filtered values (channels, steps) at every steps_per_sample-th step to `result` (channels, samples), 0.
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.mesh.mesh_force import MeshLaw, mesh_force, mesh_stiffness
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import Structure
@@ -136,7 +136,7 @@ def state_matrix(equations: Equations, stiffness: FloatArray, damping: FloatArra
     return matrix
 
 
-@njit(cache=True)
+@entry(cache=True)
 def approach_of(equations: Equations, mesh: int, state: FloatArray) -> tuple[float, float]:
     """Return the approach δ [m] of a mesh and its rate [m/s] in a state (2n,)."""
     n = equations.mesh_vector.shape[1]
@@ -161,7 +161,7 @@ def external_push(external_input: FloatArray, inputs: FloatArray, push: FloatArr
             push[i] += inputs[k] * external_input[k, i]
 
 
-@njit(cache=True)
+@entry(cache=True)
 def state_rate(equations: Equations, law: MeshLaw, state: FloatArray, pitches: float, rate: FloatArray) -> None:
     """Write ż (2n,) of the state z (2n,) at the pinion angle `pitches` into `rate`."""
     n = equations.mesh_vector.shape[1]

@@ -206,10 +206,14 @@ def _powers(linear: FloatArray, forces: FloatArray, count: int) -> tuple[FloatAr
     return exponential[:size, :size], exponential[:size, size:] * np.repeat(factorials, c)
 
 
+@cache
 def _gauss() -> tuple[FloatArray, FloatArray]:
-    """Return the Gauss nodes on [0, 1] and their weights (NODES,)."""
+    """Return the Gauss nodes on [0, 1] and their weights (NODES,), read-only as the one node of `pair_forces`."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    return 0.5 * (nodes + 1.0), 0.5 * weights
+    nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+    nodes.setflags(write=False)
+    weights.setflags(write=False)
+    return nodes, weights
 
 
 def _legendre(t: FloatArray, degree: int) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.mesh.mesh_force import MeshLaw, mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import (
@@ -47,7 +47,7 @@ class RungeKutta:
         _advance(self._equations, self._law, self._step_s, pitches, inputs, trajectory)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _advance(
     equations: Equations,
     law: MeshLaw,
@@ -144,7 +144,7 @@ class LinearMotion:
         return np.asarray(found * np.array([side, 1.0, side, side]))
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _steps_in_gap(equations: Equations, half_backlash_m: float, states: FloatArray) -> int:
     if half_backlash_m == 0.0:
         return 0
@@ -156,7 +156,7 @@ def _steps_in_gap(equations: Equations, half_backlash_m: float, states: FloatArr
     return count
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _evaluate_inner(equations: Equations, law: MeshLaw, states: FloatArray, pitches: FloatArray) -> FloatArray:
     result = np.empty((states.shape[0], 4))
     for i in range(states.shape[0]):

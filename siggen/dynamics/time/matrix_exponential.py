@@ -1,21 +1,23 @@
 """MatrixExponential: e^A of a small matrix, the same to the last bit for any number of numeric threads.
 
-Scaling and squaring with a Taylor series (reference: standard literature). Below norm 1/2 the first term left out is
-below 1e-22. `scipy.linalg.expm` is not used: its last bits depend on how many threads the linear algebra library runs,
-even for matrices of this size. The products are sums in the order of the columns.
+Scaling and squaring with a Taylor series of degree 16 in blocks of four powers, which takes six products (Paterson and
+Stockmeyer 1973). Below norm 1/2 the first term left out is below 1e-19. `scipy.linalg.expm` is not used: its last bits
+depend on how many threads the linear algebra library runs, even for matrices of this size. The products are sums in
+the order of the columns.
 """
 
 from __future__ import annotations
 
-from math import ceil, log2
+from math import ceil, factorial, log2
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 LARGEST_NORM = 0.5
-TERMS = 18
+BLOCKS = (12, 8, 4, 0)
+"""Lowest powers of the blocks, the highest one first; one term stands above them."""
 
 
 def matrix_exponential(matrix: FloatArray) -> FloatArray:
@@ -30,17 +32,21 @@ def matrix_exponential(matrix: FloatArray) -> FloatArray:
         raise ValueError(f"matrix: received shape {matrix.shape}; allowed are finite square matrices")
     norm = float(np.abs(matrix).sum(axis=0).max(initial=0.0))
     halvings = max(0, ceil(log2(norm / LARGEST_NORM))) if norm > 0.0 else 0
-    small = matrix * 0.5**halvings
-    identity = np.eye(len(matrix))
-    result = identity
-    for term in range(TERMS, 0, -1):
-        result = identity + _product(small, result) / term
+    small = np.ascontiguousarray(matrix * 0.5**halvings)
+    square = _product(small, small)
+    powers = (np.eye(len(matrix)), small, square, _product(square, small))
+    fourth = _product(square, square)
+    result = np.zeros_like(small)
+    for lowest in BLOCKS:
+        block = sum(power / factorial(lowest + k) for k, power in enumerate(powers))
+        ahead = fourth / factorial(lowest + 4) if lowest == BLOCKS[0] else _product(result, fourth)
+        result = ahead + block
     for _ in range(halvings):
         result = _product(result, result)
     return result
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _product(left: FloatArray, right: FloatArray) -> FloatArray:
     result = np.zeros((left.shape[0], right.shape[1]))
     for i in range(left.shape[0]):

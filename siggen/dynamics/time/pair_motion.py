@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.mesh import pair_columns as columns
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_forces import static_approach_m
@@ -292,7 +292,7 @@ class PairMotion:
         return np.concatenate([found, np.stack(approach, axis=1)], axis=1)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _advance(
     equations: PairEquations,
     laws: tuple[PairLaw, ...],
@@ -315,7 +315,7 @@ def _advance(
         runge_kutta_step(pair_rate, model, step_s, (pitches[i], pitches[i + 1]), pushes, start, end, scratch)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _all_pairs(
     equations: PairEquations,
     mesh: int,

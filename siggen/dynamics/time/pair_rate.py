@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.mesh import pair_columns as columns
 from siggen.dynamics.mesh.pair_forces import write_forces
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -28,7 +28,7 @@ def load_pairs(
     equations: PairEquations, mesh: int, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
 ) -> tuple[float, float, float, float, float]:
     """Write the table of pairs of a mesh in a state; return ΣN, ΣF, Σ s F, Σμ and Σ ζ F."""
-    rows, node = equations.rows, pairs[:1, pairs.shape[1] - columns.NODE_ROWS :].T
+    rows, node = equations.rows, pairs[0, pairs.shape[1] - columns.NODE_ROWS :].reshape(columns.NODE_ROWS, 1)
     n = rows.shape[1]
     block = (rows.shape[0] - 2 * n) // equations.static.shape[0]
     first = 2 * n + mesh * block
@@ -58,7 +58,7 @@ def load_pairs(
 
 
 # Inlined for the same reason; the forces themselves are not, since that would make five compilations of them.
-@njit(cache=True, inline="always")
+@entry(cache=True, inline="always")
 def pair_rate(
     model: tuple[PairEquations, tuple[PairLaw, ...], tuple[FloatArray, ...]],
     state: FloatArray,
@@ -89,7 +89,7 @@ def pair_rate(
             rate[n + i] += rows[j, i] * displacement + rows[n + j, i] * velocity
 
 
-@njit(cache=True)
+@entry(cache=True)
 def steps_apart(
     equations: PairEquations, mesh: int, law: PairLaw, pairs: FloatArray, states: FloatArray, pitches: FloatArray
 ) -> int:

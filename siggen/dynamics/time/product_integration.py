@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.dynamics.mesh.mesh_force import MeshLaw, row_stiffness, table_row
 from siggen.dynamics.time.equations import Equations, approach_of, external_push, linear_rate, state_matrix
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
@@ -154,7 +154,7 @@ def _hermite(t: float) -> FloatArray:
     return np.array([_hermite_value(b, t) for b in range(4)])
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _hermite_value(b: int, t: float) -> float:
     s = 1.0 - t
     if b == 0:
@@ -290,7 +290,7 @@ def _add_inputs(scheme: Scheme, start: FloatArray, end: FloatArray, state: Float
             state[i] += scheme.input_response[0, k, i] * start[k] + scheme.input_response[1, k, i] * end[k]
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _advance(
     equations: Equations,
     law: MeshLaw,

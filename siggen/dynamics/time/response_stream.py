@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
@@ -242,7 +242,7 @@ def _divergence(run: Run, step: int, state: FloatArray) -> SolverFailure:
     )
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _first_beyond(equations: Equations, states: FloatArray, limits_m: FloatArray) -> int:
     """Return the first row in which the approach of a mesh is not a finite number within its limit, or -1."""
     for i in range(states.shape[0]):

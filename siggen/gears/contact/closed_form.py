@@ -15,11 +15,11 @@ from __future__ import annotations
 
 from math import log, sqrt
 
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.gears.contact.edge_law import half_plane_factor, notch_factor
 
 
-@njit(cache=True)
+@entry(cache=True)
 def transfer_distance(length_m: float, depth_m: float, radius_m: float, load_m: float) -> float:
     """Return s* [m]: the load passes from one edge to the other between -s* and s*.
 
@@ -33,7 +33,7 @@ def transfer_distance(length_m: float, depth_m: float, radius_m: float, load_m: 
     return width * width / length_m * (log(2.0 * length_m / width) + 0.5 * notch)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def closed_gap_sink(
     offset_m: float, length_m: float, depth_m: float, radius_m: float, load_m: float
 ) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from __future__ import annotations
 from math import asinh
 from typing import NamedTuple
 
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.contact.line_kernel import ENERGY_WIDTH
 from siggen.gears.contact.two_edges import GapSink, gap_sink
 
@@ -43,7 +43,7 @@ class CoveredSlice(NamedTuple):
     radii: tuple[float, float]
 
 
-@njit(cache=True)
+@entry(cache=True)
 def covered_sink(one: CoveredSlice, load_m: float) -> GapSink:
     """Return the sink of a slice, its slope, and the part of the gap's load on its left edge.
 

@@ -33,7 +33,7 @@ from __future__ import annotations
 from math import exp, log, sqrt
 from typing import NamedTuple
 
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 QUARTER_PLANE = 1.1815
 """Derived: see the module's docstring."""
@@ -57,7 +57,7 @@ class EdgeTerms(NamedTuple):
     centroid_slope_m: float
 
 
-@njit(cache=True)
+@entry(cache=True)
 def half_length(ahead: float) -> float:
     """Return c, the contact's half length over a, at d̂ = `ahead` (1 at d̂ = 1)."""
     root = sqrt(ahead * ahead + 3.0)
@@ -65,7 +65,7 @@ def half_length(ahead: float) -> float:
     return 1.0 / (root - ahead) if ahead < 0.0 else (ahead + root) / 3.0
 
 
-@njit(cache=True)
+@entry(cache=True)
 def half_plane_factor(ahead: float) -> float:
     """Return G at d̂ = `ahead`: sink at an edge of a half plane over κF."""
     if ahead >= 1.0:
@@ -74,7 +74,7 @@ def half_plane_factor(ahead: float) -> float:
     return -log(c) + (3.0 * c * c - 1.0) * (c * c - 1.0) / (4.0 * c * c)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def notch_factor(ahead: float, depth: float, rounding: float = 0.0) -> float:
     """Return N: what a notch behind the edge adds to G.
 
@@ -121,7 +121,7 @@ def _notch_and_slope(ahead: float, depth: float, rounding: float) -> tuple[float
     return strength * log(1.0 + power), strength * power / (1.0 + power) * power_log
 
 
-@njit(cache=True)
+@entry(cache=True)
 def edge_terms(ahead_m: float, depth_m: float, radius_m: float, rounding_m: float, load_m: float) -> EdgeTerms:
     """Return the terms of one edge.
 

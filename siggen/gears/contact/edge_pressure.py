@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.gears.contact.edge_law import half_length
 
 ROUNDED_FACTOR, JOINING_POWER = 0.9325, 7.26
 
 
-@njit(cache=True)
+@entry(cache=True)
 def largest_edge_pressure(
     ahead_m: float, radius_m: float, rounding_m: float, line_load_n_per_m: float, kappa_per_pa: float
 ) -> float:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.lanes import LANES, Lanes, extract, insert, load, shuffle, splat, store
 
 EXPONENTIALS = 5
@@ -27,7 +27,7 @@ INVERSE = TERMS
 _by_four, _by_two, _by_one = (shuffle(*((lane ^ k) for lane in range(LANES))) for k in (4, 2, 1))
 
 
-@njit(cache=True, fastmath={"contract", "reassoc"})
+@entry(cache=True, fastmath={"contract", "reassoc"})
 def products(
     decay: FloatArray,
     strength: FloatArray,
@@ -60,7 +60,7 @@ def products(
         slope_out[i] += rise
 
 
-@njit(cache=True, fastmath={"contract", "reassoc"})
+@entry(cache=True, fastmath={"contract", "reassoc"})
 def add_row_products(row_strength: FloatArray, row_decay: FloatArray, vector: FloatArray, out: FloatArray) -> None:
     """Add the off-diagonal products of the term of the rows, p and q (n,), to `out` (n,)."""
     count = vector.size
@@ -87,7 +87,7 @@ class RowMatrix(NamedTuple):
     diagonal: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@entry(cache=True, error_model="numpy")
 def solve_rows(
     matrix: RowMatrix, rows: IntArray, count: int, right: FloatArray, steps: FloatArray, work: FloatArray
 ) -> bool:

@@ -27,7 +27,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.contact.covered_slice import CoveredSlice
 from siggen.gears.contact.exponential_matrix import add_row_products, products
 from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_of, slice_sink
@@ -71,7 +71,7 @@ class _Laws(NamedTuple):
     damping: float
 
 
-@njit(cache=True)
+@entry(cache=True)
 def face_force(
     slices: FaceSlices,
     approach_m: float,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.damage.flank_chords import FlankChords, depth_on_line
 from siggen.gears.geometry import involute
@@ -67,7 +67,7 @@ def face_gaps(pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m
     return gaps
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _fill(
     line: float,
     pinion: FlankChords,
@@ -131,7 +131,7 @@ def _fill(
                     break
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _nearest(room: FloatArray, count: int) -> tuple[float, float]:
     """Return the gap that holds 0, else the nearest one, grown by all intervals that it touches."""
     first, least = 0, np.inf

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.contact.face_force import keep_rigid_sinks, solved_force
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.newton_matrix import SolverRoom
@@ -30,7 +30,7 @@ class ForceCurve(NamedTuple):
     on_damage: FloatArray
 
 
-@njit(cache=True)
+@entry(cache=True)
 def force_curve(
     slices: FaceSlices,
     approach_m: FloatArray,
@@ -97,7 +97,7 @@ def curve_along(
     return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7])
 
 
-@njit(cache=True)
+@entry(cache=True)
 def write_curves(
     slices: FaceSlices,
     approach_m: FloatArray,

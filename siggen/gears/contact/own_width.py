@@ -17,7 +17,7 @@ from __future__ import annotations
 from math import log, sqrt
 from typing import NamedTuple
 
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.contact.face_slices import FaceSlices
 
 EXACT, WIDEST = 0.5, 3.0
@@ -56,7 +56,7 @@ def own_width(load_m: float, scale_per_m: float, coupled: bool) -> OwnWidth:
     return OwnWidth(over * (1.0 - x * x * (1.0 - 0.5 * x)), 1.0 - x * x * (3.0 - 2.0 * x), 6.0 * x * (x - 1.0) / SPAN)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def mean_width(slices: FaceSlices, square: float) -> MeanWidth:
     """Return what slices share under loads with the sum of squares `square` > 0."""
     cell = slices.kernel.cell_m
@@ -64,7 +64,7 @@ def mean_width(slices: FaceSlices, square: float) -> MeanWidth:
     return MeanWidth(scale, coupled, own_width(sqrt(cell * square / slices.carrying_m), scale, coupled))
 
 
-@njit(cache=True)
+@entry(cache=True)
 def own_law(load_m: float, radius_share: float, shared: MeanWidth) -> tuple[float, float]:
     """Return what the own width of a slice under κq > 0 [m] adds to its approach over the load, and to the slope.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.gears.contact.covered_slice import load_apart
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.edge_pressure import largest_edge_pressure
@@ -39,7 +39,7 @@ def slice_pressures(slices: FaceSlices, loads_m: FloatArray) -> SlicePressures:
     return SlicePressures(loads_m / slices.kappa_per_pa, pressure, at_edge)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _pressures(slices: FaceSlices, loads: FloatArray) -> tuple[FloatArray, FloatArray]:
     kappa, rounding = slices.kappa_per_pa, slices.rounding_m
     pressure, at_edge = np.zeros(loads.size), np.zeros(loads.size)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.contact.covered_slice import load_apart
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.exponential_matrix import add_row_products, products
@@ -25,7 +25,7 @@ def energy_nodes(count: int = ENERGY_NODES) -> FloatArray:
     return np.array([0.5 * (node + 1.0), 0.5 * weight])
 
 
-@njit(cache=True)
+@entry(cache=True)
 def stored_energy(
     slices: FaceSlices,
     approach_m: float,

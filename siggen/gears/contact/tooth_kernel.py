@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 
 RIGID = 1e-9
 """b/l below which a tooth counts as rigid: T differs from 1/n by 1e-19."""
@@ -63,7 +63,7 @@ def tooth_matrix(kernel: ToothKernel) -> FloatArray:
     return matrix
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _free_ends(count: int, cell: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return p, q and the diagonal (n,) for cells of the width w/l."""
     strength, decay, diagonal = np.zeros(count), np.ones(count), np.ones(count)

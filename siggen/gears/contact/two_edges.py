@@ -21,7 +21,7 @@ from __future__ import annotations
 from math import log, sqrt
 from typing import NamedTuple
 
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.contact.edge_law import NO_EDGE, edge_terms
 
 FLOOR_ROUNDING, FLOOR_LIFT = 0.5, 0.3
@@ -37,7 +37,7 @@ class GapSink(NamedTuple):
     left_share: float
 
 
-@njit(cache=True)
+@entry(cache=True)
 def gap_sink(
     left_m: float, right_m: float, notch_m: float, floor_m: float, radius_m: float, rounding_m: float, load_m: float
 ) -> GapSink:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,
@@ -35,7 +35,7 @@ from siggen.gears.damage.row_columns import (
 Row: TypeAlias = tuple[float, ...]
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _sides_at(row: FloatArray, x: float) -> tuple[float, float]:
     share = (x - row[LOWEST]) / (row[HIGHEST] - row[LOWEST])
     return row[LEFT_LOW] + share * (row[LEFT_HIGH] - row[LEFT_LOW]), row[RIGHT_LOW] + share * (
@@ -95,7 +95,7 @@ def _square_excess(one: FloatArray, two: FloatArray, x: float) -> float:
     return float(one[DEPTH] ** 2 * (1.0 - u) * (1.0 + u) - two[DEPTH] ** 2 * (1.0 - v) * (1.0 + v))
 
 
-@njit(cache=True)
+@entry(cache=True)
 def hides(one: FloatArray, two: FloatArray) -> bool:
     """Whether row `one` is at least as deep as row `two` everywhere inside the outline of `two`."""
     if one[DEPTH] < two[DEPTH] or not _outline_contains(one, two):
@@ -144,7 +144,7 @@ def holds(own: Sequence[Row], other: Sequence[Row]) -> bool:
     return all(any(hides(larger, piece) for larger in rows) for piece in pieces)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def hidden_rows(rows: FloatArray) -> NDArray[np.bool_]:
     """Return which rows (n, 14), all different, another one hides (n,)."""
     count = rows.shape[0]

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.row_columns import (
     EDGE_RADIUS,
@@ -132,7 +132,7 @@ def one_line(flank: FlankChords, number: int) -> FlankChords:
     return flank._replace(lines=lines, **{k: v[own] for k, v in flank._asdict().items() if k not in shared})
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _covered(width: float, slices: int, pits: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the lines of the slices, and the parts of their widths over which damage extends at any height."""
     room, merged = np.zeros((4, pits.shape[0])), np.zeros((4, pits.shape[0]))
@@ -171,7 +171,7 @@ def _end(pits: FloatArray, i: int, side: float) -> float:
     return end
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _line_rows(face: FloatArray, pits: FloatArray) -> LineRows:
     """Return which rows cross the lines at `face` (slices,), and where."""
     shape = (face.size, pits.shape[0])
@@ -186,7 +186,7 @@ def _line_rows(face: FloatArray, pits: FloatArray) -> LineRows:
     return lines
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _line_unions(lines: LineRows, pits: FloatArray, highest: float) -> tuple[FloatArray, IntArray]:
     """Return merged intervals of height and the radii of their edges (4, slices, rows), clipped to 0 and `highest`.
 
@@ -264,7 +264,7 @@ def _arcs(gear: SpurGear, height_m: FloatArray) -> FloatArray:
     return np.ascontiguousarray((0.5 * gear.signed_base_radius_m * roll**2).reshape(height_m.shape))
 
 
-@njit(cache=True)
+@entry(cache=True)
 def depth_on_line(
     j: int,
     height: float,

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,
@@ -61,7 +61,7 @@ def _bisect(poly: FloatArray, degree: int, low: float, high: float) -> float:
     return 0.5 * (low + high)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def roots_between(poly: FloatArray, low: float, high: float, touching: float) -> FloatArray:
     """Return the real roots of a polynomial (coefficients from power 0, degree <= 8) within [low, high], ascending.
 
@@ -289,7 +289,7 @@ def _known_kinks(shape: tuple[int, ...], rows: bytes, face_width: float) -> Floa
     return found
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _kinks(pits: FloatArray, strips: Strips, face_width: float) -> FloatArray:
     """Return all kinks in any order, some of them twice."""
     out = [0.0]
@@ -320,7 +320,7 @@ def _kinks(pits: FloatArray, strips: Strips, face_width: float) -> FloatArray:
     return np.array(out)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _merged(kinks: FloatArray) -> FloatArray:
     """Return ascending kinks without those nearer than rounding to the one before."""
     keep = np.ones(kinks.size, np.bool_)

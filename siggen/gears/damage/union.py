@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,
@@ -176,7 +176,7 @@ def _add_piece(x: float, low: float, high: float, pits: FloatArray, i: int, mome
         moments[2] += sign * scale * depth * depth * (0.25 * v * root * root * root + 0.75 * square * cap)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _depth_crossings(x: float, pits: FloatArray, i: int, j: int) -> tuple[float, float]:
     """Return the face coordinates where rows i and j are equally deep, ascending; NaN where there are none.
 
@@ -325,7 +325,7 @@ def depth_moments(
         first = last
 
 
-@njit(cache=True)
+@entry(cache=True)
 def lengths_covered(
     heights_one: FloatArray, pits_one: FloatArray, heights_two: FloatArray, pits_two: FloatArray, face_width: float
 ) -> FloatArray:

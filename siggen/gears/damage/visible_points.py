@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,
@@ -36,7 +36,7 @@ DEEPER = 1e-6
 """By how much of its square a dish must be deeper: its depth varies about the point."""
 
 
-@njit(cache=True)
+@entry(cache=True)
 def strictly_inside(x: float, w: float, row: FloatArray) -> bool:
     """Whether a point lies inside the outline of a row and not near it."""
     if row[TRAPEZOID] == 0.0:
@@ -77,7 +77,7 @@ class Strips(NamedTuple):
     width_m: float
 
 
-@njit(cache=True)
+@entry(cache=True)
 def strips_of(pits: FloatArray) -> Strips:
     """Return which rows reach into strips of the face, as many strips as rows."""
     left, right = np.empty(pits.shape[0]), np.empty(pits.shape[0])
@@ -102,7 +102,7 @@ def strips_of(pits: FloatArray) -> Strips:
     return Strips(rows, strips.first, low, strips.width_m)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def strip_at(strips: Strips, w: float) -> int:
     """Return the strip that holds a place across the face; places beside all strips count to the nearest one."""
     last = strips.first.size - 2

@@ -14,7 +14,7 @@ from math import sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.kinks import section_kinks
 from siggen.gears.damage.row_columns import (
     FACE,
@@ -68,7 +68,7 @@ def _widths_m(rows: FloatArray) -> float:
     return float(np.where(rows[:, TRAPEZOID] != 0.0, ends, 2.0 * rows[:, SEMI_FACE]).sum())
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _closes(
     cuts: FloatArray,
     line: float,

@@ -14,10 +14,10 @@ from math import cos, pi, sin, sqrt, tan
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 
 
-@njit(cache=True)
+@entry(cache=True)
 def height(roll: float, base_radius: float, half_angle: float) -> float:
     """Return the height x above the base-circle point along the tooth centre line [m].
 
@@ -28,7 +28,7 @@ def height(roll: float, base_radius: float, half_angle: float) -> float:
     return base_radius * (cos(half_angle) * rise + sin(half_angle) * (sin(roll) - roll * cos(roll)))
 
 
-@njit(cache=True)
+@entry(cache=True)
 def half_thickness(roll: float, base_radius: float, half_angle: float) -> float:
     """Return the half tooth thickness h normal to the tooth centre line [m]."""
     slant = roll - half_angle
@@ -62,7 +62,7 @@ def roll_at_height(x: float, base_radius: float, half_angle: float) -> float:
     return roll
 
 
-@njit(cache=True)
+@entry(cache=True)
 def heights(roll: FloatArray, base_radius: float, half_angle: float) -> FloatArray:
     """Return `height` of every roll angle (k,) [m]."""
     out = np.empty(roll.size)
@@ -71,7 +71,7 @@ def heights(roll: FloatArray, base_radius: float, half_angle: float) -> FloatArr
     return out
 
 
-@njit(cache=True)
+@entry(cache=True)
 def half_thicknesses(roll: FloatArray, base_radius: float, half_angle: float) -> FloatArray:
     """Return `half_thickness` of every roll angle (k,) [m]."""
     out = np.empty(roll.size)
@@ -80,7 +80,7 @@ def half_thicknesses(roll: FloatArray, base_radius: float, half_angle: float) ->
     return out
 
 
-@njit(cache=True)
+@entry(cache=True)
 def rolls_at_heights(x: FloatArray, base_radius: float, half_angle: float) -> FloatArray:
     """Return `roll_at_height` of every height (k,) [rad]."""
     out = np.empty(x.size)

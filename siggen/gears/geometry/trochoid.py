@@ -13,11 +13,11 @@ from math import cos, pi, sin, sqrt, tan
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry
 from siggen.gears.geometry.quadrature import NODES_48, WEIGHTS_48
 
 
-@njit(cache=True)
+@entry(cache=True)
 def trochoid_point(
     gamma: float, depth_m: float, offset_m: float, round_m: float, pitch_radius_m: float
 ) -> tuple[float, float]:
@@ -32,7 +32,7 @@ def trochoid_point(
     return height, thickness
 
 
-@njit(cache=True)
+@entry(cache=True)
 def trochoid_height_slope(
     gamma: float, depth_m: float, offset_m: float, round_m: float, pitch_radius_m: float
 ) -> float:
@@ -48,7 +48,7 @@ def trochoid_height_slope(
     )
 
 
-@njit(cache=True)
+@entry(cache=True)
 def trochoid_integrals(
     last_gamma: float,
     depth_m: float,

@@ -18,7 +18,7 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.geometry.involute import half_thickness, height
 from siggen.gears.geometry.quadrature import NODES_8, WEIGHTS_8
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -101,7 +101,7 @@ def _panel_width(roll: float, base_radius: float, half_angle: float) -> float:
     return max(min(PANEL_RAD, 0.5 * half_thickness(roll, base_radius, half_angle) / thinning), 1e-6)
 
 
-@njit(cache=True)
+@entry(cache=True)
 def involute_integrals(
     rolls: FloatArray, start: float, base_radius: float, half_angle: float, face_width: float
 ) -> FloatArray:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.row_columns import DISH, FACE, HEIGHT, LOWEST, SEMI_HEIGHT, TRAPEZOID
 from siggen.gears.damage.union import (
     Intervals,
@@ -170,7 +170,7 @@ def _stride(tooth: PittedTooth, roll: float, active: IntArray, count: int) -> fl
     return max(0.25 * clearance, 0.99 * NARROW * smallest) / slope if slope > 0.0 else np.inf
 
 
-@njit(cache=True)
+@entry(cache=True)
 def pit_sums(
     breaks: FloatArray, pits: FloatArray, base_radius: float, half_angle: float, face_width: float
 ) -> tuple[FloatArray, FloatArray]:
@@ -203,7 +203,7 @@ def pit_sums(
     return np.array(below), found
 
 
-@njit(cache=True)
+@entry(cache=True)
 def pit_integrals(
     rolls: FloatArray,
     breaks: FloatArray,
@@ -239,7 +239,7 @@ def pit_integrals(
     return out
 
 
-@njit(cache=True)
+@entry(cache=True)
 def flank_area(
     kinks: FloatArray,
     start: float,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.compiled import njit
+from siggen.compiled import entry, njit
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.kinks import section_kinks
@@ -91,7 +91,7 @@ def section_loss(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
     return SectionLoss(losses[0], losses[1], losses[2])
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _losses_at(height: FloatArray, thickness: FloatArray, pits: FloatArray, face_width: float) -> FloatArray:
     room = pits.shape[0]
     intervals, active = interval_room(room), np.empty(room, np.int64)
@@ -155,7 +155,7 @@ def _covered_at(
     return covered_length(intervals, add_intervals(x, pits, active, count, face_width, intervals, 0))
 
 
-@njit(cache=True)
+@entry(cache=True)
 def _largest_covered(cuts: FloatArray, pits: FloatArray, face_width: float) -> float:
     room = pits.shape[0]
     intervals, active = interval_room(room), np.empty(room, np.int64)

@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pytest
 
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from siggen.config.names import NO_NAMES, Names
 from tests.diagnostics.column_roles import ListedRoles
+from tests.shared import shared
 
 STATES = ("healthy", "slight", "severe")
 TEETH = (18, 47)
@@ -164,6 +166,6 @@ def _table(rows: list[dict[str, Any]]) -> pa.Table:
     return pa.Table.from_pylist(rows, schema=schema)
 
 
-def measured(plant: Plant) -> MeasuredSet:
-    """Return the measured set."""
-    return measured_set(planted(plant))
+def measured(plant: Plant, factory: pytest.TempPathFactory) -> MeasuredSet:
+    """Return the measured set, which files share."""
+    return shared(factory, f"measured {plant}", lambda: measured_set(planted(plant)))

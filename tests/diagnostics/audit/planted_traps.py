@@ -69,6 +69,7 @@ def order(clean: MeasuredSet) -> MeasuredSet:
         waveforms=[clean.waveforms[k] for k in place],
         sketches=[clean.sketches[k] for k in place],
         checksums=clean.checksums[place],
+        raw=clean.raw.of(place),
     )
 
 

@@ -23,9 +23,9 @@ from diagnostics.statistics.evaluation import Interval
 
 
 @pytest.fixture(scope="module")
-def repeated() -> MeasuredSet:
-    """Two records per operating point and state; in the severe state a pulse of ten times the mesh line."""
-    return measured(Plant(specimens=8, repeats=2, severe_pulse=10.0))
+def repeated(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
+    """Two records per state at one operating point; in the severe state a pulse of ten times the mesh line."""
+    return measured(Plant(specimens=8, points=1, repeats=2, severe_pulse=10.0), tmp_path_factory)
 
 
 def planted_scores(shift: float, specimens: int = 60) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -90,15 +90,17 @@ def test_records_beyond_one_percent_torque_have_no_pair(repeated: MeasuredSet) -
     assert np.sum(found[repeated.healthy] >= 0) == repeated.healthy.sum() / 2
 
 
-def test_without_repeats_healthy_records_have_no_pair_and_no_auc_is_given() -> None:
-    single = measured(Plant(specimens=4))
+def test_without_repeats_healthy_records_have_no_pair_and_no_auc_is_given(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    single = measured(Plant(), tmp_path_factory)
     assert np.all(reference_records(single) == -1)
     assert all(math.isnan(entry.auc.value) for entry in detections(single, features(single, paired=True)))
 
 
 def test_paired_differences_and_waveforms_find_the_pulse(repeated: MeasuredSet) -> None:
     paired = features(repeated, paired=True)
-    assert paired.shape == (96, 6)
+    assert paired.shape == (48, 6)
     assert np.array_equal(np.isfinite(paired).all(axis=1), reference_records(repeated) >= 0)
     for values in (paired, waveform_change(repeated)):
         found = {entry.state: entry.auc.value for entry in detections(repeated, values)}

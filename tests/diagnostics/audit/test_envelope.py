@@ -13,8 +13,8 @@ from diagnostics.audit.measured_set import MeasuredSet
 
 
 @pytest.fixture(scope="module")
-def found() -> MeasuredSet:
-    return measured(Plant(specimens=3))
+def found(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
+    return measured(Plant(specimens=3), tmp_path_factory)
 
 
 def test_the_ranges_hold_their_limits_and_undefined_is_outside() -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 import pytest
-from planted_set import CHANNELS, FS_HZ, Plant, PlantedSet, planted
+from planted_set import CHANNELS, FS_HZ, Plant, PlantedSet, measured, planted
 
 from diagnostics.audit.measured_set import measured_set
 from diagnostics.audit.raw_columns import raw_columns
@@ -19,9 +19,12 @@ GAIN = 10.0 ** (0.5 / 20.0)
 """Half a decibel up on one channel, as much down on another: the mean over the channels stays."""
 
 
+TWICE = Plant(points=1, repeats=2)
+
+
 @pytest.fixture(scope="module")
 def clean() -> PlantedSet:
-    return planted(Plant(points=1, repeats=2))
+    return planted(TWICE)
 
 
 def signals(table: pa.Table, channel: str) -> np.ndarray:
@@ -58,20 +61,22 @@ def leaking(clean: PlantedSet) -> PlantedSet:
     return replace(clean, table=table.append_column("made_at", pa.array(made)))
 
 
-def test_six_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: PlantedSet) -> None:
+def test_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: PlantedSet) -> None:
     found = {finding.trap: finding for finding in separability_findings(measured_set(leaking(clean)))}
-    for layer in ("channels", "lines", "edges", "offsets", "lags", "texts"):
+    for layer in ("channels", "lines", "edges", "offsets", "lags", "texts", "levels"):
         assert f"state_told_by_{layer}" in found
     assert f"of {CHANNELS[2]} at 0.49" in found["state_told_by_lines"].measured
     assert "first" in found["state_told_by_edges"].measured
 
 
-def test_a_set_without_leaks_gives_no_finding_until_a_record_holds_samples_of_another(clean: PlantedSet) -> None:
-    measured = measured_set(clean)
-    assert separability_findings(measured) == []
+def test_a_set_without_leaks_gives_no_finding_until_a_record_holds_samples_of_another(
+    clean: PlantedSet, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    own = measured(TWICE, tmp_path_factory)
+    assert separability_findings(own) == []
     values = signals(clean.table, CHANNELS[0])
     values[7, 3000:7000] = values[2, 1237:5237]  # not at the same place
     raw = raw_columns(recordings(replace(clean, table=with_signals(clean.table, CHANNELS[0], values))))
-    found = separability_findings(replace(measured, raw=raw))
+    found = separability_findings(replace(own, raw=raw))
     assert [finding.trap for finding in found] == ["repeated_samples"]
     assert "2 records" in found[0].measured

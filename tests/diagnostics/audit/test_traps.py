@@ -20,14 +20,14 @@ LAYER = "state_told_by_"
 
 
 @pytest.fixture(scope="module")
-def clean() -> MeasuredSet:
-    return measured(Plant())
+def clean(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
+    return measured(Plant(), tmp_path_factory)
 
 
 @pytest.fixture(scope="module")
-def twice() -> MeasuredSet:
+def twice(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
     """Return a clean set with two records of every state of a gearbox at one operating point."""
-    return measured(Plant(points=1, repeats=2))
+    return measured(Plant(points=1, repeats=2), tmp_path_factory)
 
 
 def traps(found: MeasuredSet) -> list[str]:
@@ -71,8 +71,10 @@ def test_labels_of_the_damage_itself_are_no_tie(clean: MeasuredSet) -> None:
     ],
     ids=["sidebands_tooth", "errors_noise", "length_channels_start"],
 )
-def test_traps_in_the_signals_give_exactly_their_findings(plant: Plant, expected: list[str]) -> None:
-    assert named(measured(plant)) == expected
+def test_traps_in_the_signals_give_exactly_their_findings(
+    plant: Plant, expected: list[str], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    assert named(measured(plant, tmp_path_factory)) == expected
 
 
 @pytest.mark.parametrize("layer", TRAPS)
@@ -83,7 +85,7 @@ def test_of_ten_traps_one_per_layer_each_is_found_and_named(clean: MeasuredSet, 
 
 def test_attackers_that_never_see_the_gears_stay_below_chance_on_a_clean_set(clean: MeasuredSet) -> None:
     assert condition_traps(clean) == []
-    raw = {"edges", "offsets", "lines"}
+    raw = {"edges", "offsets", "lines", "samples", "ends", "clock"}
     assert set(condition_layers(clean)) == {"metadata", "texts", "order", "bytes", "noise", "channels"} | raw
     shown = [name for _, names in condition_layers(clean).values() for name in names]
     assert not {"record_id", "damaged_area_mm2", "snr_lid_x_db", "mesh_stiffness_loss"} & set(shown)

@@ -144,16 +144,16 @@ def at_no_rate(folder: Path) -> None:
 
 
 ALL, ONE = tuple(COMMANDS), ("table",)
-"""A mistake in samples, labels, files and of the folder goes to all commands, the others to one: all read alike."""
+"""A mistake in samples, in files and of the folder goes to all commands, the others to one: all read alike."""
 BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "nan": (samples(not_a_number), ("channel bearing_vertical", "not finite", "3"), ALL),
     "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ONE),
     "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range_m_s2"), ONE),
-    "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole turns of the first shaft", "duration_s"), ALL),
+    "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole turns of the first shaft", "duration_s"), ONE),
     "no pulses": (column("tacho_s", []), ("0 whole turns of the first shaft", "--speed-range"), ONE),
     "pulses backwards": (column("tacho_s", [0.1, 0.05, 0.2, 0.3]), ("not finite and increasing", "tacho_s"), ONE),
     "unknown teeth": (
-        column("teeth_gear", None, ("data", "metadata")), ("received 18, nan", "correct the columns"), ALL,
+        column("teeth_gear", None, ("data", "metadata")), ("received 18, nan", "correct the columns"), ONE,
     ),
     "too few teeth": (column("teeth_pinion", 2, ("data", "metadata")), ("received 2, 47", "from 3 on"), ONE),
     "no rate": (at_no_rate, ("fs_hz: received None", "a valid number"), ONE),

@@ -17,7 +17,8 @@ from pyarrow import parquet
 import diagnostics
 from diagnostics.base.progress import silent_stage
 from diagnostics.explore.explorer import predicted_labels
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.classifier_table import classifier_table
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.saved_models import save_models
@@ -49,7 +50,17 @@ def kinds(make_dataset: Callable[..., Any]) -> Any:
 
 
 @pytest.fixture(scope="module")
-def model(kinds: Any, make_dataset: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def measured_kinds(kinds: Any) -> RecordTable:
+    return record_table(kinds)
+
+
+@pytest.fixture(scope="module")
+def model(
+    kinds: Any,
+    measured_kinds: RecordTable,
+    make_dataset: Callable[..., Any],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Path:
     """Trained on faults, judged too on a set whose states are called otherwise."""
     other = combined(make_dataset(("test",) * 3, seed=9))
     names = pc.replace_substring(other.table.column("state"), "s", "z")
@@ -58,7 +69,7 @@ def model(kinds: Any, make_dataset: Callable[..., Any], tmp_path_factory: pytest
     with pytest.raises(UsageError, match=r"has the states zevere, zlight, .* Name its states like those"):
         check_other_set(kinds, other)
     check_other_set(kinds, other, FAULT)
-    second, features = OtherSet(other, set_table(other, silent_stage)), set_table(kinds, silent_stage)
+    second, features = OtherSet(other, set_table(other, silent_stage)), classifier_table(measured_kinds)
     training = train_models(kinds, features, 0, network=OPTIONS, other=second)
     folder = tmp_path_factory.mktemp("faults")
     save_models(training, features, kinds, folder)
@@ -97,9 +108,9 @@ def test_predict_names_a_fault_and_says_so(
     assert "most like the fault pitting" in (tmp_path / "out/prediction.html").read_text(encoding="utf-8")
 
 
-def test_the_explorer_takes_faults_from_the_model(kinds: Any, model: Path) -> None:
-    labels = predicted_labels(record_table(kinds), kinds, model)
-    states = record_table(kinds).labels()["state"]
+def test_the_explorer_takes_faults_from_the_model(kinds: Any, measured_kinds: RecordTable, model: Path) -> None:
+    labels = predicted_labels(measured_kinds, kinds, model)
+    states = measured_kinds.labels()["state"]
     assert dict(zip(states.tolist(), labels["class"].tolist(), strict=True)) == {
         "healthy": "healthy",
         "slight": "pitting",

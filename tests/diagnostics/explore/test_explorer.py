@@ -118,6 +118,9 @@ def test_the_page_holds_every_record_with_all_its_views(page: str) -> None:
 def test_a_model_names_every_record_and_a_report_folder_holds_one(
     dataset: MemoryDataset, measured: RecordTable, training: Training, models_folder: Path, tmp_path: Path
 ) -> None:
+    """Of the records of the test split, and of two gearboxes that the model was trained on."""
+    split, specimen = (dataset.table.column(name).to_numpy(False) for name in ("split", "specimen_id"))
+    dataset = replace(dataset, table=dataset.table.filter(pa.array((split == "test") | (specimen < 2))))
     shutil.copytree(models_folder, tmp_path / "report" / "models")
     options = ExplorerOptions(model=tmp_path / "report")
     text = write_explorer(dataset, tmp_path / "page.html", options).read_text(encoding="utf-8")

@@ -20,7 +20,7 @@ from diagnostics.indicators.table import record_table
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.record_problems import clipped_channels, clipped_share, record_problems
 from diagnostics.records.recording import Recording, recordings
-from diagnostics.signal.mesh_band import mesh_baseband
+from diagnostics.signal.mesh_band import mesh_basebands
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import record_shafts, shaft_signals
 from siggen.errors import DatasetError, UsageError
@@ -76,7 +76,9 @@ def test_indicators_with_a_history_are_those_of_the_signals_themselves(small: An
         lines.append(found.lines)
     harmonic = dominant_harmonic(lines[0], 18, 5)
     for count in (1, 2, 3):
-        envelopes = [central_moments(np.abs(mesh_baseband(average, 18, harmonic, 6))) for average in averages[:count]]
+        envelopes = [
+            central_moments(np.abs(mesh_basebands(average, 18, 5, 6)[harmonic - 1])) for average in averages[:count]
+        ]
         expected = (
             moment_over_history(residuals[count - 1][0], [second for _, second in residuals[:count]]),
             moment_over_history(residuals[count - 1][0], [residuals[0][1]]),

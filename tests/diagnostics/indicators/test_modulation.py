@@ -18,7 +18,7 @@ from diagnostics.indicators.sidebands import (
     sideband_power,
 )
 from diagnostics.signal.mesh_band import Modulation, demodulated
-from diagnostics.signal.spectrum import line_amplitudes
+from diagnostics.signal.spectrum import hann_amplitude, line_amplitudes
 
 TEETH, SAMPLES = 18, 18 * 128
 ANGLE = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
@@ -60,14 +60,14 @@ def test_sideband_power_without_a_line_or_outside_the_band_is_undefined() -> Non
 
 @given(depth=st.floats(0.0, 0.99), harmonic=st.integers(1, 3))
 def test_amplitude_modulation_is_its_index(depth: float, harmonic: int) -> None:
-    found = demodulated(mesh(depth), TEETH, harmonic, 8)
+    found = demodulated(mesh(depth), TEETH, 3, 8)[harmonic - 1]
     assert amplitude_modulation(found) == pytest.approx(depth, abs=1e-9)
     assert phase_modulation_rad(found) == pytest.approx(0.0, abs=1e-9)
 
 
 @given(depth=st.floats(0.001, 0.5))
 def test_phase_modulation_is_its_depth(depth: float) -> None:
-    found = demodulated(np.cos(TEETH * ANGLE + depth * np.sin(ANGLE + 0.3)), TEETH, 1, 8)
+    (found,) = demodulated(np.cos(TEETH * ANGLE + depth * np.sin(ANGLE + 0.3)), TEETH, 1, 8)
     # what lies beyond the eighth sideband, J_9(0.5) = 1e-11, is cut off
     assert phase_modulation_rad(found) == pytest.approx(depth, abs=1e-9)
     assert amplitude_modulation(found) == pytest.approx(0.0, abs=1e-9)
@@ -75,8 +75,8 @@ def test_phase_modulation_is_its_depth(depth: float) -> None:
 
 def test_mesh_line_weaker_than_its_sidebands_has_no_phase_depth() -> None:
     weak = 0.2 * np.cos(TEETH * ANGLE) + np.cos((TEETH + 1) * ANGLE)
-    assert math.isnan(phase_modulation_rad(demodulated(weak, TEETH, 1, 6)))
-    nothing = demodulated(np.zeros(SAMPLES), TEETH, 1, 6)
+    assert math.isnan(phase_modulation_rad(demodulated(weak, TEETH, 1, 6)[0]))
+    (nothing,) = demodulated(np.zeros(SAMPLES), TEETH, 1, 6)
     assert math.isnan(phase_modulation_rad(nothing))
     assert math.isnan(amplitude_modulation(nothing))
 
@@ -108,7 +108,7 @@ def test_echo_after_one_revolution_stands_in_the_cepstrum_of_that_shaft_only() -
     echo = noise + 0.5 * np.roll(noise, per_turn)
     highest = per_turn // 2
     pinion, gear = 2 * highest, 2 * highest * 47 / 18
-    found = shaft_log_spectrum(echo, revolutions, 18, highest)
+    found = shaft_log_spectrum(hann_amplitude(echo), revolutions, 18, highest)
     # noise in a cepstral bin: log of a Hann-weighted amplitude has deviation 0.64, over sqrt(13824/1.5 bins / 2)
     spread = 4 * 0.64 / math.sqrt(revolutions * per_turn / 3)
     assert cepstral_peak(found, pinion) == pytest.approx(0.25, abs=spread + 0.02)  # 0.02: the window over the echo
@@ -129,7 +129,7 @@ def test_mesh_lines_alone_leave_nothing_at_the_pinions_quefrency() -> None:
     angle = 2 * np.pi * np.arange(revolutions * per_turn) / per_turn
     tones = sum(np.cos(h * 18 * angle) for h in range(1, 8))
     signal = tones + 0.01 * np.random.default_rng(3).standard_normal(angle.size)
-    raw = shaft_log_spectrum((1 + 0.5 * np.cos(angle)) * signal, revolutions, 18, per_turn // 2)
-    clean = shaft_log_spectrum(signal, revolutions, 18, per_turn // 2)
+    raw = shaft_log_spectrum(hann_amplitude((1 + 0.5 * np.cos(angle)) * signal), revolutions, 18, per_turn // 2)
+    clean = shaft_log_spectrum(hann_amplitude(signal), revolutions, 18, per_turn // 2)
     assert abs(cepstral_peak(clean, per_turn)) < 0.05
     assert cepstral_peak(raw, per_turn) > cepstral_peak(clean, per_turn)

@@ -13,7 +13,7 @@ from diagnostics.indicators import history
 from diagnostics.indicators.average import energy_operator_lebold, energy_operator_teager, fm4, m6a, m8a, teager_energy
 from diagnostics.indicators.history import central_moments, dominant_harmonic
 from diagnostics.indicators.level import spectral_kurtosis_maximum
-from diagnostics.signal.mesh_band import mesh_baseband
+from diagnostics.signal.mesh_band import mesh_basebands
 from diagnostics.signal.spectrum import line_amplitudes
 
 TEETH, SAMPLES = 18, 18 * 128
@@ -37,7 +37,7 @@ def na4_star(residuals: list[np.ndarray], healthy: int) -> float:
 
 
 def nb4(averages: list[np.ndarray], teeth: int, harmonic: int, half_width: int) -> float:
-    return history.nb4(*moments([np.abs(mesh_baseband(a, teeth, harmonic, half_width)) for a in averages]))
+    return history.nb4(*moments([np.abs(mesh_basebands(a, teeth, harmonic, half_width)[-1]) for a in averages]))
 
 
 @pytest.mark.parametrize(("indicator", "order", "value"), [(fm4, 4, 3.0), (m6a, 6, 15.0), (m8a, 8, 105.0)])

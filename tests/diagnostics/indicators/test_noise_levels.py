@@ -14,7 +14,7 @@ HIGH = range(5, 10)
 
 
 def levels(turns: np.ndarray) -> np.ndarray:
-    found = noise_levels(turns.ravel(), TURNS, SHAFT_HZ / TURNS, FS_HZ)
+    found = noise_levels(turns.ravel(), np.fft.rfft(turns.ravel()), TURNS, SHAFT_HZ / TURNS, FS_HZ)
     assert tuple(found) == NOISE_LEVELS
     return np.array([found[NOISE_LEVELS[k]] for k in HIGH])
 

@@ -70,7 +70,7 @@ def test_workers_have_their_batches_strictly_in_turn(windows: int, batch: int, w
     assert batches.tolist() == [len(range(worker, total, workers)) for worker in range(workers)]
 
 
-@pytest.mark.parametrize(("world_size", "workers"), [(1, 0), (1, 2), (2, 0), (3, 2)])
+@pytest.mark.parametrize(("world_size", "workers"), [(1, 0), (2, 0), (3, 2)])
 def test_every_window_comes_once_per_epoch(dataset: Any, world_size: int, workers: int) -> None:
     expected = sorted(contents(loader(dataset, shuffling=Shuffling(seed=None))))
     assert len(set(expected)) == len(expected) == window_index(dataset, "train", StreamSettings()).size
@@ -95,7 +95,7 @@ def test_same_seed_same_order_and_another_epoch_another_one(dataset: Any, worker
 
 # three workers on a machine with fewer cores are slow, not wrong, and unequal lanes need three
 @pytest.mark.filterwarnings("ignore:This DataLoader will create")
-@pytest.mark.parametrize(("workers", "taken"), [(0, 1), (0, 11), (2, 1), (2, 4), (3, 7)])
+@pytest.mark.parametrize(("workers", "taken"), [(0, 11), (3, 7)])
 def test_a_resumed_epoch_gives_the_same_remainder(dataset: Any, workers: int, taken: int) -> None:
     whole = loader(dataset, workers)
     contents(whole)  # the second epoch, so that the epoch has to be resumed too

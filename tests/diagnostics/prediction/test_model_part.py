@@ -8,12 +8,14 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
 import pytest
 
 from diagnostics.cli.app import main
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.prediction.model_facts import sealed_text, unsealed_text
 from diagnostics.prediction.released_model import load_model
-from diagnostics.training.baselines import logistic_pipeline
+from diagnostics.training.baselines import fitted_classifier
 from siggen.errors import UsageError
 from tests.diagnostics.prediction.resealed_model import reseal
 
@@ -61,8 +63,10 @@ def test_features_of_other_channels_are_refused_with_exit_code_2(
 def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
     import skops.io
 
-    pipeline = logistic_pipeline().fit([[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [3.0, 1.0]], [0, 1, 2, 3])
-    skops.io.dump(pipeline, folder / "classifier.skops")
+    rows = np.array([[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [3.0, 1.0]])
+    matrix = FeatureMatrix(rows, ("a", "b"), {})
+    other = fitted_classifier(matrix, np.arange(4), ("w", "x", "y", "z"))
+    skops.io.dump(other.pipeline, folder / "classifier.skops")
     reseal(folder)
     with pytest.raises(UsageError, match=r"classifier\.skops: does not belong .*takes 2 features .* class 4 of 3"):
         load_model(folder)

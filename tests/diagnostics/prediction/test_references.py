@@ -39,6 +39,7 @@ from diagnostics.training.referenced import (
 )
 from diagnostics.training.splits import specimen_split
 from diagnostics.training.training import Training, train_models, training_metrics
+from tests.diagnostics.conftest import SPLITS_24
 
 FS_HZ = 12_800
 
@@ -101,41 +102,42 @@ def test_speed_ratio_is_the_largest_between_a_record_and_its_references() -> Non
 
 
 @pytest.fixture(scope="module")
-def measured(make_dataset: Callable[..., Any]) -> Any:
-    """Return 24 specimens measured twice; the second repeat follows the first one."""
-    splits = ("train",) * 16 + ("validation",) * 4 + ("test",) * 4
-    first, second = make_dataset(splits, seed=5), make_dataset(splits, seed=6)
-    again = second.table
-    changed = {"repeat": 1, "record_id": pa.array(np.arange(72) + 72)}
-    for name, value in changed.items():
-        column = value if isinstance(value, pa.Array) else pa.array([value] * 72)
-        again = again.set_column(again.schema.get_field_index(name), name, column)
-    first.table = pa.concat_tables([first.table, again])
-    return first
+def again(make_dataset: Callable[..., Any]) -> Any:
+    """The gearboxes of the separable set, measured a second time."""
+    found = make_dataset(SPLITS_24, seed=6)
+    for name, value in {"repeat": np.ones(72, dtype=int), "record_id": np.arange(72) + 72}.items():
+        found.table = found.table.set_column(found.table.schema.get_field_index(name), name, pa.array(value))
+    return found
 
 
 @pytest.fixture(scope="module")
-def indicators_of_measured(measured: Any) -> RecordTable:
-    return record_table(measured)
+def twice(dataset: Any, again: Any) -> Any:
+    """24 specimens measured twice; the second repeat follows the first one."""
+    return replace(dataset, table=pa.concat_tables([dataset.table, again.table]))
 
 
 @pytest.fixture(scope="module")
-def features_of_measured(indicators_of_measured: RecordTable) -> pa.Table:
-    return classifier_table(indicators_of_measured)
+def indicators_of_both(measured: RecordTable, again: Any) -> RecordTable:
+    return replace(measured, source=pa.concat_tables([measured.source, record_table(again).source]))
 
 
 @pytest.fixture(scope="module")
-def training(measured: Any, features_of_measured: pa.Table) -> Training:
-    return train_models(measured, features_of_measured, 0, network=NetworkOptions(cnn=False))
+def features_of_both(indicators_of_both: RecordTable) -> pa.Table:
+    return classifier_table(indicators_of_both)
+
+
+@pytest.fixture(scope="module")
+def training(twice: Any, features_of_both: pa.Table) -> Training:
+    return train_models(twice, features_of_both, 0, network=NetworkOptions(cnn=False))
 
 
 @pytest.fixture(scope="module")
 def trained(
-    measured: Any, features_of_measured: pa.Table, training: Training, tmp_path_factory: pytest.TempPathFactory
+    twice: Any, features_of_both: pa.Table, training: Training, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, Path]:
     """Return the folder of the models and a Parquet file with records of another seed: rows 0 to 2 are one gearbox."""
     folder = tmp_path_factory.mktemp("referenced")
-    save_models(training, features_of_measured, measured, folder)
+    save_models(training, features_of_both, twice, folder)
     return folder, folder / "other.parquet"
 
 
@@ -196,8 +198,8 @@ def test_a_reference_is_judged_against_none_on_the_records_that_have_one(trainin
     assert training.referenced is not None
     found = training_metrics(training)["beside_a_healthy_record"]
     assert list(found["classifiers"]) == ["indicators", "healthy_referenced"]
-    # 4 test gearboxes, 3 states, 2 repeats: a damaged record without its twin still has the other repeat's
-    assert {own["test_records"] for own in found["classifiers"].values()} == {24}
+    # 8 test gearboxes, 3 states, 2 repeats: a damaged record without its twin still has the other repeat's
+    assert {own["test_records"] for own in found["classifiers"].values()} == {48}
     (pair,) = found["comparisons"]
     assert (pair["first"], pair["second"]) == ("healthy_referenced", "indicators")
     areas = [own["macro_auroc"]["value"] for own in found["classifiers"].values()]
@@ -207,14 +209,14 @@ def test_a_reference_is_judged_against_none_on_the_records_that_have_one(trainin
 
 
 def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
-    indicators_of_measured: RecordTable, features_of_measured: pa.Table, training: Training,
+    indicators_of_both: RecordTable, features_of_both: pa.Table, training: Training,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     few = partial(circular_network.CircularSettings, most_epochs=12)
     monkeypatch.setattr(circular_network, "CircularSettings", few)
     monkeypatch.setattr(circular_training, "PERMUTED_EPOCHS", 2)
-    averages, options = averaged_records(indicators_of_measured), NetworkOptions()
-    matrix, split = feature_matrix(features_of_measured), training.split
+    averages, options = averaged_records(indicators_of_both), NetworkOptions()
+    matrix, split = feature_matrix(features_of_both), training.split
     trained, alone = judge_circular("circular", averages, matrix, split, 0, options, silent_stage)
     found = referenced_classifiers(matrix, split, [*training.judged, alone], averages, 0, options, silent_stage)
     assert found is not None
@@ -234,10 +236,9 @@ def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
 
 
 def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(
-    trained: tuple[Path, Path], measured: Any, features_of_measured: pa.Table
+    trained: tuple[Path, Path], features_of_both: pa.Table
 ) -> None:
-    assert measured.table.num_rows == features_of_measured.num_rows
-    matrix = feature_matrix(features_of_measured)
+    matrix = feature_matrix(features_of_both)
     differences, kept = healthy_referenced(matrix)
     split = specimen_split(matrix.labels)
     held_out = differences.rows(split.validation[kept])
@@ -248,24 +249,23 @@ def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(
 
 
 def test_test_records_do_not_widen_the_speeds_at_which_references_may_run(
-    measured: Any, features_of_measured: pa.Table
+    twice: Any, features_of_both: pa.Table
 ) -> None:
-    labels = feature_matrix(features_of_measured).labels
+    labels = feature_matrix(features_of_both).labels
     rows = {name: (labels["split"] == name) & (labels["repeat"] == 1) for name in ("validation", "test")}
     speed = np.select([rows["validation"], rows["test"]], [33.0, 45.0], 30.0)
-    position = features_of_measured.schema.get_field_index("speed_hz")
-    table = features_of_measured.set_column(position, "speed_hz", pa.array(speed))
+    position = features_of_both.schema.get_field_index("speed_hz")
+    table = features_of_both.set_column(position, "speed_hz", pa.array(speed))
     split = specimen_split(labels)
     found = referenced_classifiers(feature_matrix(table), split, [], None, 0, NetworkOptions(cnn=False), silent_stage)
     training: Any = SimpleNamespace(split=split, referenced=found)
-    assert release(training, table, measured).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
+    assert release(training, table, twice).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
 
 
 def test_a_long_label_stands_apart_from_its_text(
     trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    assert other.table.num_rows == 6
     folder, file = trained
     predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", f"{file}:0")
     assert "by healthy_referenced: healthy " in capsys.readouterr().out

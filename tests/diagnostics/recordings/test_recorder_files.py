@@ -22,7 +22,7 @@ from diagnostics.recordings.recorder_files import rate_from_increment
 from siggen.errors import UsageError
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # of pyuff, when it writes binary
-FS_HZ, SAMPLES, NAMES = 51_200, 40_960, ("vertical", "horizontal")
+FS_HZ, SAMPLES, NAMES = 51_200, 25_600, ("vertical", "horizontal")
 STANDARD_GRAVITY_M_S2 = 9.80665
 
 

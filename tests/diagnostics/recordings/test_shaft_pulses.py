@@ -27,7 +27,7 @@ def recording(speed_hz: float, tacho_s: np.ndarray | None = None) -> MeasuredRec
     return MeasuredRecording(Path("run.npz"), {"vertical": signal}, FS_HZ, tacho_s)
 
 
-@pytest.mark.parametrize("speed_hz", [24.0, 33.0, 36.0, 45.0])
+@pytest.mark.parametrize("speed_hz", [24.0, 45.0])
 def test_a_dozen_lines_are_enough_in_a_range_without_half_and_twice_the_speed(speed_hz: float) -> None:
     found = shaft_pulses(recording(speed_hz), TEETH, (0.8 * speed_hz, 1.25 * speed_hz))
     assert found.speed_hz == pytest.approx(speed_hz, rel=1e-3)  # the drift itself is 0.03 %
@@ -89,15 +89,13 @@ def drifting(speed_hz: float, drift: float, load_steps: bool) -> tuple[MeasuredR
     return MeasuredRecording(Path("run.npz"), {"vertical": signal}, FS_HZ, None), (turns[-1] - turns[0]) / time_s[-1]
 
 
-@pytest.mark.parametrize(  # every two of the three together
+@pytest.mark.parametrize(  # every load with every range, and every drift
     ("drift", "load_steps", "limits"),
     [
         (0.0, False, (20.0, 50.0)),
         (0.0, True, (28.5, 31.0)),
-        (0.005, False, (28.5, 31.0)),
         (0.005, True, (20.0, 50.0)),
         (-0.005, False, (28.5, 31.0)),
-        (-0.005, True, (20.0, 50.0)),
     ],
 )
 def test_a_pair_of_2_5_to_1_that_drifts_while_its_load_jumps(

@@ -54,7 +54,12 @@ def twice(make_dataset: Callable[..., Any]) -> Any:
 
 
 @pytest.fixture(scope="module")
-def training(twice: Any, make_dataset: Callable[..., Any]) -> Training:
+def table_of_twice(twice: Any) -> pa.Table:
+    return set_table(twice, silent_stage)
+
+
+@pytest.fixture(scope="module")
+def training(twice: Any, table_of_twice: pa.Table, make_dataset: Callable[..., Any]) -> Training:
     """Trained on the set, judged too on another one whose healthy state has another name."""
     other = make_dataset(("test",) * 4, seed=9)
     states = pc.replace_substring(other.table.column("state"), "healthy", "as_delivered")
@@ -62,7 +67,7 @@ def training(twice: Any, make_dataset: Callable[..., Any]) -> Training:
     other = replace(other, table=table, path=Path("other"), manifest={"identity": "2" * 64, "name": "other"})
     check_other_set(twice, other)
     second = OtherSet(other, set_table(other, silent_stage))
-    return train_models(twice, set_table(twice, silent_stage), 0, network=WITHOUT, other=second)
+    return train_models(twice, table_of_twice, 0, network=WITHOUT, other=second)
 
 
 def test_every_classifier_has_one_healthy_class(training: Training) -> None:
@@ -112,7 +117,9 @@ def test_the_loader_gives_states_and_classes(twice: Any) -> None:
     }
 
 
-def test_page_card_and_model_say_what_the_healthy_class_holds(twice: Any, training: Training, tmp_path: Path) -> None:
+def test_page_card_and_model_say_what_the_healthy_class_holds(
+    twice: Any, table_of_twice: pa.Table, training: Training, tmp_path: Path
+) -> None:
     page = " ".join([scores_sentence(training), *detection_blocks(training)])
     page = page.replace("\N{NO-BREAK SPACE}", " ").replace("<wbr>", "")
     for text in (
@@ -124,7 +131,7 @@ def test_page_card_and_model_say_what_the_healthy_class_holds(twice: Any, traini
         "Damaged or not on the other set other",
     ):
         assert text in page
-    save_models(training, set_table(twice, silent_stage), twice, tmp_path)
+    save_models(training, table_of_twice, twice, tmp_path)
     card = (tmp_path / "model_card.md").read_text(encoding="utf-8")
     assert "classes: healthy, slight, severe (healthy: records of healthy, healthy_again)" in card
     assert "accuracy of 0.50 and a balanced accuracy of 0.33" in card

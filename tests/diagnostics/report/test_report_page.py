@@ -22,22 +22,28 @@ from diagnostics.audit.audit import ALONE
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.provenance import without_path
+from diagnostics.report import report
 from diagnostics.report.report import audit_beside, audit_sentence, write_report
 from diagnostics.report.your_scores import Beside
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.realism import meaning_of_scores
+from diagnostics.training.training import Training
 from siggen.errors import DatasetError, UsageError
 
 
 @pytest.fixture(scope="module")
-def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(dataset: Any, features: pa.Table, training: Training, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of the set, whose table and training are those that other files share."""
     out = tmp_path_factory.mktemp("report")
     labels = dataset.labels("test", ["record_id", "damaged_area_mm2"])
     mine = labels.rename_columns(["record_id", "damage"])
     pyarrow.csv.write_csv(mine, out / "mine.csv")
     beside = Beside("explorer.html", out / "mine.csv")
-    write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False), beside=beside)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(report, "set_table", lambda *_, **__: features)
+        patch.setattr(report, "train_models", lambda *_, **__: training)
+        write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False), beside=beside)
     return out
 
 

@@ -23,6 +23,7 @@ from diagnostics.statistics.separability import separability
 from diagnostics.training.baselines import (
     DEFAULT_STRENGTH,
     STRENGTHS,
+    FeatureClassifier,
     permutation_control,
     permuted_target,
     rms_features,
@@ -44,8 +45,15 @@ def split(matrix: FeatureMatrix) -> SpecimenSplit:
     return specimen_split(matrix.labels)
 
 
-def test_plain_modulation_is_found_on_unseen_specimens(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
-    found = scores(train_classifier(matrix, split).predict(matrix.rows(split.test)), seed=0)
+@pytest.fixture(scope="module")
+def model(matrix: FeatureMatrix, split: SpecimenSplit) -> FeatureClassifier:
+    return train_classifier(matrix, split)
+
+
+def test_plain_modulation_is_found_on_unseen_specimens(
+    model: FeatureClassifier, matrix: FeatureMatrix, split: SpecimenSplit
+) -> None:
+    found = scores(model.predict(matrix.rows(split.test)), seed=0)
     assert found.specimens == 8
     assert found.macro_auroc.value > 0.9
 
@@ -89,11 +97,13 @@ def test_without_any_effect_the_scores_are_chance(measured_effectless: RecordTab
     assert strongest.strength < 0.4  # the best of some 400 by chance, where a real effect reaches 0.5
 
 
-def test_test_specimens_do_not_touch_the_fit(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+def test_test_specimens_do_not_touch_the_fit(
+    model: FeatureClassifier, matrix: FeatureMatrix, split: SpecimenSplit
+) -> None:
     changed = matrix.values.copy()
     changed[split.test] = 1e6
     other = train_classifier(replace(matrix, values=changed), split)
-    np.testing.assert_array_equal(other.pipeline[-1].coef_, train_classifier(matrix, split).pipeline[-1].coef_)
+    np.testing.assert_array_equal(other.pipeline[-1].coef_, model.pipeline[-1].coef_)
 
 
 def test_undefined_values_are_imputed_even_where_a_feature_is_never_defined(
@@ -110,12 +120,12 @@ def test_strength_is_chosen_without_validation_specimens_too_and_never_by_test_s
     matrix: FeatureMatrix, split: SpecimenSplit
 ) -> None:
     alone = replace(split, validation=np.zeros_like(split.validation))
-    model = train_classifier(matrix, alone)
-    assert model.strength in STRENGTHS
-    assert model.note == ""
+    chosen = train_classifier(matrix, alone)
+    assert chosen.strength in STRENGTHS
+    assert chosen.note == ""
     shuffled = matrix.values.copy()
     shuffled[split.test] = np.random.default_rng(0).permutation(shuffled[split.test])
-    assert train_classifier(replace(matrix, values=shuffled), alone).strength == model.strength
+    assert train_classifier(replace(matrix, values=shuffled), alone).strength == chosen.strength
 
 
 def test_too_few_specimens_take_the_default_strength_and_say_so(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
@@ -129,9 +139,8 @@ def test_too_few_specimens_take_the_default_strength_and_say_so(matrix: FeatureM
 
 
 def test_positive_columns_are_taken_as_logarithms_so_that_a_gain_is_a_summand(
-    matrix: FeatureMatrix, split: SpecimenSplit
+    model: FeatureClassifier, matrix: FeatureMatrix, split: SpecimenSplit
 ) -> None:
-    model = train_classifier(matrix, split)
     assert "rms__bearing_vertical" in model.logarithms
     assert not [name for name in model.logarithms if name.startswith("sideband_asymmetry")]
     # a column in another unit: the same logarithms but for a constant, which scaling takes off
@@ -151,8 +160,9 @@ def test_separability_sorts_by_strength_and_follows_the_area(matrix: FeatureMatr
     assert set(entry.auc) == {"slight", "severe"}
 
 
-def test_classifier_survives_its_file(matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path) -> None:
-    model = train_classifier(matrix, split)
+def test_classifier_survives_its_file(
+    model: FeatureClassifier, matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path
+) -> None:
     path = save_classifier(model, IndicatorSettings(), "identity", tmp_path)
     assert untrusted_types(path) == ()
     again = load_classifier(tmp_path)
@@ -162,9 +172,9 @@ def test_classifier_survives_its_file(matrix: FeatureMatrix, split: SpecimenSpli
 
 
 def test_a_process_that_has_imported_nothing_else_reads_a_classifier(
-    matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path
+    model: FeatureClassifier, split: SpecimenSplit, tmp_path: Path
 ) -> None:
-    save_classifier(train_classifier(matrix, split), IndicatorSettings(), "identity", tmp_path)
+    save_classifier(model, IndicatorSettings(), "identity", tmp_path)
     code = "import sys; from pathlib import Path; from diagnostics.training.classifier_file import load_classifier\n"
     code += "print(load_classifier(Path(sys.argv[1])).classes)"
     found = subprocess.run([sys.executable, "-c", code, tmp_path], capture_output=True, text=True, check=False)
@@ -187,10 +197,10 @@ def test_a_classifier_that_was_saved_before_logarithms_predicts_as_it_did(
     assert load_settings(tmp_path) == IndicatorSettings()
 
 
-def test_a_file_with_unknown_types_is_not_loaded(matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path) -> None:
+def test_a_file_with_unknown_types_is_not_loaded(model: FeatureClassifier, tmp_path: Path) -> None:
     import skops.io
 
-    save_classifier(train_classifier(matrix, split), IndicatorSettings(), "identity", tmp_path)
+    save_classifier(model, IndicatorSettings(), "identity", tmp_path)
     skops.io.dump(shutil.rmtree, tmp_path / "classifier.skops")
     with pytest.raises(UsageError, match="rmtree"):
         load_classifier(tmp_path)

@@ -15,6 +15,7 @@ from siggen.dynamics.housing.housing_modes import (
     resolved_hz,
     waves_for,
 )
+from siggen.dynamics.housing.modes import TableModes, table_motion
 from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, box_motions, motion_at
 from siggen.dynamics.housing.plate_energy import sheet
 from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, iron_box
@@ -94,6 +95,14 @@ def test_the_residual_stands_for_all_higher_modes(iron: HousingModes) -> None:
     np.testing.assert_allclose(static, iron.static_flexibility(both[0], both[0]), rtol=1e-9)
     slow = few.accelerance(both[1], both[1], np.array([0.5]), np.zeros(few.frequency_hz.size))
     np.testing.assert_allclose(slow[:, :, 0].real / -((2 * np.pi * 0.5) ** 2), static, rtol=1e-4)
+
+
+def test_a_mode_of_a_table_that_is_not_kept_gives_way_like_its_spring() -> None:
+    table = TableModes(np.array([100.0, 300.0]))
+    seat, lid_side = table_motion(np.array([0.5, 0.2])), table_motion(np.array([0.1, -0.4]))
+    found = table.flexibility_beyond(1, [lid_side], [seat])
+    # A modal mass of 1 kg on a spring of ω² moves by φ/ω² under a force φ.
+    assert found[0, 0] == pytest.approx(-0.4 * 0.2 / (2.0 * np.pi * 300.0) ** 2, rel=1e-12)
 
 
 def test_seats_of_a_shaft_give_way_less_than_its_bearings(iron: HousingModes) -> None:

@@ -241,3 +241,12 @@ def test_a_third_stage_continues_the_ratio_and_the_sense_of_the_second() -> None
     like_first = drivetrain(make_stage(), [behind(), replace(behind(), name="last")]).meshes[2]
     push = [like_first.vector[like_first_row] for like_first_row in (13, 14)]
     assert push == pytest.approx([sin(ANGLES[1]), cos(ANGLES[1])])
+
+
+def test_each_mesh_speeds_up_two_free_gears_like_its_reduced_mass() -> None:
+    structure = machine(-35.0)
+    for mesh in structure.meshes:
+        rows = [structure.coordinates.index(name) for name in mesh.turning]
+        # A force F along the line of action gives the angles J^-1 p F, which part the flanks by p^T J^-1 p F = F / m.
+        turned = np.linalg.solve(structure.mass[np.ix_(rows, rows)], mesh.vector[rows])
+        assert 1.0 / (mesh.vector[rows] @ turned) == pytest.approx(mesh.mass_kg, rel=1e-12)

@@ -7,7 +7,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
@@ -185,6 +185,8 @@ def test_a_further_damage_never_raises_the_stiffness(layout, further):
 
 @settings(max_examples=12, deadline=None)
 @given(mixtures, st.floats(0.4, 5.0))
+@example([pit(2.0, 9.0, 2.0, 0.8, 0.4, "dish"), box(1.6, 2.6, 7.5, 10.5, 0.2)], 2.1)  # deeper in its middle alone
+@example([box(1.6, 2.6, 7.5, 10.5, 0.2), pit(2.0, 9.0, 2.0, 0.8, 0.4, "dish")], 2.1)
 def test_sections_equal_independent_integration_across_the_face(layout, height_mm):
     x = height_mm * MM
     # At an end itself, rounding decides on which side a height lies.

@@ -1,0 +1,69 @@
+"""What is alike in records at the same time after their first sample: fixed tones, one stretch of noise, swings.
+
+Records start at a random angle, so on the average over records a machine adds nothing to a sample, however damaged. A
+spectrum is divided by its own floor, since strong lines would hide what is alike, and cut where lines stand out. The
+course of the level is the power of 64 parts of the record in decibels, less their mean. Source: derived.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnostics.audit.column_attackers import ridge_scores
+from diagnostics.audit.held_out import DEALS, Attacker, Trial, Verdicts
+
+TEMPLATES = "templates"
+SAMPLES, AROUND = 16384, 32
+LARGEST, CODES = 4.0, 31.0
+"""Times its floor up to which a line counts, and codes per floor: a byte holds them."""
+
+PARTS, COLUMNS = 64, 4096
+TINY = 1e-30
+
+
+def whitened_codes(signal: np.ndarray) -> np.ndarray:
+    """Return the spectrum of the first samples (n,) over its floor, real and imaginary part, (k,) int8."""
+    from scipy import fft
+
+    piece = signal[:SAMPLES]
+    lines = fft.rfft((piece - piece.mean()) * np.hanning(piece.size))[1:]
+    lines = lines[: lines.size // AROUND * AROUND].reshape(-1, AROUND)
+    floor = np.sqrt(np.median(np.square(np.abs(lines)), axis=1, keepdims=True) / np.log(2.0)) + TINY
+    over = lines / floor
+    over /= np.maximum(np.abs(over) / LARGEST, 1.0)
+    return np.round(CODES * np.stack([over.real, over.imag])).astype(np.int8).ravel()
+
+
+def level_course(signal: np.ndarray) -> np.ndarray:
+    """Return the level of equal parts of a record (n,) less its mean, (64,) float32 [dB]."""
+    size = signal.size // PARTS
+    if not size:
+        return np.zeros(PARTS, np.float32)
+    power = np.square(signal[: size * PARTS] - signal.mean()).reshape(PARTS, size).mean(axis=1)
+    decibels = 10.0 * np.log10(power + TINY)
+    return np.asarray(decibels - decibels.mean(), dtype=np.float32)
+
+
+def template_product(codes: list[np.ndarray]) -> np.ndarray:
+    """Return the products of all pairs of records, (records, records); zero for records of another length."""
+    size = max((row.size for row in codes), default=0)
+    rows = np.flatnonzero([row.size == size for row in codes])
+    every = np.stack([codes[row] for row in rows.tolist()]) if rows.size else np.zeros((0, 0), np.int8)
+    found = np.zeros((len(codes), len(codes)))
+    for start in range(0, size, COLUMNS):
+        part = every[:, start : start + COLUMNS].astype(np.float32) / np.float32(CODES)
+        found[np.ix_(rows, rows)] += (part @ part.T).astype(np.float64)
+    return found / max(size, 1)
+
+
+def template_attackers(products: dict[str, np.ndarray]) -> list[Attacker]:
+    """Return the attackers on products of all pairs of records, (records, records) each, by what they are of."""
+    return [_attacker(f"{TEMPLATES} of {what}", product) for what, product in products.items() if product.any()]
+
+
+def _attacker(name: str, product: np.ndarray) -> Attacker:
+    def attack(trial: Trial) -> Verdicts:
+        own = product[np.ix_(trial.rows, trial.rows)]
+        return Verdicts(ridge_scores(own, trial.positive, trial.specimen, trial.train))
+
+    return Attacker(name, attack, np.diagonal(product) > 0.0, len(product), DEALS)

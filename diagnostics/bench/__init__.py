@@ -1,0 +1,1 @@
+"""A benchmark whose test labels nobody can get from what is published: making, sealing, revealing, baselines, board."""

@@ -1,0 +1,90 @@
+"""README.md of a benchmark and of its test parts: what is asked, by which rules, with which commands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from diagnostics.scoring.benchmark import LEARN, TESTS
+from siggen.errors import counted
+
+CLOSING, LICENCE = "## Licence, authors, citation\n", "license: "
+RULES = """* One number for each record of the split `test`: `damage`, which rises with damage. Columns of other
+  tasks may stand beside it.
+* **Alone**: a record is judged by itself. **Beside**: the gearbox's record of the split `train`, which is healthy, may
+  be used too; the predictions then have a column `reference` that is true. Other records of the part may not be used.
+* Learn and choose on `learn` alone. Nothing is learned from test parts."""
+
+
+def part_card(title: str, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return the card of a test part."""
+    tests = sum(row["split"] == "test" for row in rows)
+    told = len(rows) - tests
+    return f"""# {title}, test part {name}
+
+{counted(tests, "record")} without labels in the split `test`. The split `train` has one healthy record of each gearbox
+({told}), told as a reference. `state` and all that follows from it say `unknown`, or NaN. Numbers of records and
+gearboxes were drawn; order and files tell nothing. `config.yaml` is that of the part to learn from: the one that made
+these records is secret until labels are revealed.
+"""
+
+
+def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str) -> str:
+    """Return the card of the whole benchmark; licence, authors and citation are those of the card to learn from."""
+    _, closing, said = card.partition(CLOSING)
+    licence = next((line for line in card.splitlines() if line.startswith(LICENCE)), "")
+    rows = "\n".join(f"| `{TESTS}/{name}` | {facts['records'][name]} |" for name in facts["parts"])
+    return f"""{_front_matter(facts, licence)}# {facts["title"]}, {facts["tier"]}
+
+Damage of gears in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
+synthetic**: they were computed by siggen, simulation version {facts["simulation_version"]}, not measured. Labels of the
+test parts are sealed until their maker reveals them.
+
+| part | records |
+|---|---|
+| `{LEARN}`, with labels | {facts["records"][LEARN]} |
+{rows}
+
+## Rules
+
+{RULES}
+
+## Scores
+
+Digest: `{facts["digest"]}`. It is part of every score; a score of another digest is another benchmark's.
+
+    siggen-diagnostics score . mine.parquet                       # once `revealed.json` is here
+    siggen-diagnostics score . mine.parquet --labels sealed.json  # its maker, before
+    sha256sum revealed.json                                       # is what `commitment.json` says
+
+`commitment.json` holds the SHA-256 of labels, salt, seeds and configurations, published before the first score.
+`revealed.json` is that file. `siggen.generate` makes the test parts again from its configurations.
+{closing}{said}"""
+
+
+def _front_matter(facts: Mapping[str, Any], licence: str) -> str:
+    """Return what Hugging Face reads: every part as a configuration of its own."""
+    learn = "\n".join(_files(split, f"{LEARN}/data/{split}-*.parquet") for split in ("train", "validation", "test"))
+    tests = "\n".join(
+        f"- config_name: {name}\n  data_files:\n"
+        + _files("test", f"{TESTS}/{name}/data/test-*.parquet")
+        + "\n"
+        + _files("reference", f"{TESTS}/{name}/data/train-*.parquet")
+        for name in facts["parts"]
+    )
+    said = f"{licence}\n" if licence else ""
+    return f"""---
+pretty_name: {facts["title"]}, {facts["tier"]}
+{said}tags: [synthetic, vibration, gearbox, condition-monitoring, benchmark]
+configs:
+- config_name: {LEARN}
+  default: true
+  data_files:
+{learn}
+{tests}
+---
+"""
+
+
+def _files(split: str, path: str) -> str:
+    return f"  - split: {split}\n    path: {path}"

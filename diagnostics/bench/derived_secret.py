@@ -1,0 +1,52 @@
+"""Everything that only the maker of a benchmark knows, derived from one secret: seeds, order, salt.
+
+HMAC-SHA-256 of the secret over words: who knows one result learns nothing of another one, or of the secret. The same
+secret makes the same benchmark again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import secrets
+from collections.abc import Iterable
+from pathlib import Path
+
+from siggen.errors import UsageError
+
+FEWEST_BYTES = 32
+
+
+def read_secret(file: Path) -> bytes:
+    """Return the secret of a file; one that is not there is made, readable by its owner alone.
+
+    Raises
+    ------
+    UsageError
+        If it is shorter than 32 bytes, which could be guessed.
+    """
+    if not file.exists():
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        file.touch(mode=0o600)
+        file.write_text(secrets.token_hex(FEWEST_BYTES) + "\n", encoding="ascii")
+    found = file.read_bytes().strip()
+    if len(found) < FEWEST_BYTES:
+        raise UsageError(
+            f"{file}: received a secret of {len(found)} bytes; allowed: {FEWEST_BYTES} or more, drawn at random"
+        )
+    return found
+
+
+def derived(secret: bytes, *words: object) -> bytes:
+    """Return 32 bytes that follow from the secret and some words."""
+    return hmac.new(secret, "/".join(map(str, words)).encode(), hashlib.sha256).digest()
+
+
+def seed_of(secret: bytes, part: str) -> int:
+    """Return the seed of a part, 63 bits."""
+    return int.from_bytes(derived(secret, "seed", part)[:8], "big") >> 1
+
+
+def shuffled(secret: bytes, what: str, ids: Iterable[int]) -> list[int]:
+    """Return ids in an order that only the secret tells."""
+    return sorted(ids, key=lambda one: derived(secret, what, one))

@@ -1,0 +1,148 @@
+"""Making a benchmark: the part to learn from, test parts simulated in secret and written blind, labels sealed.
+
+What nobody may know stands in a folder beside the benchmark: the secret, the simulated sets, the sealed labels. Seeds,
+numbers, order and salt follow from the secret (`derived_secret`), so the same call goes on where it was stopped.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import siggen
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.bench.blind_rows import Renumbered, blind_rows, condition_fields, renumbered, sealed_part
+from diagnostics.bench.cards import benchmark_card, part_card
+from diagnostics.bench.conditions import CONDITIONS, TIERS, Tier, changed
+from diagnostics.bench.derived_secret import derived, seed_of
+from diagnostics.scoring.benchmark import FACTS, LEARN, TESTS, Benchmark, benchmark_facts, open_benchmark
+from siggen.dataset.reading import Dataset
+from siggen.dataset.reading import open as open_set
+from siggen.errors import UsageError
+
+TITLE, PRESET = "siggen-bench 1.0", "siggen_bench"
+SECRET_FILE, SEALED, SIMULATED, CARD = "secret", "sealed.json", "simulated", "README.md"
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is to be made.
+
+    Attributes
+    ----------
+    tier : str
+    size : Tier
+    config : str or mapping
+        Configuration to learn from: a file, a preset or a mapping.
+    overrides : tuple of str
+        Such as `duration_s=0.5`, for all parts.
+    conditions : mapping
+        As `CONDITIONS`.
+    facts : Path or None
+        Licence, authors, citation, as `siggen publish` takes them: the part to learn from is then a published set.
+    """
+
+    tier: str = "tiny"
+    size: Tier = TIERS["tiny"]
+    config: str | Mapping[str, Any] = PRESET
+    overrides: tuple[str, ...] = ()
+    conditions: Mapping[str, Mapping[str, Any]] = field(default_factory=lambda: CONDITIONS)
+    facts: Path | None = None
+
+
+def make_benchmark(
+    out: Path, hidden: Path, secret: bytes, wanted: Wanted, workers: int | None = None, stage: Stage = silent_stage
+) -> Benchmark:
+    """Make a benchmark, or go on with one.
+
+    Parameters
+    ----------
+    out : Path
+        What may be published.
+    hidden : Path
+        What may not.
+    secret : bytes
+    wanted : Wanted
+    workers : int, optional
+        As of `siggen.generate`.
+    stage : Stage
+        Told of every part.
+
+    Raises
+    ------
+    UsageError
+        If one folder lies in the other.
+    ConfigError, DatasetError
+        As of `siggen.generate`.
+    """
+    if out.resolve().is_relative_to(hidden.resolve()) or hidden.resolve().is_relative_to(out.resolve()):
+        raise UsageError(f"{hidden}: what is secret may not lie in {out}, nor that in it; name another folder")
+    learn = siggen.load_config(wanted.config, [*wanted.overrides, f"specimens={wanted.size.learn}"])
+    tests = {name: _test_config(learn, name, wanted, secret) for name in wanted.conditions}
+    _write_learn(learn, out / LEARN, hidden, wanted.facts, (workers, stage))
+    parts = {}
+    for place, (name, config) in enumerate(tests.items()):
+        dataset = _simulated(config, hidden / SIMULATED / name, name, workers, stage)
+        numbers = renumbered(dataset, secret, name, place)
+        parts[name] = sealed_part(dataset, numbers)
+        _write_blind(dataset, numbers, (learn, config), out / TESTS / name)
+    facts = benchmark_facts(out, TITLE, wanted.tier, tuple(tests))
+    sealed = {
+        "salt": derived(secret, "salt").hex(),
+        **{name: facts[name] for name in ("title", "tier", "digest", "simulation_version")},
+        "configurations": {name: config.canonical() for name, config in tests.items()},
+        "parts": parts,
+    }
+    (hidden / SEALED).write_text(json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n", encoding="utf-8")
+    own = (out / LEARN / CARD).read_text(encoding="utf-8")
+    (out / CARD).write_text(benchmark_card(facts, learn, own), encoding="utf-8")
+    (out / FACTS).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    return open_benchmark(out)
+
+
+def _test_config(learn: Any, name: str, wanted: Wanted, secret: bytes) -> Any:
+    """Return the configuration of a test part; its seed follows from the secret."""
+    own = changed(learn.canonical(), wanted.conditions[name])
+    own |= {"name": f"{learn.name}_{name}", "seed": seed_of(secret, name), "specimens": wanted.size.test}
+    return siggen.load_config(own)
+
+
+def _write_learn(config: Any, folder: Path, hidden: Path, facts: Path | None, how: tuple[int | None, Stage]) -> None:
+    """Write the part to learn from, with authors' facts as a set that is ready to be published."""
+    if facts is None:
+        _simulated(config, folder, LEARN, *how)
+        return
+    _simulated(config, hidden / SIMULATED / LEARN, LEARN, *how)
+    if not (folder / "manifest.json").is_file():
+        shutil.rmtree(folder, ignore_errors=True)
+        siggen.publish(hidden / SIMULATED / LEARN, folder, facts)
+
+
+def _simulated(config: Any, folder: Path, title: str, workers: int | None, stage: Stage) -> Dataset:
+    """Return a set that is simulated, or was."""
+    with stage(title, config.specimens * config.records_per_specimen) as advance:
+        told = 0
+
+        def progress(done: int, _total: int) -> None:
+            nonlocal told
+            for _ in range(done - told):
+                advance()
+            told = max(done, told)
+
+        siggen.generate(config, folder, workers, progress)
+    return open_set(folder)
+
+
+def _write_blind(dataset: Dataset, numbers: Renumbered, configs: tuple[Any, Any], folder: Path) -> None:
+    """Write a test part, unless it is there; `configs` are that to learn from and that of the part."""
+    if (folder / "manifest.json").is_file():
+        return
+    shutil.rmtree(folder, ignore_errors=True)  # what a call that was stopped had half written
+    learn, own = configs
+    rows, facts = blind_rows(dataset, numbers), {"benchmark": TITLE, "part": folder.name}
+    card = part_card(TITLE, folder.name, rows)
+    siggen.write_recorded_set(learn, folder, rows, condition_fields(dataset), facts, card, measured=own)

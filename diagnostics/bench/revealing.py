@@ -1,0 +1,42 @@
+"""Commit and reveal: the hash of sealed labels is published first, the labels themselves later."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+from diagnostics.scoring.benchmark import COMMITMENT, REVEALED, Benchmark
+from diagnostics.scoring.sealed_labels import labels_of
+from siggen.errors import UsageError
+
+
+def commit(benchmark: Benchmark, sealed: Path) -> str:
+    """Return the SHA-256 of the sealed labels, and write it into the benchmark.
+
+    Raises
+    ------
+    UsageError
+        If the labels are of another benchmark, or others were committed to.
+    """
+    found = labels_of(benchmark, sealed).commitment
+    content = {"sha256": found, "digest": benchmark.digest, "of": REVEALED}
+    (benchmark.path / COMMITMENT).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    return found
+
+
+def reveal(benchmark: Benchmark, sealed: Path) -> Path:
+    """Copy the sealed labels into the benchmark; return the file.
+
+    Raises
+    ------
+    UsageError
+        If nothing was committed to, or other labels.
+    """
+    if benchmark.commitment() is None:
+        raise UsageError(f"{benchmark.path}: nothing was committed to; run `siggen-diagnostics bench commit` first")
+    labels_of(benchmark, sealed)
+    target = benchmark.path / REVEALED
+    if not target.exists() or not target.samefile(sealed):
+        shutil.copyfile(sealed, target)
+    return target

@@ -1,0 +1,73 @@
+"""A small benchmark of short records, made as a user makes one, with a secret that the tests know."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from diagnostics.bench.conditions import Tier
+from diagnostics.bench.making import SEALED, SIMULATED, Wanted, make_benchmark
+from diagnostics.bench.revealing import commit
+from diagnostics.scoring.benchmark import Benchmark
+
+SECRET = b"a secret of a test, which is long enough to be one"
+PITS = {
+    "kind": "clustered", "gear": "pinion", "teeth": 1, "count": 8, "centre_height_mm": "pitch",
+    "spread_profile_mm": 0.3, "semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3,
+}  # fmt: skip
+CONFIG = {
+    "extends": "linear_pits",
+    "fs_hz": 12_800,
+    "duration_s": 0.3,
+    "mesh_harmonics": 3,
+    "operating_points": [
+        {
+            "speed_hz": {"kind": "uniform", "low": 30, "high": 35},
+            "torque_nm": {"kind": "uniform", "low": 30, "high": 60},
+        }
+    ],
+    "states": [
+        {"name": "healthy"},
+        {"name": "healthy_again"},
+        {"name": "pits", "severity": "slight", "damage": PITS},
+        {"name": "sham", "sham": True, "damage": PITS},
+    ],
+}
+OTHERS = {
+    "other_fault": {
+        "states": [*CONFIG["states"][:2], {"name": "many", "severity": "slight", "damage": PITS | {"count": 20}}]
+    }
+}
+GEARBOXES = 14
+SMALL = Tier(2, 2)
+
+
+class Made(NamedTuple):
+    """A benchmark, and the folder of what is secret."""
+
+    benchmark: Benchmark
+    hidden: Path
+
+    @property
+    def sealed(self) -> Path:
+        return self.hidden / SEALED
+
+    def simulated(self, part: str) -> Path:
+        return self.hidden / SIMULATED / part
+
+
+def make(folder: Path, size: Tier = SMALL, secret: bytes = SECRET, facts: Path | None = None) -> Made:
+    """Make a benchmark; without an argument a small one of one test part, in which attackers would see nothing."""
+    conditions: dict[str, Any] = {"same": {}, **(OTHERS if size != SMALL else {})}
+    wanted = Wanted("tiny", size, CONFIG, (), conditions, facts)
+    return Made(make_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """The benchmark, committed to, not revealed."""
+    found = make(tmp_path_factory.mktemp("bench"), Tier(6, GEARBOXES))
+    commit(found.benchmark, found.sealed)
+    return found

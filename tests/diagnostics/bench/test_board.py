@@ -1,0 +1,117 @@
+"""Baselines of a benchmark and its leaderboard, on short records of perfect gears, by command."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+import diagnostics
+from diagnostics.base.progress import silent_stage
+from diagnostics.bench.baselines import BESIDE, CHANCE, KURTOGRAM, NETWORK, STACK, detectors
+from diagnostics.bench.leaderboard import BOARD, NUMBERS
+from diagnostics.bench.seen_records import benchmark_records, seen_records
+from diagnostics.scoring.benchmark import open_benchmark
+from tests.command import command
+from tests.diagnostics.bench.conftest import Made
+
+
+@pytest.fixture(scope="module")
+def learned(made: Made, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the benchmark with its baselines; for time without a network, with fewer folds and convolutions."""
+    bench = Path(shutil.copytree(made.benchmark.path, tmp_path_factory.mktemp("learned") / "bench"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("diagnostics.bench.baselines.missing_packages", lambda *_: ("torch",))
+        patch.setattr("diagnostics.bench.baselines.FOLDS", 2)
+        patch.setattr("diagnostics.audit.signal_attackers.DILATIONS", (1, 8))
+        ended = command("diagnostics", "bench", "baselines", str(bench))
+    assert ended.returncode == 0, ended.stderr
+    return bench
+
+
+def test_every_baseline_says_something_of_every_test_record(made: Made, learned: Path) -> None:
+    table = pq.read_table(learned / "baselines" / "predictions.parquet")
+    asked = [
+        record
+        for part in made.benchmark.parts
+        for record in made.benchmark.part(part).labels("test", ["record_id"]).column("record_id").to_pylist()
+    ]
+    names = set(table.column("classifier").to_pylist())
+    assert {CHANCE, KURTOGRAM, STACK, KURTOGRAM + BESIDE, STACK + BESIDE} <= names
+    rows = table.to_pylist()
+    for name in names:
+        own = [row for row in rows if row["classifier"] == name]
+        assert sorted(row["record_id"] for row in own) == sorted(asked)
+        assert {row["reference"] for row in own} == {name.endswith(BESIDE)}
+        assert np.isfinite([row["damage"] for row in own]).all()
+
+
+def test_the_board_orders_entries_and_pairs_their_differences(made: Made, learned: Path, tmp_path: Path) -> None:
+    told = json.loads(made.sealed.read_text())["parts"]
+    truth = {
+        record: area
+        for part in told.values()
+        for record, area in zip(part["labels"]["record_id"], part["labels"]["damaged_area_mm2"], strict=True)
+    }
+    asked = sorted(set(pq.read_table(learned / "baselines" / "predictions.parquet").column("record_id").to_pylist()))
+    entries = tmp_path / "entries"
+    entries.mkdir()
+    perfect = pa.table({"record_id": asked, "damage": [truth[record] for record in asked]})
+    pq.write_table(perfect, entries / "knows <b>all.parquet")
+    ended = command("diagnostics", "bench", "board", str(learned), str(entries), "--labels", str(made.sealed))
+    assert ended.returncode == 0, ended.stderr
+    folder = Path(ended.stdout.strip()).parent
+    page = (folder / BOARD).read_text()
+    assert "knows &lt;b&gt;all" in page
+    assert made.benchmark.digest in page
+    rows = {row["name"]: row for row in json.loads((folder / NUMBERS).read_text())["entries"]}
+    first = rows["knows <b>all"]
+    assert next(iter(rows)) == "knows <b>all"
+    assert first["auc"]["mean"]["value"] == 1.0
+    for row in rows.values():
+        if not row["beside_a_healthy_record"]:
+            difference = row["auc"]["same"]["value"] - first["auc"]["same"]["value"]
+            assert row["minus_first"]["same"]["value"] == pytest.approx(difference)
+    chance = rows[CHANCE]["auc"]["same"]
+    assert chance["low"] < 0.5 < chance["high"]
+    assert rows[CHANCE]["minus_first"]["same"]["high"] < 0.0
+
+
+def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_elsewhere(
+    made: Made, learned: Path
+) -> None:
+    bench = diagnostics.open_benchmark(learned)
+    learn = diagnostics.table(bench.learn())
+    model = diagnostics.LogisticBaseline(strengths=(0.01,)).fit(learn.values, learn.labels["class"], learn.groups)
+    rows: dict[str, list[np.ndarray]] = {}
+    for name in bench.parts:
+        asked = diagnostics.table(bench.part(name)).split("test")
+        rows.setdefault("record_id", []).append(asked.labels["record_id"])
+        for label, column in zip(model.classes_, model.predict_proba(asked.values).T, strict=True):
+            rows.setdefault(f"p_{label}", []).append(column)
+    mine = {name: np.concatenate(columns) for name, columns in rows.items()}
+    found = diagnostics.score_benchmark(bench, mine, labels=made.sealed)
+    tasks = {scores.set_name: {row.task for row in scores.rows} for scores in found.parts}
+    assert tasks == {"same": {"detect", "grade", "abstain"}, "other_fault": {"detect"}}
+    shown = str(found)
+    assert "kurtogram" in shown
+    assert bench.digest[:12] in shown
+
+
+@pytest.mark.slow  # trains the network once
+def test_the_network_learns_from_the_records_that_it_may_see_alone(learned: Path) -> None:
+    pytest.importorskip("torch")
+    seen = seen_records(benchmark_records(open_benchmark(learned), silent_stage), referenced=True)
+    network = detectors(0)[NETWORK]
+    unique = np.unique(seen.gearbox)
+    half = np.isin(seen.gearbox, unique[: unique.size // 2])
+    score = network(seen, half)
+    assert score.size == seen.learn + seen.tests().size
+    assert np.isfinite(score).all()
+    seen.damaged[~half] = ~seen.damaged[~half]
+    assert np.array_equal(network(seen, half), score)
