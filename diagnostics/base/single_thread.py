@@ -24,14 +24,14 @@ def single_thread(function: Callable[Parameters, Result]) -> Callable[Parameters
         import sklearn.ensemble  # noqa: F401 - only libraries that are loaded can be limited
         from threadpoolctl import threadpool_limits
 
-        with threadpool_limits(1), _known_to_be_missing("pandas"):
+        with threadpool_limits(1), known_to_be_missing("pandas"):
             return function(*positional, **named)
 
     return limited
 
 
 @contextmanager
-def _known_to_be_missing(name: str) -> Iterator[None]:
+def known_to_be_missing(name: str) -> Iterator[None]:
     """Let imports of a package that is not installed fail at once.
 
     scikit-learn tries to import pandas at every fit and prediction of an imputer. Where it is missing, Python looks

@@ -40,6 +40,16 @@ def test_a_ripple_of_the_speed_moves_the_active_current_by_its_slip_behind_the_l
     assert np.abs(added(angle, hz)).max() == pytest.approx(expected, rel=0.01)
 
 
+def test_a_record_begins_in_the_steady_state_of_its_ripple() -> None:
+    angle, omega = 1e-3, 2 * np.pi * 12.0
+    tau = 1.0 / (2 * np.pi * 50.0 * MOTOR.breakdown_slip)
+    found = active_current(MOTOR, angle * np.sin(omega * SECONDS), FS, 50.0)  # a sine goes on as its mirror image
+    speed = (angle * 1j * omega * np.exp(1j * omega * SECONDS) / (1 + 1j * omega * tau)).imag
+    expected = -2 * (10.0 / 0.03) / (2 * np.pi * 50.0) * speed
+    # From the first sample on: e^-16 is left of what was before. Half a sample late: 12 Hz times 25 us.
+    assert np.abs(found - expected)[:2000].max() < 0.005 * np.abs(expected).max()
+
+
 def test_fast_ripples_move_the_phase_by_the_pole_pairs_times_the_angle() -> None:
     # far above the corner the active current is p s_k/s_n times the angle, whatever the frequency
     for hz in (600.0, 1200.0):

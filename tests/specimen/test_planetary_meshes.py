@@ -92,3 +92,14 @@ def test_an_eccentric_planet_stands_back_from_sun_and_ring_as_the_structure_says
     found = missing_m(meshes[COUNT + planet], "pinion", at_ring)
     assert np.ptp(expected) > 1e-6
     assert found == pytest.approx(expected, abs=1e-9 * np.ptp(expected) + 1e-15)
+
+
+def test_the_ring_weighs_and_turns_like_thin_hoops_of_steel() -> None:
+    specimen = draw_specimen(load_config(planets()), 0)
+    ring, inner = planetary_numbers(specimen).ring, planets_in_ring(specimen)[1]
+    # From the root circle of its teeth to the rim, four modules behind; teeth of the ring point inwards.
+    edges = np.linspace(inner.gear.root_radius_m, inner.gear.root_radius_m + 4.0 * inner.gear.module_m, 10_001)
+    radius_m = 0.5 * (edges[1:] + edges[:-1])
+    hoops_kg = 7850.0 * 2.0 * np.pi * radius_m * np.diff(edges) * inner.face_width_m
+    assert ring.mass_kg == pytest.approx(hoops_kg.sum(), rel=1e-8)
+    assert ring.inertia_kg_m2 == pytest.approx((hoops_kg * radius_m**2).sum(), rel=1e-6)
