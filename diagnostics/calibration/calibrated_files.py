@@ -15,6 +15,7 @@ from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted
 from diagnostics.calibration.noise_fit import NoiseFit
 from diagnostics.calibration.own_lines import OwnLine
 from diagnostics.calibration.path_draws import PathDraw
+from diagnostics.calibration.source_library import sampled_as
 from siggen.errors import UsageError
 
 FACTS = "calibration.json"
@@ -89,7 +90,7 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         "",
         f"name: {_set_name(out)}",
         f"extends: {_beside(found.rig.file, out)}",
-        f"fs_hz: {found.blocks.fs_hz:g}",
+        *(f"{key}: {value!r}" for key, value in sampled_as(found.rig, point, found.blocks.fs_hz).items()),
         "operating_points:",
         f"  - speed_hz: {_number(point['speed_hz'])}    # of the recordings",
         f"    torque_nm: {_number(point['torque_nm'])}    # not seen in recordings: of the rig, or --torque",
@@ -196,8 +197,8 @@ def stage_sentence(found: Calibration) -> str:
 
 
 NO_STAGE = (
-    "a second stage: no comb of whole teeth on either shaft stands out of the lines that errors of the teeth make. One "
-    "whose lines are less than about 8 dB above those is not excluded; its lines count as errors of the teeth"
+    "a second stage: no comb of whole teeth on either shaft has two lines that stand out of what errors of the teeth "
+    "make. A weaker one is not excluded; its lines count as errors of the teeth"
 )
 SEVERAL_MESHES = (
     "paths of the meshes apart: one path carries the lines of all, in a direction under which all of them fit",

@@ -27,15 +27,8 @@ from diagnostics.calibration.order_record import (
 from diagnostics.calibration.own_lines import OwnLine, own_lines
 from diagnostics.calibration.path_draws import CEPSTRUM_POINTS, ChannelLines, PathDraw, drawn_path, unlike_db
 from diagnostics.calibration.rig import Rig, check_meshes
-from diagnostics.calibration.second_stage import (
-    Multiples,
-    SecondStage,
-    StageLine,
-    machine_multiples,
-    second_stage,
-    stage_lines,
-    wave_lines,
-)
+from diagnostics.calibration.second_stage import SecondStage, StageLine, second_stage, stage_lines, wave_lines
+from diagnostics.calibration.shaft_multiples import Multiples, machine_multiples
 from diagnostics.calibration.source_library import SourceLibrary, source_library
 from siggen.errors import UsageError
 
@@ -181,7 +174,7 @@ class _Draws:
     def of(blocks: int, gearboxes: int, paths: int, seed: int) -> _Draws:
         rng = generator(seed, Purpose.PATHS)
         of_blocks = rng.integers(blocks, size=(paths, blocks))
-        return _Draws(of_blocks, rng.integers(gearboxes, size=(paths, gearboxes)), seed)
+        return _Draws(of_blocks, rng.integers(gearboxes, size=(paths, 1)), seed)
 
 
 @dataclass(frozen=True, slots=True)

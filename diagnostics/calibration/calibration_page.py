@@ -15,6 +15,7 @@ from diagnostics.audit.envelope import BACKGROUND_QUANTITIES
 from diagnostics.calibration.calibrated_files import TOO_FEW, data_folder, not_identified, stage_sentence
 from diagnostics.calibration.calibration import Calibration
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlocks
+from diagnostics.calibration.interval_coverage import interval_coverage
 from diagnostics.calibration.likeness import (
     LEVELS,
     RANGE,
@@ -49,8 +50,8 @@ def calibration_page(
     held_out: HealthyBlocks | None,
     size: tuple[int, int],
     advance: Callable[[], None],
-) -> Path:
-    """Write the page and return it.
+) -> tuple[Path, list[str]]:
+    """Write the page and return it, with what it says first.
 
     Parameters
     ----------
@@ -67,18 +68,18 @@ def calibration_page(
     names = found.blocks.channels
     read = found.blocks if held_out is None else held_out
     real = sample_of(read.blocks, found.rig.drive.teeth)
-    alike = at_recordings(found.rig.file, found.operating_point, read.fs_hz) | {"sensors": found.rig.sensors}
+    alike = at_recordings(found.rig, found.operating_point, read.fs_hz) | {"sensors": found.rig.sensors}
     before = simulated_blocks(alike, names, size[0], advance)
     after = simulated_blocks(out, names, size[0], advance)
     compared = [likeness(real, sample_of(blocks, found.rig.drive.teeth), size[1]) for blocks in (before, after)]
-    judged = 0 if held_out is None else len(held_out.blocks)
-    return write_calibration_page(found, real, compared[0], compared[1], data_folder(out), judged)
+    sentences = _sentences(compared[0], compared[1], found, held_out)
+    return write_calibration_page(found, real, compared[0], compared[1], data_folder(out), sentences), sentences
 
 
 def write_calibration_page(
-    found: Calibration, real: Sample, before: Likeness, after: Likeness, folder: Path, held_out: int
+    found: Calibration, real: Sample, before: Likeness, after: Likeness, folder: Path, sentences: list[str]
 ) -> Path:
-    """Write the page into a folder; return it."""
+    """Write the page into a folder, with sentences first; return it."""
     with styled():
         figures = [
             html.figure_block(png_bytes(figure), caption.format(channel.name))
@@ -90,7 +91,7 @@ def write_calibration_page(
         ]
     parts = [
         html.heading(f"Calibration of {found.rig.file.stem}", 1),
-        *html.summary(_sentences(before, after, held_out)),
+        *html.summary(sentences),
         _likeness_table(found, before, after),
         html.figure_grid(figures),
         html.paragraph(
@@ -112,12 +113,12 @@ def write_calibration_page(
     return path
 
 
-def _sentences(before: Likeness, after: Likeness, held_out: int) -> list[str]:
-    judged = (
-        f"Judged on {counted(held_out, 'recording')} held out."
-        if held_out
-        else "Judged on the recordings that it was fitted to, since none was held out (`--held-out`): too kind."
-    )
+def _sentences(before: Likeness, after: Likeness, found: Calibration, held_out: HealthyBlocks | None) -> list[str]:
+    judged = "Judged on the recordings that it was fitted to, since none was held out (`--held-out`): too kind."
+    if held_out is not None:
+        hold, count = interval_coverage(found, held_out)
+        told = f"{hold} of {count} intervals of 90 % hold their mean." if count else "No interval could be judged."
+        judged = f"Judged on {counted(len(held_out.blocks), 'recording')} held out: {told}"
     first = (
         f"The spectrum of the calibrated gearboxes lies {decimal(float(after.distance_db.mean()))} dB from the "
         f"recordings, that of the rig {decimal(float(before.distance_db.mean()))} dB (rms over twelfths of an octave)."

@@ -1,14 +1,11 @@
 """SecondStage: another pair of gears on one of the shafts, where its lines stand out of the errors of the teeth.
 
-A stage of Z teeth on a shaft has its lines at Z, 2 Z, 3 Z ... turns of that shaft, where errors of the known teeth have
-lines too. So single lines say nothing: Z is the comb whose first lines stand out most together. Source: derived.
-
-ShaftMultiples: how far each multiple of a shaft's order stands out of what errors of the teeth make there.
-
-Every tooth differs, so a gear has lines at all multiples of its shaft. Two things are known of them: they change
-slowly from one to the next beside the mesh lines, and what errors of z teeth do returns with every z multiples. So
-the excess of a multiple is its level over the median of those around it, less the median excess of all multiples as
-far from a mesh line. Source: derived.
+A stage of Z teeth on a shaft has its lines at Z, 2 Z, 3 Z ... turns of that shaft, with sidebands of the shaft, where
+errors of the known teeth have lines too. So single lines say nothing: Z is the comb whose lines and sidebands stand
+out most together. Each adds the logarithm of how much likelier its excess is with a line there than without. A channel
+may show few of them, so what it shows is read from the first line up to where the sum is largest; the housing may hide
+the others. A wave that a machine left on the flanks has one line with sidebands, so two lines of a comb must show.
+Source: derived.
 
 Lines at whole orders of a shaft that stand out one by one: waves that a machine left on the flanks (ghost lines).
 
@@ -19,41 +16,36 @@ the median too, and are taken for waves. Source: derived.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import gcd
 
 import numpy as np
 
-from diagnostics.calibration.drivetrain import Drivetrain, Shaft
+from diagnostics.calibration.drivetrain import Drivetrain
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, jackknife
-from diagnostics.calibration.order_record import LEAST_SHARE, LINE_BINS, SAME_ORDER, OrderRecord, line_places
+from diagnostics.calibration.order_record import SAME_ORDER
 from diagnostics.calibration.own_lines import LEAST_SPREAD, SHAFT_ORDERS, UNKNOWN_SPREAD, OwnLine
+from diagnostics.calibration.shaft_multiples import Multiples, ShaftMultiples
 
 WAVE_EXCESS_DB = 6.0
 """Chosen on one simulated machine, from 10 and 6 dB: docs/understand/calibration.md."""
 
-BESIDE_MESH = 2
-"""Multiples this near to a mesh line are its sidebands, which eccentric gears have as well: nothing is read there."""
-AROUND = 12
-OFF_BINS = 0.5
-"""A line further from the multiple than this turns with something else."""
-FEWEST_BINS = 3.0 * LINE_BINS
-"""Between two multiples: their lines are five bins wide."""
-FEWEST_ALIKE = 3
-
 TEETH = range(12, 120)
-COMPARED, MOST_DB, LINE_DB = 8, 15.0, 4.5
-"""A comb is judged by its first lines: what each has above LINE_DB, up to MOST_DB, may be less than nothing."""
-LEAST_SCORE = 28.0
-"""Sum over a comb. Of 56 shafts of simulated machines without a stage the best comb had 20 at most; with stages of 1.6
-to 4 % of the mesh force 37 to 74, with two of about 1 % 21 and less."""
+COMPARED = 8
+"""Lines of a comb."""
+SHOWN, SIDEBAND_SHOWN = 0.6, 0.3
+"""Share of the lines and sidebands that a channel shows (assumed), at an excess of 0 to LARGEST_DB."""
+LARGEST_DB, SURE_DB, BELOW_DB = 40.0, 30.0, 6.0
+"""Beyond SURE_DB an excess says no more. A sideband stands BELOW_DB under its line at least, or counts as less."""
+LEAST_TAIL_DB = 3.0
+MOST_OF_ONE = 4.5
+"""What one line, or both of its sidebands, may add: e^4.5 is 90 to 1."""
+LEAST_SCORE, LEAST_OF_OTHERS = 4.0, 0.5
+"""Of a comb, and of it without its best line. Chosen on 24 machines of quickstart: 21 of their combs had both, and none
+that was not theirs beat them; docs/scripts/second_stages.py judges on others."""
 LEAD = 1.3
 """Over the next comb that has not the same lines."""
-DIVISOR_SHARE = 0.6
-"""A comb of half the teeth has every second line beside those of the true one, and a comb of twice the teeth only every
-second line. The fewest teeth win that score so much of the best."""
 LINE_EXCESS_DB = 6.0
 """From which a line is taken: errors of the teeth make less than a quarter of it."""
 HIGHEST_LINE = 20
@@ -84,107 +76,17 @@ def wave_lines(multiples: Multiples, drive: Drivetrain, channel: str, known: tup
 
 
 @dataclass(frozen=True, slots=True)
-class ShaftMultiples:
-    """Multiples 1, 2, ... of a shaft in one channel.
-
-    Attributes
-    ----------
-    level_db : (recordings, k) float64
-        Energy of the line [dB re 1 unit²]; where none stands out, a fifth of what its bins hold.
-    usual_db : (k,) float64
-        Mean over recordings that errors of the teeth lead to expect.
-    excess_db : (k,) float64
-        Mean level over the expected one; NaN at mesh lines and beside them.
-    """
-
-    level_db: np.ndarray
-    usual_db: np.ndarray
-    excess_db: np.ndarray
-
-
-def shaft_multiples(records: Sequence[OrderRecord], shaft: Shaft, drive: Drivetrain) -> ShaftMultiples | None:
-    """Return the multiples of a shaft of a machine; None where recordings are too short to tell them apart.
-
-    Parameters
-    ----------
-    records : sequence of OrderRecord
-        Of one channel.
-    """
-    told = OFF_BINS / min(record.revolutions for record in records)
-    if shaft.step < FEWEST_BINS / OFF_BINS * told:
-        return None
-    count = int(min((record.power.size - 4 * LINE_BINS) / record.revolutions for record in records) / shaft.step) - 1
-    number = np.arange(1, count + 1)
-    level = np.array([_levels_db(record, number * shaft.step) for record in records])
-    mean = level.mean(axis=0)
-    mesh = _at_meshes(number, shaft, drive, told)
-    usual = _around(mean, number, mesh, _also_of(number * shaft.step, shaft, drive, told))
-    for teeth in shaft.teeth:
-        usual = usual + _returning(np.where(mesh, np.nan, mean - usual), number, teeth)
-    return ShaftMultiples(level, usual, np.where(mesh, np.nan, mean - usual))
-
-
-def _at_meshes(number: np.ndarray, shaft: Shaft, drive: Drivetrain, told: float) -> np.ndarray:
-    """Return which multiples (k,) are mesh lines or beside them by few turns of a shaft of theirs."""
-    found = np.zeros(number.size, dtype=bool)
-    for teeth in shaft.teeth:
-        found |= np.abs(number - np.round(number / teeth) * teeth) <= BESIDE_MESH
-    order = number * shaft.step
-    for mesh in (one for one in drive.meshes if shaft not in one.shafts):
-        beside = order - np.round(order / mesh.order) * mesh.order
-        for step in (one.step for one in mesh.shafts):
-            sideband = np.clip(np.round(beside / step), -BESIDE_MESH, BESIDE_MESH)
-            found |= np.abs(beside - sideband * step) < told
-    return found
-
-
-def _also_of(order: np.ndarray, shaft: Shaft, drive: Drivetrain, told: float) -> np.ndarray:
-    """Return (k, other shafts) of which shafts each order is a multiple too, so that it holds their errors as well."""
-    others = [one.step for one in drive.shafts if one != shaft]
-    return np.stack([np.abs(order - np.round(order / step) * step) < told for step in others], axis=1)
-
-
-def _levels_db(record: OrderRecord, orders: np.ndarray) -> np.ndarray:
-    """Return the levels of lines at these orders (k,); a line beside counts as none."""
-    centre = np.round(orders * record.revolutions).astype(int)
-    near = centre[:, None] + np.arange(-LINE_BINS, LINE_BINS + 1)
-    total, floor = record.power[near].sum(axis=1), record.floor[near].sum(axis=1)
-    place = line_places(record.power, near[np.arange(near.shape[0]), record.power[near].argmax(axis=1)])
-    least = LEAST_SHARE * np.minimum(total, floor)
-    energy = np.where(np.abs(place - orders * record.revolutions) < OFF_BINS, total - floor, 0.0)
-    return np.asarray(10.0 * np.log10(np.maximum(np.maximum(energy, least), 1e-30)))
-
-
-def _around(level_db: np.ndarray, number: np.ndarray, mesh: np.ndarray, also_of: np.ndarray) -> np.ndarray:
-    """Return the median of the nearest multiples of the same kind (k,), without those at mesh lines and beside it."""
-    found = np.full(number.size, math.inf)
-    for k in range(number.size):
-        alike = np.flatnonzero((also_of == also_of[k]).all(axis=1) & ~mesh & (np.abs(number - number[k]) > 1))
-        if alike.size >= FEWEST_ALIKE:
-            nearest = np.argsort(np.abs(alike - k), kind="stable")[:AROUND]
-            found[k] = np.median(level_db[alike[nearest]])
-    return found
-
-
-def _returning(above_db: np.ndarray, number: np.ndarray, teeth: int) -> np.ndarray:
-    """Return what all multiples as far from a mesh line have in common (k,) [dB], 0 at least."""
-    found = np.zeros(number.size)
-    for rest in range(teeth):
-        alike = number % teeth == rest
-        known = above_db[alike][np.isfinite(above_db[alike])]
-        if known.size >= FEWEST_ALIKE:
-            found[alike] = max(0.0, float(np.median(known)))
-    return found
-
-
-@dataclass(frozen=True, slots=True)
 class SecondStage:
-    """Teeth on the shaft that both stages share, its name and order, and the comb's score [dB]."""
+    """Teeth on the shaft that both stages share, its name and order; logarithm of the evidence, and without its best.
+
+    The second is what all lines but the best one say.
+    """
 
     shaft: str
     teeth: int
     step: float
-    score_db: float
+    score: float
+    of_others: float
 
     @property
     def order(self) -> float:
@@ -201,57 +103,76 @@ class StageLine:
     line: OwnLine
 
 
-Multiples = Mapping[str, Mapping[str, ShaftMultiples]]
-"""By shaft and channel."""
-
-
-def machine_multiples(channels: Mapping[str, Sequence[OrderRecord]], drive: Drivetrain) -> Multiples:
-    """Return the multiples of all shafts in every channel; a shaft is left out where recordings are too short."""
-    found: dict[str, dict[str, ShaftMultiples]] = {}
-    for shaft in drive.shafts:
-        each = {name: shaft_multiples(records, shaft, drive) for name, records in channels.items()}
-        known = {name: one for name, one in each.items() if one is not None}
-        if known:
-            found[shaft.name] = known
-    return found
-
-
 def second_stage(multiples: Multiples, drive: Drivetrain) -> SecondStage | None:
     """Return the stage that recordings show; None where no comb stands out clearly."""
     steps = {shaft.name: shaft.step for shaft in drive.shafts}
     found = [
-        SecondStage(shaft, count, steps[shaft], score)
+        SecondStage(shaft, count, steps[shaft], score, of_others)
         for shaft, channels in multiples.items()
-        for count, score in _scores(channels.values())
+        for count, score, of_others in _scores(tuple(channels.values()))
+        if score >= LEAST_SCORE and of_others >= LEAST_OF_OTHERS
     ]
-    best = max(found, key=lambda one: one.score_db, default=None)
-    if best is None or best.score_db < LEAST_SCORE:
+    best = max(found, key=lambda one: one.score, default=None)
+    if best is None or any(best.score < LEAD * one.score for one in found if not _same_lines(one, best)):
         return None
-    rivals = [one for one in found if not _same_lines(one, best)]
-    if any(best.score_db < LEAD * one.score_db for one in rivals):
-        return None
+    channels = tuple(multiples[best.shaft].values())
     family = [one for one in found if one.shaft == best.shaft and best.teeth % one.teeth == 0]
-    return min((one for one in family if one.score_db >= DIVISOR_SHARE * best.score_db), key=lambda one: one.teeth)
+    return min((one for one in family if one == best or _shows_others(channels, one, best)), key=lambda one: one.teeth)
 
 
-def _scores(channels: Iterable[ShaftMultiples]) -> list[tuple[int, float]]:
-    """Return teeth and score of every comb of a shaft, from the mean excess over channels."""
-    each = [one.excess_db for one in channels]
-    excess = np.mean([one[: min(map(len, each))] for one in each], axis=0)
-    found = []
+def _shows_others(channels: tuple[ShaftMultiples, ...], one: SecondStage, best: SecondStage) -> bool:
+    """Return whether a comb shows lines that one of a multiple of its teeth has not, which is why that is no better."""
+    numbers = np.array([k for k in range(one.teeth, 2 * best.teeth, one.teeth) if k % best.teeth])
+    lines = np.sum([_likelier(each.excess_db[numbers - 1], _tail_db(each), SHOWN) for each in channels], axis=0)
+    return bool(np.minimum(lines, MOST_OF_ONE).sum() >= LEAST_OF_OTHERS)
+
+
+def _scores(channels: tuple[ShaftMultiples, ...]) -> Iterable[tuple[int, float, float]]:
+    """Yield teeth, score, and score without the best line, of every comb of a shaft."""
+    size = min(one.excess_db.size for one in channels)
     for count in TEETH:
-        lines = excess[count - 1 :: count]
-        lines = lines[np.isfinite(lines)][:COMPARED]
-        found.append((count, float(np.sum(np.clip(lines, 0.0, MOST_DB) - LINE_DB))))
+        numbers = np.arange(count, size, count)[:COMPARED]
+        if numbers.size < 2:
+            return
+        lines, sidebands = np.sum([_evidence(one, numbers) for one in channels], axis=0)
+        each = np.minimum(lines, MOST_OF_ONE) + np.minimum(sidebands, MOST_OF_ONE)
+        yield count, float(each.sum()), float(each.sum() - each.max())
+
+
+def _tail_db(channel: ShaftMultiples) -> float:
+    """Return how fast excesses fall off, from what one in twenty exceeds."""
+    return max(float(np.nanquantile(channel.excess_db, 0.95) / np.log(10.0)), LEAST_TAIL_DB)
+
+
+def _evidence(channel: ShaftMultiples, numbers: np.ndarray) -> np.ndarray:
+    """Return what lines at these multiples and their sidebands say in a channel (2, lines), up to the last shown."""
+    tail_db, line = _tail_db(channel), channel.excess_db[numbers - 1]
+    beside = (np.minimum(channel.excess_db[numbers - 1 + side], line - BELOW_DB) for side in (-1, 1))
+    found = np.array(
+        [_likelier(line, tail_db, SHOWN), np.sum([_likelier(one, tail_db, SIDEBAND_SHOWN) for one in beside], axis=0)]
+    )
+    total = np.cumsum(found.sum(axis=0))
+    last = int(np.argmax(total))
+    found[:, last + 1 if total[last] > 0.0 else 0 :] = 0.0
     return found
 
 
+def _likelier(excess_db: np.ndarray, tail_db: float, shown: float) -> np.ndarray:
+    """Return the logarithm of the likelihood of excesses (k,) with a line that may show, over that without one.
+
+    Without one an excess of either sign falls off as exp(-|e|/tail); 0 where nothing is known.
+    """
+    without = 0.5 / tail_db * np.exp(-np.clip(excess_db, 0.0, SURE_DB) / tail_db)
+    found = np.log(1.0 - shown + np.where(excess_db >= 0.0, shown / LARGEST_DB / without, 0.0))
+    return np.where(np.isfinite(excess_db), found, 0.0)
+
+
 def _same_lines(one: SecondStage, other: SecondStage) -> bool:
-    """Return whether two combs share a third of their lines or more: a few teeth divide both."""
+    """Return whether combs share a third of their lines, or lines of one are sidebands of the other."""
     if one.shaft != other.shaft:
         return False
-    common = gcd(one.teeth, other.teeth)
-    return max(one.teeth, other.teeth) <= 6 * common
+    common, (few, many) = gcd(one.teeth, other.teeth), sorted((one.teeth, other.teeth))
+    return many <= 6 * common or min(many % few, -many % few) <= 1
 
 
 def stage_lines(stage: SecondStage, multiples: ShaftMultiples) -> tuple[StageLine, ...]:

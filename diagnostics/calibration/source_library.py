@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import siggen
 from diagnostics.calibration.order_record import LINE_BINS, LineGroup, turns_of
+from diagnostics.calibration.path_draws import number_limits
 from diagnostics.calibration.rig import Rig
 from siggen.errors import UsageError
+
+SPEED_MARGIN = 1.02
+"""What the speed may vary by within a record."""
+CARRIED_SHARE, SIDEBANDS = 0.39, 8
+"""Of the sampling rate, and orders beside a mesh line: what a configuration asks its rate to carry."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,22 +89,35 @@ def library_configuration(rig: Rig, operating_point: dict[str, Any], fs_hz: floa
     """Return a configuration of healthy gearboxes whose bearing forces are kept, without background and paths."""
     place = rig.forces[0].split("/")[0]
     return {
-        **at_recordings(rig.file, operating_point, fs_hz),
+        **at_recordings(rig, operating_point, fs_hz),
         "background": None,
         "sensors": [{"name": "bearing", "place": place, "bits": None, "range_m_s2": 1e6}],
         "internals": {"quantities": force_columns(rig)},
     }
 
 
-def at_recordings(rig: Path, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
+def at_recordings(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
     """Return a configuration of healthy gearboxes of a rig at the speed, torque and rate of recordings."""
     return {
-        "extends": str(rig.resolve()) if rig.is_file() else str(rig),
+        "extends": str(rig.file.resolve()) if rig.file.is_file() else str(rig.file),
         "name": "sources",
-        "fs_hz": fs_hz,
+        **sampled_as(rig, operating_point, fs_hz),
         "repeats": 1,
         "states": [{"name": "healthy"}],
         "operating_points": [operating_point],
+    }
+
+
+def sampled_as(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
+    """Return the keys of a rig's configuration at another sampling rate: no more mesh harmonics than it carries."""
+    speed_hz = SPEED_MARGIN * number_limits(operating_point["speed_hz"])[1]
+    teeth = max(mesh.order for mesh in rig.drive.meshes)
+    carried = int((CARRIED_SHARE * fs_hz / speed_hz - SIDEBANDS) / teeth)
+    samples = round(rig.config["duration_s"] * fs_hz)
+    return {
+        "fs_hz": fs_hz,
+        "duration_s": samples / fs_hz,
+        "mesh_harmonics": max(1, min(carried, rig.config["mesh_harmonics"])),
     }
 
 

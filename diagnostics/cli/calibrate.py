@@ -134,7 +134,8 @@ def calibrate(
             typer.echo(str(write_injected(blocks, out, per_recording, injection.inject, seed, advance)))
     if page.compared:
         with terminal_stage("records to compare", 2 * page.compared) as advance:
-            typer.echo(str(calibration_page(found, out, judges, (page.compared, seed), advance)))
+            written, sentences = calibration_page(found, out, judges, (page.compared, seed), advance)
+        typer.echo("\n".join([*sentences[:2], str(written)]))
 
 
 def _tell(found: Calibration) -> None:

@@ -31,38 +31,48 @@ def check(
 ) -> None:
     """Say of every recording: unchanged, changed, other load or speed, or cannot tell. No fault is named.
 
-    Writes a page with the trend into the machine's folder. Exit codes: 0 nothing has changed, 4 something has.
+    Writes a page with the trend into the machine's folder. Exit codes: 0 nothing has changed, 4 something has, 2 a file
+    cannot be read.
 
     Example: siggen-diagnostics check rig august.csv september.csv
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
-    from diagnostics.machine.check import CHANGED, add_checks, check_recording, rate_sentence
+    from diagnostics.machine.check import CANNOT_TELL, CHANGED, add_checks, check_recording, rate_sentence
     from diagnostics.machine.machine import load_machine
     from diagnostics.machine.machine_page import write_machine_page
     from diagnostics.recordings.measured_recording import read_recording
-    from siggen.errors import EXIT_MISMATCH
+    from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, UsageError
 
     require_packages("the page of a machine", "matplotlib")
     known = load_machine(machine)
     sources = [source for said in new for source in file_rows(said)]
-    found = []
+    found, unread = [], {}
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:
             facts = replace(known.facts, row=row, fs_hz=fs or known.facts.fs_hz)
             name = path.name if row is None else f"{path.name}:{row}"
-            found.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
+            try:
+                found.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
+            except UsageError as error:
+                unread[name] = str(error)
             advance()
+    if unread and not found:
+        raise UsageError("\n".join(unread.values()))
     if keep:
         add_checks(machine, found)
     if as_json:
-        echo_json({"machine": str(machine), "checks": [asdict(one) for one in found]})
+        echo_json({"machine": str(machine), "checks": [asdict(one) for one in found], "refused": unread})
     else:
         for one in found:
             typer.echo(f"{one.recording}: {one.verdict}: {one.reason}")
+        for name, reason in unread.items():
+            typer.echo(f"{name}: {CANNOT_TELL}: {reason}")
     used = [one.used for one in found if one.score is not None]
     if used:
         typer.echo(rate_sentence(min(used), known.false_alarms), err=True)
     typer.echo(str(write_machine_page(known, machine, found)), err=as_json)
     if any(one.verdict == CHANGED for one in found):
         raise typer.Exit(EXIT_MISMATCH)
+    if unread:
+        raise typer.Exit(EXIT_USAGE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,9 +13,10 @@ from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows
 from diagnostics.cli.set_options import OwnIndicators
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
-from siggen.errors import UsageError
+from siggen.errors import EXIT_USAGE, UsageError
 
 if TYPE_CHECKING:
+    from diagnostics.prediction.prediction import Prediction
     from diagnostics.recordings.measured_recording import RecordingFacts
 
 
@@ -59,6 +61,8 @@ def predict(
 ) -> None:
     """Find the state that each recording is most like, or say why the models give no answer.
 
+    Of several recordings, those that cannot be used are named behind the others; the exit code is then 2.
+
     Example: siggen-diagnostics predict data/quickstart_report run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
     from diagnostics.base.extras import require_packages
@@ -69,13 +73,7 @@ def predict(
     require_packages("prediction", "sklearn", "skops")
     with terminal_stage("reading the models", 1):
         from diagnostics.prediction.prediction import predict_recording
-        from diagnostics.prediction.prediction_page import (
-            MEANING,
-            prediction_facts,
-            prediction_headline,
-            prediction_rows,
-            write_prediction,
-        )
+        from diagnostics.prediction.prediction_page import prediction_facts, write_prediction
         from diagnostics.prediction.released_model import load_model
 
         loaded = load_model(model, load_indicators(indicator))
@@ -87,26 +85,48 @@ def predict(
         for said in healthy.reference or ()
         for path, number in file_rows(said)
     )
-    found = {}
+    found, refused = {}, {}
     with terminal_stage("prediction", len(sources)) as advance:
-        for path, row in sources:
-            read = read_recording(path, names, replace(facts, row=row), units)
-            name = path.name if row is None else f"{path.name}:{row}"
-            found[name] = predict_recording(loaded, read, pair, recording.speed_range_hz(), references)
+        for name, (path, row) in zip(_names(sources), sources, strict=True):
+            try:
+                read = read_recording(path, names, replace(facts, row=row), units)
+                found[name] = predict_recording(loaded, read, pair, recording.speed_range_hz(), references)
+            except UsageError as error:
+                refused[name] = str(error)
             advance()
+    if refused and not found:
+        raise UsageError("\n".join(refused.values()))
     if as_json:
-        echo_json({"predictions": [prediction_facts(one, loaded.facts) for one in found.values()]})
+        told = [prediction_facts(one, loaded.facts) for one in found.values()]
+        echo_json({"predictions": told, "refused": refused})
     else:
+        _tell(found, refused)
+    if out is not None:
         for name, one in found.items():
-            typer.echo(f"{name}: {prediction_headline(one)}")
-            for label, text in prediction_rows(one):
-                typer.echo(f"  {label + ':':21} {text}")
-        typer.echo(MEANING)
-    if out is None:
-        return
+            place = out / name.replace(":", "_").replace("/", "_") if len(sources) > 1 else out
+            typer.echo(str(write_prediction(one, loaded.facts, place)), err=as_json)
+    if refused:
+        raise typer.Exit(EXIT_USAGE)
+
+
+def _tell(found: Mapping[str, Prediction], refused: Mapping[str, str]) -> None:
+    """Print what was found of every recording, first in one line."""
+    from diagnostics.prediction.prediction_page import MEANING, prediction_headline, prediction_rows
+
     for name, one in found.items():
-        place = out / name.replace(":", "_") if len(found) > 1 else out
-        typer.echo(str(write_prediction(one, loaded.facts, place)), err=as_json)
+        typer.echo(f"{name}: {prediction_headline(one)}")
+        for label, text in prediction_rows(one):
+            typer.echo(f"  {label + ':':21} {text}")
+    for name, reason in refused.items():
+        typer.echo(f"{name}: cannot tell: {reason}")
+    typer.echo(MEANING)
+
+
+def _names(sources: Sequence[tuple[Path, int | None]]) -> list[str]:
+    """Return what recordings are called: by their files, by whole paths where two of these have one name."""
+    alike = len({(path.name, row) for path, row in sources}) < len(sources)
+    files = [path.as_posix() if alike else path.name for path, _ in sources]
+    return [file if row is None else f"{file}:{row}" for file, (_, row) in zip(files, sources, strict=True)]
 
 
 def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> tuple[int, int]:

@@ -57,7 +57,7 @@ def own_state(pieces: RecordPieces, references: Sequence[RecordPieces]) -> OwnSt
         Of each healthy recording.
     """
     if len(references) < FEWEST:
-        few = f"{len(references)} healthy recordings; a verdict takes {FEWEST}, and 19 a rate of false alarms of 5 %"
+        few = f"a verdict takes {FEWEST} healthy recordings, one with 5 % of false alarms 19; given: {len(references)}"
         return OwnState(UNTOLD, few)
     healthy = log_values(np.stack([one.medians(pieces.names) for one in references]))
     try:

@@ -230,7 +230,8 @@ def read_numpy(path: Path) -> Columns:
             if array.size > 1:  # a single number is a note, such as the rate, not a signal
                 values |= numbered(array, name)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        why = "it holds objects, or is no NumPy file" if "pickle" in str(error) else error
         raise UsageError(
-            f"{path}: cannot be read as arrays of numbers ({error}); save float arrays with numpy.save or numpy.savez"
+            f"{path}: cannot be read as arrays of numbers ({why}); save float arrays with numpy.save or numpy.savez"
         ) from error
     return Columns(values)

@@ -59,7 +59,7 @@ def before_and_after(folder: Path, changes: dict[str, Any]) -> tuple[Likeness, L
     found = calibrated(read_rig(rig), fitted, None, GEARBOXES, PATHS, 0, lambda: None)
     write_calibration(found, mine)
     real = sample_of(blocks.blocks[FITTED:], TEETH)
-    sources = (at_recordings(rig, found.operating_point, FS_HZ), mine)
+    sources = (at_recordings(found.rig, found.operating_point, FS_HZ), mine)
     each = [simulated_blocks(source, CHANNELS, GEARBOXES, lambda: None) for source in sources]
     before, after = (likeness(real, sample_of(one, TEETH), 0) for one in each)
     return before, after

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import siggen
+from diagnostics.calibration.drivetrain import pair
 from diagnostics.calibration.order_record import HIGHEST_SHARE, group_levels, line_groups, order_record
 from diagnostics.indicators.record import record_values
 from diagnostics.training.referenced import log_values
@@ -31,7 +32,7 @@ STATES = [
     {"name": "through", "severity": "severe", "damage": {**SPALL, "profile_length_mm": 0.6, "face_share": 1.0}},
 ]
 SMALL = {"name": "small", "severity": "slight", "damage": {**SPALL, "profile_length_mm": 0.6, "face_share": 0.25}}
-"""Of the test records only, for `transfer_control.py`: what `siggen init` calls slight."""
+"""Of the test records only, for `check_hidden_machines.py`: what `siggen init` calls slight."""
 REFERENCES, TEST_HEALTHY, TEST_DAMAGED = 3, 18, 6
 GEARBOXES = 8
 
@@ -185,8 +186,8 @@ def _own_records(raw: dict[str, Any]) -> list[tuple[str, Any]]:
 def true_levels(healthy: Sequence[Any], channel: int) -> dict[str, float]:
     """Return the mean level [dB] of every group of lines and of the noise over records; lines to a common order."""
     signals = [(list(one.channels.values())[channel].astype(float), np.asarray(one.tacho_s)) for one in healthy]
-    spectra = [order_record(signal, FS_HZ, pulses, TEETH) for signal, pulses in signals]
-    groups = line_groups(TEETH, HIGHEST_SHARE * FS_HZ / max(one.speed_hz for one in spectra))
+    spectra = [order_record(signal, FS_HZ, pulses, pair(TEETH)) for signal, pulses in signals]
+    groups = line_groups(pair(TEETH), HIGHEST_SHARE * FS_HZ / max(one.speed_hz for one in spectra))
     energy = np.array([group_levels(one, groups)[0] for one in spectra])
     levels = dict(zip((g.name for g in groups), (10.0 * np.log10(energy)).mean(axis=0).tolist(), strict=True))
     return {**levels, "noise": float(np.mean([10.0 * np.log10(one.floor.sum()) for one in spectra]))}

@@ -48,7 +48,7 @@ def detector_auc(training: Table, test: Table) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def user(folder: Path, files: Sequence[Path]) -> tuple[Path, Path, float]:
+def user(folder: Path, files: Sequence[Path], library: int = LIBRARY) -> tuple[Path, Path, float]:
     """Do what the user does: a rig from the drawing, a calibration; return both files and the CPU time [s]."""
     rig, mine = folder / "rig.yaml", folder / "mine.yaml"
     if not rig.exists():
@@ -62,7 +62,7 @@ def user(folder: Path, files: Sequence[Path]) -> tuple[Path, Path, float]:
             "--fs",
             "25600",
             "--gearboxes",
-            str(LIBRARY),
+            str(library),
             "--compared",
             "0",
             "--out",

@@ -43,6 +43,9 @@ class RigNumbers:
             help="Shaft diameters of pinion and gear; else for what the gears are rated for.",
         ),
     ] = ""
+    fs: Annotated[
+        str, typer.Option("--fs", metavar="HZ", help="Sampling rate of your recordings; else ten mesh harmonics'.")
+    ] = ""
 
 
 @grouped

@@ -83,6 +83,11 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
         yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
 
 
+def carried_mesh_harmonics(fs_hz: float, teeth: float, speed_hz: float) -> int:
+    """Return how many mesh harmonics of so many teeth per turn a sampling rate carries with their sidebands."""
+    return math.floor((fs_hz / (SAMPLES_PER_PERIOD * speed_hz) - SIDEBANDS) / teeth)
+
+
 WITH_BEARINGS = "6dof, 8dof, casing"
 OF_BEARINGS = re.compile(r"dynamics\.(pinion|gear)\.bearing")
 AT_BEARINGS = ("rubbing", "bearings", "machines", "shafts", "belt")

@@ -16,6 +16,7 @@ LIMITS = {
     "torque": (0.01, 1e6, "N m, on the pinion"),
     "bores": (1.0, 1000.0, "mm, diameters"),
     "pressure-angle": (14.5, 30.0, "degrees"),
+    "fs": (100.0, 1e7, "Hz"),
 }
 """Smallest, largest and unit of what `siggen init` takes."""
 LARGEST_SENSORS = 8
@@ -36,6 +37,8 @@ class Rig:
         Diameters of the bores, which are those of the shafts; None: from the torque.
     accuracy_classes : tuple of int
         Flank tolerance classes of ISO 1328-1, equally likely for each gear.
+    fs_hz : float or None
+        Sampling rate; None: what carries ten mesh harmonics.
     """
 
     teeth: tuple[int, int]
@@ -47,6 +50,7 @@ class Rig:
     pressure_angle_deg: float = 20.0
     bores_mm: Pair | None = None
     accuracy_classes: tuple[int, ...] = (5, 6, 7)
+    fs_hz: float | None = None
 
     @property
     def hunting_turns(self) -> int:
@@ -69,6 +73,7 @@ def checked_rig(rig: Rig) -> Rig:
         "torque": rig.torque_nm,
         "bores": rig.bores_mm or (),
         "pressure-angle": (rig.pressure_angle_deg,),
+        "fs": () if rig.fs_hz is None else (rig.fs_hz,),
     }
     for name, values in given.items():
         low, high, unit = LIMITS[name]

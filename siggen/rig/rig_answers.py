@@ -48,7 +48,8 @@ def rig_of(
     Parameters
     ----------
     answers : mapping
-        Option of `siggen init`, without dashes -> what was written; `face-width`, `torque` and `bores` may be empty.
+        Option of `siggen init`, without dashes -> what was written; `face-width`, `torque`, `bores` and `fs` may be
+        empty.
 
     Raises
     ------
@@ -68,8 +69,9 @@ def rig_of(
             f"{width_mm:g} mm, {FACE_OVER_MODULE:g} modules (usual: 8 to 16; Norton, Machine Design)"
         )
     rig = Rig(teeth, module_mm, width_mm, _speeds(answers["speed"]), (1.0, 1.0), sensors, pressure_angle_deg)
-    bores = answers.get("bores", "")
-    rig = checked_rig(replace(rig, bores_mm=_two("bores", bores) if bores else None))
+    bores, fs = answers.get("bores", ""), answers.get("fs", "")
+    rig = replace(rig, bores_mm=_two("bores", bores) if bores else None, fs_hz=_one("fs", fs) if fs else None)
+    rig = checked_rig(rig)
     torque = answers.get("torque", "")
     if not torque:
         rated = float(f"{rated_torque_nm(teeth, module_mm, width_mm, pressure_angle_deg):.3g}")

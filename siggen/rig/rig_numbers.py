@@ -9,10 +9,13 @@ from __future__ import annotations
 from math import ceil, cos, pi, radians, sqrt
 from typing import NamedTuple
 
-from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS
+from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
+from siggen.errors import UsageError
 from siggen.rig.rig import Pair, Rig
 from siggen.rig.shafts import Shaft, shafts
 
+MESH_HARMONICS, SPEED_MARGIN = 10, 1.02
+"""Carried where no sampling rate is given, at a speed that varies so much."""
 STEEL_DENSITY_KG_M3 = 7850.0
 RUNNING_IN_UM = 2.0
 """Relief by running in alone, C_ay of ISO 6336-1 for steel of 1500 N/mm²; the other end is the deflection."""
@@ -34,7 +37,8 @@ class RotorNumbers(NamedTuple):
 class RigNumbers(NamedTuple):
     """What `rig_text` writes; stiffnesses and dampings of couplings belong to input and output.
 
-    `load_share` is the largest tooth force over that of bench, `scale` the same of the centre distance.
+    `load_share` is the largest tooth force over that of bench, `scale` the same of the centre distance;
+    `mesh_harmonics` are what the sampling rate carries, ten at most.
     """
 
     rotors: tuple[RotorNumbers, RotorNumbers]
@@ -46,6 +50,7 @@ class RigNumbers(NamedTuple):
     load_share: float
     tip_relief_um: Pair
     fs_hz: float
+    mesh_harmonics: int
     duration_s: float
 
 
@@ -72,9 +77,27 @@ def rig_numbers(rig: Rig) -> RigNumbers:
         scale,
         force_n / BENCH_FORCE_N,
         (relief[0], relief[1]),
-        sampling_rate_hz(rig),
-        duration_s(rig),
+        *_sampling(rig),
     )
+
+
+def _sampling(rig: Rig) -> tuple[float, int, float]:
+    """Return rate, mesh harmonics that it carries, and duration in whole samples.
+
+    Raises
+    ------
+    UsageError
+        If the rate that was given carries no mesh line.
+    """
+    rate = rig.fs_hz or sampling_rate_hz(rig)
+    carried = carried_mesh_harmonics(rate, rig.teeth[0], rig.speed_hz[1] * SPEED_MARGIN)
+    if carried < 1:
+        needed = SAMPLES_PER_PERIOD * (rig.teeth[0] + SIDEBANDS) * rig.speed_hz[1] * SPEED_MARGIN
+        raise UsageError(
+            f"--fs: received {rate:g}; allowed: at least {needed:.0f} Hz, for the first mesh line with its sidebands "
+            f"at {rig.speed_hz[1]:g} Hz"
+        )
+    return rate, min(carried, MESH_HARMONICS), ceil(duration_s(rig) * rate * (1.0 - 1e-9)) / rate
 
 
 def single_stiffness_n_um_mm(teeth: tuple[int, int]) -> float:
@@ -84,7 +107,7 @@ def single_stiffness_n_um_mm(teeth: tuple[int, int]) -> float:
 
 def sampling_rate_hz(rig: Rig) -> float:
     """Return the least of 25.6, 51.2, ... kHz that carries ten mesh harmonics with their sidebands [Hz]."""
-    needed = SAMPLES_PER_PERIOD * (10.0 * rig.teeth[0] + SIDEBANDS) * rig.speed_hz[1] * 1.02
+    needed = SAMPLES_PER_PERIOD * (MESH_HARMONICS * rig.teeth[0] + SIDEBANDS) * rig.speed_hz[1] * SPEED_MARGIN
     rate = 25_600.0
     while rate < needed:
         rate *= 2.0

@@ -50,13 +50,21 @@ def _head(rig: Rig, name: str, base: str, numbers: RigNumbers, why: Mapping[str,
 name: {_quoted(name)}
 extends: {base}
 specimens: 40                 # gearboxes; more only add records
-fs_hz: {numbers.fs_hz:g}              # carries ten mesh harmonics
-duration_s: {numbers.duration_s:g}               # {whole} at {rig.speed_hz[0]:g} Hz
+{_sampling(rig, numbers)}
+duration_s: {_exact(numbers.duration_s)}               # {whole} at {rig.speed_hz[0]:g} Hz
 
 operating_points:
   - speed_hz: {_given_range(rig.speed_hz)}             # of the pinion
     torque_nm: {_given_range(rig.torque_nm)}            # on the pinion{_proposed(why, "torque")}
 """
+
+
+def _sampling(rig: Rig, numbers: RigNumbers) -> str:
+    """Return the sampling rate; with the mesh harmonics that it carries, if it was given."""
+    rate = f"fs_hz: {_exact(numbers.fs_hz)}              # "
+    if rig.fs_hz is None:
+        return rate + "carries ten mesh harmonics"
+    return f"{rate}as given\nmesh_harmonics: {numbers.mesh_harmonics}            # what it carries, ten at most"
 
 
 def _gears(rig: Rig, numbers: RigNumbers, why: Mapping[str, str]) -> str:

@@ -108,6 +108,17 @@ def test_a_speed_in_rpm_is_that_in_hz_and_face_width_and_torque_are_proposed(tmp
     assert "proposed: 12 mm" in file.read_text()
 
 
+def test_the_rate_of_recordings_is_taken_with_the_mesh_harmonics_that_it_carries(tmp_path: Path) -> None:
+    # 12,800 Hz carry 200 orders of 25 Hz: seven of 25 teeth, the speed's variation and 8 sidebands beside them
+    for rate, harmonics in {"12800": 7, "48828.125": 10}.items():
+        file = tmp_path / f"{rate}.yaml"
+        assert run(*RIGS["25/56"], "--fs", rate, "--out", str(file)).exit_code == 0
+        config = load_config(file)
+        assert (config.fs_hz, config.mesh_harmonics) == (float(rate), harmonics)
+    with pytest.raises(UsageError, match="--fs: received 1000; allowed: at least 2154 Hz, for the first mesh line"):
+        run(*RIGS["25/56"], "--fs", "1000", "--out", str(tmp_path / "slow.yaml"))
+
+
 def test_all_missing_options_are_said_at_once(tmp_path: Path) -> None:
     made = fresh("--module", "2", "--out", str(tmp_path / "rig.yaml"))
     assert made.returncode == 2

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import decimate
 from typer.testing import CliRunner
 
 import siggen
@@ -52,7 +53,8 @@ def calibrated(recordings: list[Path]) -> tuple[Path, Path, str]:
     made = CliRunner().invoke(siggen_app, ["init", *drawing, "--out", str(rig)], catch_exceptions=False)
     assert made.exit_code == 0, made.output
     said = ["calibrate", str(rig), *map(str, recordings[:3]), "--fs", "25600", "--tacho", "tacho"]
-    options = ["--gearboxes", "3", "--paths", "6", "--out", str(mine)]
+    judged = ["--held-out", str(recordings[3]), "--compared", "3"]
+    options = ["--gearboxes", "3", "--paths", "6", *judged, "--out", str(mine)]
     result = CliRunner().invoke(app, [*said, *options], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return rig, mine, result.output
@@ -80,7 +82,26 @@ def test_what_was_fitted_and_what_was_not_is_written_down(calibrated: tuple[Path
     assert "27 teeth on the gear's shaft" in said
     assert any("path and source" in text for text in facts["not_identified"])
     assert "path and source" in said
+    assert "intervals of 90 % hold their mean" in said
     assert "background: null" in mine.read_text()
+
+
+def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
+    recordings: list[Path], calibrated: tuple[Path, Path, str], tmp_path: Path
+) -> None:
+    slow = []
+    for file in recordings[:3]:
+        columns = np.loadtxt(file, delimiter=",", skiprows=1)
+        slow.append(tmp_path / f"{file.stem}.npz")
+        halved = np.stack([*decimate(columns[:, :2], 2, axis=0).T, columns[::2, 2]])
+        np.savez(slow[-1], **dict(zip(("ch1", "ch2", "tacho"), halved, strict=True)))
+    said = ["calibrate", str(calibrated[0]), *map(str, slow), "--fs", "12800", "--tacho", "tacho"]
+    few = ["--gearboxes", "2", "--paths", "2", "--compared", "0", "--out", str(tmp_path / "slow.yaml")]
+    result = CliRunner().invoke(app, [*said, *few], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    config = siggen.load_config(tmp_path / "slow.yaml")
+    # 12,800 Hz over 2.56 carry 5,000 Hz: seven harmonics of 18 teeth at 35 Hz
+    assert (config.fs_hz, config.mesh_harmonics) == (12_800.0, 7)
 
 
 def test_every_gearbox_of_the_set_draws_its_own_path(calibrated: tuple[Path, Path, str]) -> None:

@@ -9,7 +9,8 @@ import pytest
 
 from diagnostics.calibration.drivetrain import pair
 from diagnostics.calibration.order_record import OrderRecord, line_groups, order_record
-from diagnostics.calibration.second_stage import machine_multiples, second_stage, stage_lines, wave_lines
+from diagnostics.calibration.second_stage import second_stage, stage_lines, wave_lines
+from diagnostics.calibration.shaft_multiples import machine_multiples
 
 FS_HZ, SAMPLES = 12_800.0, 25_600
 HIGHEST_ORDER = 170.0
@@ -18,10 +19,13 @@ SPEEDS_HZ = (30.0, 31.3, 32.9)
 Comb = tuple[str, int, float]
 
 
-def records(seed: int, teeth: tuple[int, int], comb: Comb | None) -> dict[str, list[OrderRecord]]:
+def records(
+    seed: int, teeth: tuple[int, int], comb: Comb | None, resonant_order: float = 0.0
+) -> dict[str, list[OrderRecord]]:
     """Return two channels of three recordings: mesh lines, errors at all orders of both shafts, noise, a comb or none.
 
-    A comb has its shaft, teeth and the amplitude of its first line; its h-th has that over h.
+    A comb has its shaft, teeth and the amplitude of its first line; its h-th has that over h. A resonance of 2 % of
+    damping lifts what passes it, but not the noise.
     """
     rng = np.random.default_rng(seed)
     found = {}
@@ -37,7 +41,8 @@ def records(seed: int, teeth: tuple[int, int], comb: Comb | None) -> dict[str, l
                 phasors[lines] += (
                     comb[2] * comb[1] / number[lines] * np.exp(2j * np.pi * rng.random(number[lines].size))
                 )
-            shafts.append((step, phasors))
+            ratio = number * step / resonant_order if resonant_order else np.zeros(number.size)
+            shafts.append((step, phasors / (1.0 - ratio**2 + 0.04j * ratio)))
         found[channel] = [_record(speed, shafts, teeth, rng) for speed in SPEEDS_HZ]
     return found
 
@@ -77,6 +82,26 @@ def test_shaft_teeth_and_levels_of_a_stage_are_found_again(teeth: tuple[int, int
 def test_errors_of_the_teeth_pass_for_no_stage(teeth: tuple[int, int]) -> None:
     for seed in range(10, 16):
         assert second_stage(machine_multiples(records(seed, teeth, None), pair(teeth)), pair(teeth)) is None
+
+
+def test_a_stage_whose_three_lines_one_channel_shows_is_found() -> None:
+    teeth, step = (18, 47), 18 / 47
+    # 29, 23 and 20 dB over the errors of the teeth; its other lines and the other channel show nothing
+    comb = np.zeros(3 * 25)
+    comb[24::25] = 1.0, 0.5, 0.35
+    channels, rng = records(7, teeth, None), np.random.default_rng(8)
+    lines = [_record(speed, [(step, comb)], teeth, rng) for speed in SPEEDS_HZ]
+    channels["one"] = [replace(one, power=one.power + w.power) for one, w in zip(channels["one"], lines, strict=True)]
+    found = second_stage(machine_multiples(channels, pair(teeth)), pair(teeth))
+    assert found is not None
+    assert (found.shaft, found.teeth) == ("gear", 25)
+
+
+@pytest.mark.parametrize("resonant_order", [12.1, 13.0, 31.4])
+def test_a_resonance_of_the_housing_is_no_stage(resonant_order: float) -> None:
+    for seed in range(20, 24):
+        channels = records(seed, (18, 47), None, resonant_order)
+        assert second_stage(machine_multiples(channels, pair((18, 47))), pair((18, 47))) is None
 
 
 def test_a_stage_among_the_errors_is_not_named() -> None:

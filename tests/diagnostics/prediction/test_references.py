@@ -185,13 +185,13 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
 def test_several_recordings_are_answered_each_in_its_first_line_and_folder(
     trained: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder, file = trained
-    predict(monkeypatch, folder, f"{file}:2,3", tmp_path, "--reference", f"{file}:0")
-    said = [line for line in capsys.readouterr().out.splitlines() if line.startswith(file.name)]
-    assert all(
-        f"{k}: " in line and state in line for k, state, line in zip("23", ("severe", "healthy"), said, strict=True)
-    )
-    assert {path.name for path in tmp_path.iterdir()} == {f"{file.name}_2", f"{file.name}_3"}
+    (folder, file), out = trained, tmp_path / "out"
+    (broken := tmp_path / "broken.npz").write_bytes(b"no archive")
+    code, _ = predict(monkeypatch, folder, f"{file}:2,3", out, str(broken), "--reference", f"{file}:0")
+    assert code == 2  # of one that cannot be read
+    said = [line for line in capsys.readouterr().out.splitlines() if line.startswith((file.name, broken.name))]
+    assert all(word in line for word, line in zip(("severe", "healthy", "cannot tell"), said, strict=True))
+    assert {path.name for path in out.iterdir()} == {f"{file.name}_2", f"{file.name}_3"}
 
 
 def test_a_reference_is_judged_against_none_on_the_records_that_have_one(training: Training) -> None:
