@@ -9,12 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from diagnostics.audit.finding import must_not_tell
-from diagnostics.audit.label_digits import digit_columns
+from diagnostics.audit.label_digits import digit_columns, zero_signs
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.noise_excess import noise_excess
 from diagnostics.audit.text_columns import text_columns
 from diagnostics.indicators.background_levels import NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
+from siggen.keys.column import Role
 
 METADATA, TEXTS, BYTE, ORDER, NOISE, CHANNELS = "metadata", "texts", "bytes", "order", "noise", "channels"
 STEADY_BYTES = BYTES[:2]
@@ -38,7 +39,7 @@ def condition_layers(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, tuple
     noise = {name: measured.values[name] for name in steady_noise(measured)}
     return {
         METADATA: _stacked(_metadata(measured)),
-        ORDER: _stacked({"place in the files": np.arange(len(measured.healthy)) / max(len(measured.healthy), 1)}),
+        ORDER: _stacked(_order(measured)),
         BYTE: _stacked(_bytes(measured)),
         NOISE: _stacked({name: _mean(values) for name, values in noise.items()}),
         CHANNELS: _stacked(_between_channels(noise, measured.channels)),
@@ -74,6 +75,19 @@ def steady_noise(measured: MeasuredSet) -> tuple[str, ...]:
     return tuple(name for name in STEADY_NOISE if name in measured.values)
 
 
+def _order(measured: MeasuredSet) -> dict[str, np.ndarray]:
+    """Return the place of every record among all, and among those of its split, as shares."""
+    every = np.arange(len(measured.healthy))
+    found = {"place in the files": every / max(every.size, 1)}
+    if "split" in measured.labels:
+        of_split = np.zeros(every.size)
+        for split in dict.fromkeys(measured.labels["split"].tolist()):
+            rows = np.flatnonzero(measured.labels["split"] == split)
+            of_split[rows] = np.arange(rows.size) / rows.size
+        found["place in the files of its split"] = of_split
+    return found
+
+
 def _bytes(measured: MeasuredSet) -> dict[str, np.ndarray]:
     """Return means over the channels; step and odd mantissas of each channel besides, which no clipping moves."""
     held = {name: measured.values[name] for name in BYTES if name in measured.values}
@@ -100,6 +114,8 @@ def _texts(measured: MeasuredSet) -> dict[str, np.ndarray]:
             found |= text_columns(name, values)
         if values.ndim == 1 and values.dtype.kind == "f" and must_not_tell(measured.roles, name):
             found |= digit_columns(name, values)
+        if values.ndim == 1 and values.dtype.kind == "f" and measured.roles.get(name) == Role.MEASURED:
+            found |= zero_signs(name, values)  # damage moves a measured number, but not how zero is written
     return found
 
 
@@ -120,7 +136,7 @@ def _beside_labels(labels: dict[str, np.ndarray], pulses: dict[str, np.ndarray])
         found["speed of the pulses over its label"] = pulses["pulses_per_s"] / labels["speed_hz"] - 1.0
     if "start_angle_rad" in labels and "start_turn" in pulses:
         apart = pulses["start_turn"] - labels["start_angle_rad"] / (2.0 * np.pi)
-        found["start by the pulses less its label"] = (apart + 0.5) % 1.0 - 0.5
+        found["distance of the start by the pulses from its label"] = np.abs((apart + 0.5) % 1.0 - 0.5)
     return found
 
 

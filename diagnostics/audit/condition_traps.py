@@ -12,7 +12,7 @@ record of the same gearbox.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -36,8 +36,12 @@ from diagnostics.audit.held_out import Attacker, HeldOut, dealt_folds, held_out,
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 from diagnostics.audit.raw_columns import CLOCK, EDGES, ENDS, LINES, OFFSETS, STORED
 from diagnostics.audit.small_damage import LEVELS, small_damage_attackers
+from diagnostics.audit.state_ties import unchanged
 from diagnostics.audit.time_templates import TEMPLATES, template_attackers
 from diagnostics.records.planetary_members import is_planetary
+
+OF_TEETH = frozenset({NOISE, CHANNELS, ENDS, LINES, LAGS, LEVELS})
+"""Layers that single damaged teeth cannot move, and other faults can."""
 
 PERMUTATIONS = 99
 """For every damaged state."""
@@ -86,7 +90,22 @@ def condition_attackers(measured: MeasuredSet) -> dict[str, list[Attacker]]:
     if has_reference:
         found[LEVELS] = small_damage_attackers(measured, reference)
     found[TEMPLATES] = template_attackers(measured.raw.templates)
+    asked = measured.healthy | of_single_teeth(measured)
+    for layer in OF_TEETH & found.keys():
+        found[layer] = [replace(attacker, usable=attacker.usable & asked) for attacker in found[layer]]
     return {layer: attackers for layer, attackers in found.items() if attackers}
+
+
+def of_single_teeth(measured: MeasuredSet) -> np.ndarray:
+    """Return which records (records,) show damaged single teeth in an unchanged machine; all if a set does not say.
+
+    A bearing hums by itself, worn flanks move every mesh line, and a changed machine or sensor differs on purpose.
+    """
+    teeth = [values for name, values in measured.labels.items() if name.startswith("faulty_teeth")]
+    if not teeth:
+        return np.ones(len(measured.healthy), dtype=bool)
+    listed = np.array([[len(row) > 0 for row in values] for values in teeth]).any(axis=0)
+    return np.asarray(listed & unchanged(measured))
 
 
 def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Attacker]:

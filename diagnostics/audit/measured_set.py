@@ -181,7 +181,7 @@ def measured_set(
     table = record_table(dataset, own=own, advance=advance)
     check_table(table, dataset)
     labels = {name: _array(column) for name, column in _scalar_labels(dataset).items()}
-    labels |= noted_records(dataset.labels().schema, labels["record_id"])
+    labels |= noted_records((dataset.labels(split).schema for split in dataset.splits), labels["record_id"])
     if not np.array_equal(table.labels()["record_id"], labels["record_id"]):
         raise DatasetError(f"{dataset.path}: labels and signals are not in the same order; `siggen verify` names why")
     indicators = _indicators(table)

@@ -6,7 +6,7 @@ A program that writes tables may leave there which records it treated. siggen's 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import pyarrow as pa
@@ -16,16 +16,18 @@ FEWEST = 2
 """Ids in a text from which it counts; one number may be anything."""
 
 
-def noted_records(schema: pa.Schema, record_id: np.ndarray) -> dict[str, np.ndarray]:
+def noted_records(schemas: Iterable[pa.Schema], record_id: np.ndarray) -> dict[str, np.ndarray]:
     """Return which records (records,) each text of the metadata names, (records,) bool by the text's place.
 
     Parameters
     ----------
-    schema : pyarrow.Schema
-        Of the labels.
+    schemas : iterable of pyarrow.Schema
+        Of the labels of every split; texts of one place are taken together.
     record_id : (records,) int
     """
-    found = {place: np.isin(record_id, _numbers(text)) for place, text in _texts(schema)}
+    found: dict[str, np.ndarray] = {}
+    for place, text in (entry for schema in schemas for entry in _texts(schema)):
+        found[place] = found.get(place, False) | np.isin(record_id, _numbers(text))
     return {place: named for place, named in found.items() if FEWEST <= named.sum() < named.size}
 
 

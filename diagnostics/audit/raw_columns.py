@@ -13,12 +13,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diagnostics.audit.mesh_clock import clock_drift, mesh_fractions, pulse_roughness
+from diagnostics.audit.mesh_clock import clock_drift, pulse_roughness
 from diagnostics.audit.quiet_ends import quiet_ends
 from diagnostics.audit.raw_edges import edge_ranks, offsets
 from diagnostics.audit.raw_lines import line_columns, line_contrast, shaft_rates_hz
 from diagnostics.audit.stored_samples import sample_marks, stored_numbers, without_ends
-from diagnostics.audit.time_templates import level_course, template_product, whitened_codes
+from diagnostics.audit.time_templates import level_course, template_products, whitened_codes
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.recording import Recording
 
@@ -84,12 +84,8 @@ def raw_columns(records: Iterable[Recording]) -> RawColumns:
         return RawColumns()
     layers = {layer: _columns([one.layers[layer] for one in found]) for layer in found[0].layers}
     layers[STORED] = without_ends(layers[STORED])
-    layers[LINES] = line_columns([one.lines for one in found]) | _of_all_records(layers[LINES])
-    courses = np.stack([one.course for one in found]).astype(np.float64)
-    templates = {
-        "spectra": template_product([one.codes for one in found]),
-        "courses of the level": courses @ courses.T,
-    }
+    layers[LINES] = line_columns([one.lines for one in found])
+    templates = template_products([one.codes for one in found], [one.course for one in found])
     return RawColumns(layers, _columns([one.levels for one in found]), [one.marks for one in found], fs_hz, templates)
 
 
@@ -97,15 +93,9 @@ def _raw_record(record: Recording) -> _RawRecord:
     held = {name: np.asarray(signal, dtype=np.float64) for name, signal in record.channels.items()}
     rates, teeth = shaft_rates_hz(record), int(record.labels["teeth_pinion"])
     accelerations = {name: x for name, x in held.items() if _is_acceleration(record, name)}
-    fractions = {
-        f"line of {name} at {part:g} times the mesh frequency": contrast
-        for name, x in held.items()
-        for part, contrast in (mesh_fractions(x, record.fs_hz, rates[0], teeth) if rates else {}).items()
-    }
     layers = {
         EDGES: {f"{what} of {name}": rank for name, x in held.items() for what, rank in edge_ranks(x).items()},
         OFFSETS: {f"{what} of {name}": v for name, x in accelerations.items() for what, v in offsets(x).items()},
-        LINES: fractions,
         STORED: {f"{what} of {name}": v for name, x in held.items() for what, v in stored_numbers(x).items()},
         ENDS: quiet_ends(held, record.fs_hz),
         CLOCK: {
@@ -121,11 +111,6 @@ def _raw_record(record: Recording) -> _RawRecord:
         np.concatenate([whitened_codes(x) for x in held.values()]),
         np.concatenate([level_course(x) for x in held.values()]),
     )
-
-
-def _of_all_records(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return columns that every record has."""
-    return {name: values for name, values in columns.items() if np.isfinite(values).all()}
 
 
 def _is_acceleration(record: Recording, channel: str) -> bool:

@@ -2,7 +2,7 @@
 
 * Repeats: neighbours that are equal, beside those that differ by one to three steps of the converter. Where a signal
   crosses steps at all, small differences are equally frequent, however strong it is.
-* Tops: samples that are as large as the largest. A converter's end does not count: several records reach it.
+* Tops: samples as large as the largest, to a step of the converter. Its end does not count: several records reach it.
 * Ends: rank of the first and the last difference among all of the record.
 * Marks: runs around large samples, by which two records that share them bit by bit are found, wherever they stand.
 
@@ -30,9 +30,11 @@ def stored_numbers(signal: np.ndarray) -> dict[str, float]:
     if signal.size < 3:
         return {}
     size, apart = np.abs(signal), np.abs(np.diff(signal))
+    step = apart[apart > 0.0].min(initial=np.inf)
+    near = 1.5 * step if np.isfinite(step) else 0.0
     return {
         "repeats": repeats_beyond_chance(apart),
-        "samples as large as the largest": float(np.sum(size == size.max())),
+        "samples as large as the largest": float(np.sum(size >= size.max() - near)),
         "first difference": _rank(apart),
         "last difference": _rank(apart[::-1]),
         TOP: float(size.max()),

@@ -1,11 +1,14 @@
 """What is alike in records at the same time after their first sample: fixed tones, one stretch of noise, swings.
 
 Records start at a random angle, so on the average over records a machine adds nothing to a sample, however damaged. A
-spectrum is divided by its own floor, since strong lines would hide what is alike, and cut where lines stand out. The
-course of the level is the power of 64 parts of the record in decibels, less their mean. Source: derived.
+spectrum is divided by its own floor, since strong lines would hide what is alike, and cut where lines stand out. Four
+parts of it, of two octaves each but the lowest, are products of their own: one tone is lost among all lines. The course
+of the level is the power of 64 parts of the record in decibels, less their mean. Source: derived.
 """
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 
@@ -17,12 +20,15 @@ SAMPLES, AROUND = 16384, 32
 LARGEST, CODES = 4.0, 31.0
 """Times its floor up to which a line counts, and codes per floor: a byte holds them."""
 
-PARTS, COLUMNS = 64, 4096
+PARTS = 64
+BANDS = (0, 1 / 64, 1 / 16, 1 / 4, 1)
+"""Edges of the parts of a spectrum, in shares of half the rate."""
+
 TINY = 1e-30
 
 
 def whitened_codes(signal: np.ndarray) -> np.ndarray:
-    """Return the spectrum of the first samples (n,) over its floor, real and imaginary part, (k,) int8."""
+    """Return the spectrum of the first samples (n,) over its floor, real and imaginary part, (2, k) int8."""
     from scipy import fft
 
     piece = signal[:SAMPLES]
@@ -31,7 +37,7 @@ def whitened_codes(signal: np.ndarray) -> np.ndarray:
     floor = np.sqrt(np.median(np.square(np.abs(lines)), axis=1, keepdims=True) / np.log(2.0)) + TINY
     over = lines / floor
     over /= np.maximum(np.abs(over) / LARGEST, 1.0)
-    return np.round(CODES * np.stack([over.real, over.imag])).astype(np.int8).ravel()
+    return np.round(CODES * np.stack([over.real, over.imag])).astype(np.int8).reshape(2, -1)
 
 
 def level_course(signal: np.ndarray) -> np.ndarray:
@@ -44,16 +50,24 @@ def level_course(signal: np.ndarray) -> np.ndarray:
     return np.asarray(decibels - decibels.mean(), dtype=np.float32)
 
 
-def template_product(codes: list[np.ndarray]) -> np.ndarray:
-    """Return the products of all pairs of records, (records, records); zero for records of another length."""
-    size = max((row.size for row in codes), default=0)
-    rows = np.flatnonzero([row.size == size for row in codes])
-    every = np.stack([codes[row] for row in rows.tolist()]) if rows.size else np.zeros((0, 0), np.int8)
-    found = np.zeros((len(codes), len(codes)))
-    for start in range(0, size, COLUMNS):
-        part = every[:, start : start + COLUMNS].astype(np.float32) / np.float32(CODES)
-        found[np.ix_(rows, rows)] += (part @ part.T).astype(np.float64)
-    return found / max(size, 1)
+def template_products(codes: list[np.ndarray], courses: list[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the products of all pairs of records, (records, records), by what they are of.
+
+    Parameters
+    ----------
+    codes : (records) of (2 channels, k) int8
+        Zero is put for records that are shorter than the longest.
+    courses : (records) of (channels * 64,) float32
+    """
+    size, found = max(row.shape[1] for row in codes), {}
+    rows = np.flatnonzero([row.shape[1] == size for row in codes])
+    for low, high in pairwise(round(edge * size) for edge in BANDS):
+        part = np.stack([codes[row][:, low:high].ravel() for row in rows.tolist()]).astype(np.float32) / CODES
+        product = np.zeros((len(codes), len(codes)))
+        product[np.ix_(rows, rows)] = part @ part.T / max(part.shape[1], 1)
+        found[f"spectra, lines {low} to {high}"] = product
+    every = np.stack(courses).astype(np.float64)
+    return {**found, "courses of the level": every @ every.T}
 
 
 def template_attackers(products: dict[str, np.ndarray]) -> list[Attacker]:

@@ -6,9 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
-from importlib.abc import MetaPathFinder
 from importlib.util import find_spec
-from types import ModuleType
 from typing import ParamSpec, TypeVar
 
 Parameters = ParamSpec("Parameters")
@@ -23,14 +21,14 @@ def single_thread(function: Callable[Parameters, Result]) -> Callable[Parameters
         import sklearn.ensemble  # noqa: F401 - only libraries that are loaded can be limited
         from threadpoolctl import threadpool_limits
 
-        with threadpool_limits(1), _known_to_be_missing("pandas"):
+        with threadpool_limits(1), known_to_be_missing("pandas"):
             return function(*positional, **named)
 
     return limited
 
 
 @contextmanager
-def _known_to_be_missing(name: str) -> Iterator[None]:
+def known_to_be_missing(name: str) -> Iterator[None]:
     """Let imports of a package that is not installed fail at once.
 
     scikit-learn tries to import pandas at every fit and prediction of an imputer. Where it is missing, Python looks
@@ -39,27 +37,8 @@ def _known_to_be_missing(name: str) -> Iterator[None]:
     if name in sys.modules or find_spec(name) is not None:
         yield
         return
-    finder = _Missing(name)
-    sys.meta_path.insert(0, finder)
+    sys.modules[name] = None  # type: ignore[assignment] # Python's own word for a module that is not there
     try:
         yield
     finally:
-        sys.meta_path.remove(finder)
-
-
-class _Missing(MetaPathFinder):
-    """Finds nothing, and ends the search for one name."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-
-    def find_spec(self, fullname: str, path: object, target: ModuleType | None = None) -> None:  # noqa: ARG002
-        """Refuse the name.
-
-        Raises
-        ------
-        ModuleNotFoundError
-            As the search would end.
-        """
-        if fullname == self._name:
-            raise ModuleNotFoundError(f"No module named {fullname!r}", name=fullname)
+        sys.modules.pop(name, None)

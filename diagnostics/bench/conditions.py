@@ -64,7 +64,7 @@ SHAFTS = {"shafts": {"pinion": {"diameter_mm": {"kind": "uniform", "low": 30.0, 
 CONDITIONS: Mapping[str, Mapping[str, Any]] = {
     "same": {},
     "other_speed": {
-        "operating_points": [{"speed_hz": {"kind": "uniform", "low": 42.0, "high": 48.0}, "torque_nm": TORQUE}]
+        "operating_points": [{"speed_hz": {"kind": "uniform", "low": 25.0, "high": 29.0}, "torque_nm": TORQUE}]
     },
     "other_torque": {
         "operating_points": [{"speed_hz": SPEED, "torque_nm": {"kind": "uniform", "low": 12.0, "high": 20.0}}]

@@ -57,8 +57,11 @@ class Entry:
 
     def score(self, part: str) -> Interval:
         """Return the AUC of a part with its limits."""
-        count = min(self.gearboxes.values()) if part == MEAN else self.gearboxes[part]
-        return area_interval(self.samples(part), count)
+        return area_interval(self.samples(part), self.count(part))
+
+    def count(self, part: str) -> int:
+        """Return the gearboxes that limits count; those of all parts for their mean, since no two parts share one."""
+        return sum(self.gearboxes[one] for one in self.every) if part == MEAN else self.gearboxes[part]
 
 
 def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | None, seed: int) -> list[Entry]:
@@ -212,8 +215,7 @@ def _behind(leader: Entry, entry: Entry, part: str) -> Cell:
 
 def paired(first: Entry, second: Entry, part: str) -> Interval:
     """Return the second minus the first, on the same resampled gearboxes."""
-    count = min(first.gearboxes.values()) if part == MEAN else first.gearboxes[part]
-    return interval(second.samples(part) - first.samples(part), count)
+    return interval(second.samples(part) - first.samples(part), first.count(part))
 
 
 def _numbers(ordered: Sequence[Entry], benchmark: Benchmark) -> list[dict[str, Any]]:

@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import siggen
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.bench.blind_rows import Renumbered, blind_rows, condition_fields, renumbered, sealed_part
@@ -22,7 +24,7 @@ from diagnostics.bench.derived_secret import derived, seed_of
 from diagnostics.scoring.benchmark import FACTS, LEARN, TESTS, Benchmark, benchmark_facts, open_benchmark
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
-from siggen.errors import UsageError
+from siggen.errors import DatasetError, UsageError
 
 TITLE, PRESET = "siggen-bench 1.0", "siggen_bench"
 SECRET_FILE, SEALED, SIMULATED, CARD = "secret", "sealed.json", "simulated", "README.md"
@@ -137,9 +139,27 @@ def _simulated(config: Any, folder: Path, title: str, workers: int | None, stage
     return open_set(folder)
 
 
+def _signal(folder: Path, record: int, column: str) -> np.ndarray:
+    """Return a signal of a record, empty where the set has none."""
+    try:
+        return np.asarray(open_set(folder).record(record)[column])
+    except (UsageError, KeyError):  # it has no such record, or channel
+        return np.empty(0)
+
+
 def _write_blind(dataset: Dataset, numbers: Renumbered, configs: tuple[Any, Any], folder: Path) -> None:
-    """Write a test part, unless it is there; `configs` are that to learn from and that of the part."""
+    """Write a test part, unless it is there; `configs` are that to learn from and that of the part.
+
+    Raises
+    ------
+    DatasetError
+        If another one is there: labels would be those of other records.
+    """
     if (folder / "manifest.json").is_file():
+        old, new = next(iter(numbers.record.items()))
+        column = dataset.channels[0].column
+        if not np.array_equal(dataset.record(old)[column], _signal(folder, new, column)):
+            raise DatasetError(f"{folder}: was made with another secret or configuration; name a new folder")
         return
     shutil.rmtree(folder, ignore_errors=True)  # what a call that was stopped had half written
     learn, own = configs

@@ -74,11 +74,17 @@ def score(
     from diagnostics.scoring.score import Scores
     from diagnostics.scoring.score import score as scored
     from siggen.dataset.reading import open as open_set
+    from siggen.errors import UsageError
 
     if out:
         check_suffix(out)
     found: Scores | BenchmarkScores
-    if is_benchmark(directory):
+    sealed = is_benchmark(directory)
+    if sealed and (judged.split, judged.classes) != ("test", "state"):
+        raise UsageError("--split, --classes: of a benchmark the split test is judged by states; leave them out")
+    if judged.labels and not sealed:
+        raise UsageError(f"--labels: {directory} is no benchmark and has its own labels; leave --labels out")
+    if sealed:
         found = score_benchmark(
             open_benchmark(directory), predictions, labels=judged.labels, baselines=baselines, seed=seed
         )

@@ -90,24 +90,41 @@ def check_device(device: str) -> None:
             )
 
 
+def network_records(dataset: Dataset, stage: Stage) -> OrderRecords:
+    """Return what the network takes of a set.
+
+    Raises
+    ------
+    DatasetError
+        If records are too short for a window.
+    """
+    from diagnostics.loader.windows import order_records
+
+    with stage("order-resampled windows", dataset.labels(columns=["record_id"]).num_rows) as advance:
+        return order_records(dataset, advance=advance)
+
+
 def judge_networks(
-    dataset: Dataset, matrix: FeatureMatrix, split: SpecimenSplit, seed: int, options: NetworkOptions, stage: Stage
+    identity: str,
+    records: OrderRecords,
+    matrix: FeatureMatrix,
+    split: SpecimenSplit,
+    seed: int,
+    options: NetworkOptions,
+    stage: Stage,
 ) -> tuple[list[Judged], TrainedNetworkFile]:
     """Train and judge the network, and its twin without augmentation where asked for; the first one is saved."""
     from diagnostics.loader.augmentation import Augmentation
-    from diagnostics.loader.windows import order_records
     from diagnostics.training.cnn import TrainingSettings
     from diagnostics.training.cnn_files import describe_network
 
-    with stage("order-resampled windows", len(matrix.values)) as advance:
-        records = order_records(dataset, advance=advance)
     settings = TrainingSettings(augmentation=Augmentation() if options.augment else None, device=options.device)
     trained, first = _judge(NETWORK, records, matrix, split, seed, settings, stage)
     results = [replace(first, permuted_auroc=_control(records, matrix, split, seed, settings, stage))]
     if options.studies and options.augment:
         plain = replace(settings, augmentation=None)
         results.append(_judge(PLAIN_NETWORK, records, matrix, split, seed, plain, stage)[1])
-    facts = describe_network(trained, records.channels, records.settings, str(dataset.manifest["identity"]))
+    facts = describe_network(trained, records.channels, records.settings, identity)
     return results, TrainedNetworkFile(trained, facts)
 
 

@@ -40,7 +40,12 @@ from diagnostics.training.baselines import (
 from diagnostics.training.boosting import train_boosting
 from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.nested_folds import Nested, nested_folds, nested_metrics, strange_classes
-from diagnostics.training.network_training import NetworkOptions, TrainedNetworkFile, judge_networks
+from diagnostics.training.network_training import (
+    NetworkOptions,
+    TrainedNetworkFile,
+    judge_networks,
+    network_records,
+)
 from diagnostics.training.other_set import classifier_predictions, network_predictions_of
 from diagnostics.training.referenced import Referenced, referenced_classifiers
 from diagnostics.training.severity import (
@@ -142,16 +147,19 @@ def train_models(
     classes = set_classes(dataset, options.classes)
     matrix = feature_matrix(table, classes)
     split = specimen_split(matrix.labels, classes)
+    # first of all: records that are too short for it are said before anything is trained
+    windows = network_records(dataset, stage) if options.cnn else None
     models = _feature_models(matrix, split, seed, stage)
     with stage("permuted labels", PERMUTATIONS) as advance:
         control = permutation_control(matrix, split, seed, strength=models[INDICATORS].strength, advance=advance)
     results = [_judge(name, model, matrix, split, control, seed) for name, model in models.items()]
     trained, circular, averages = None, None, None
-    if options.cnn:
-        found, trained = judge_networks(dataset, matrix, split, seed, options, stage)
+    if windows is not None:
+        identity = str(dataset.manifest["identity"])
+        found, trained = judge_networks(identity, windows, matrix, split, seed, options, stage)
         averages = _averages(dataset, table)
         network_alone, judged_alone = judge_circular(CIRCULAR, averages, matrix, split, seed, options, stage)
-        circular = TrainedCircularFile(network_alone, averages.channels, str(dataset.manifest["identity"]))
+        circular = TrainedCircularFile(network_alone, averages.channels, identity)
         results += [*found, judged_alone]
     specimens = {name: _specimens(matrix, mask) for name, mask in _masks(split).items()}
     details = (str(found.details["note"]) for found in results if found.details.get("note"))

@@ -19,7 +19,7 @@ from diagnostics.audit.finding import Finding  # noqa: E402
 from diagnostics.audit.measured_set import MeasuredSet, measured_set  # noqa: E402
 from diagnostics.audit.separability_findings import separability_findings  # noqa: E402
 from diagnostics.base.single_thread import single_thread  # noqa: E402
-from tests.diagnostics.audit.planted_set import Plant, measured  # noqa: E402
+from tests.diagnostics.audit.planted_set import Plant, planted  # noqa: E402
 from tests.diagnostics.audit.planted_traps import FOUND_AS, TRAPS  # noqa: E402
 
 
@@ -33,7 +33,7 @@ def row(name: str, planted: str, found: list[Finding]) -> str:
 def main(path: str) -> None:
     """Print the table."""
     begin = time.process_time()
-    clean: MeasuredSet = measured_set(siggen.open(path)) if path else measured(Plant())
+    clean: MeasuredSet = measured_set(siggen.open(path)) if path else measured_set(planted(Plant()))
     print("| layer | planted | found | measured |\n|---|---|---|---|")
     before = separability_findings(clean)
     known, right, named = {finding.trap for finding in before}, 0, 0

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import html
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 from typing import Literal
 
@@ -15,8 +12,8 @@ import pytest
 
 import siggen
 from siggen.faults.fault import Fault
-from tests.house.source_tree import ROOT
 from tests.publication.conftest import facts_file
+from tests.toy_process import said_by
 
 CONFIG = """
 extends: quickstart
@@ -34,25 +31,27 @@ states:
 OTHER_KINDS = re.compile(r"\b(pits?|pitting|spall\w*)\b", re.IGNORECASE)
 
 
-def command(folder: Path, *words: str, code: int = 0) -> str:
-    """Run a program with the toy registered, in a fresh process."""
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.faults.with_toys", *words],
-        cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "COLUMNS": "160"},
-        capture_output=True, text=True, timeout=500, check=False,
-    )  # fmt: skip
-    said = done.stdout + done.stderr
-    assert done.returncode == code, said
-    assert "Traceback" not in said
-    return said
+LINES = {
+    "generate": "siggen generate toy.yaml --out set --engine serial",
+    "plan": "siggen plan toy.yaml --trial 0",
+    "mistake": "siggen plan toy.yaml --trial 0 --set states.2.damage.depth_mm=0.01",
+    "publish": "siggen publish set --facts publication.yaml --to published",
+    "explore": "siggen-diagnostics explore set --out explorer.html",
+}
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, str]]:
+    """Return a folder with all that commands made there in one process, and what they said."""
     folder = tmp_path_factory.mktemp("toy")
     (folder / "toy.yaml").write_text(CONFIG)
-    command(folder, "siggen", "generate", "toy.yaml", "--out", "set", "--engine", "serial")
-    return folder
+    facts_file(folder)
+    return folder, said_by("tests.faults.with_toys", folder, LINES, {"mistake": 2})
+
+
+@pytest.fixture(scope="module")
+def folder(made: tuple[Path, dict[str, str]]) -> Path:
+    return made[0]
 
 
 def words_of(page: Path) -> str:
@@ -70,17 +69,14 @@ def test_it_is_labelled_softens_its_tooth_and_has_its_rows(folder: Path) -> None
     assert {row["kind"] for row in dataset.damage().to_pylist()} == {"hinge"}
 
 
-def test_the_plan_counts_its_states_and_a_mistake_in_it_is_named(folder: Path) -> None:
-    assert "hinge" in command(folder, "siggen", "plan", "toy.yaml", "--trial", "0")
-    change = "states.2.damage.depth_mm=0.01"
-    said = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", change, code=2)
-    assert "states.2.damage.depth_mm" in said
-    assert "allowed: at least 0.1" in said
+def test_the_plan_counts_its_states_and_a_mistake_in_it_is_named(made: tuple[Path, dict[str, str]]) -> None:
+    said = made[1]
+    assert "hinge" in said["plan"]
+    assert "states.2.damage.depth_mm" in said["mistake"]
+    assert "allowed: at least 0.1" in said["mistake"]
 
 
 def test_card_and_publication_name_it_and_no_other(folder: Path) -> None:
-    facts_file(folder)
-    command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
     for card in ("set/README.md", "published/README.md"):
         text = (folder / card).read_text(encoding="utf-8")
         assert "Toy hinges soften their teeth" in text
@@ -89,24 +85,25 @@ def test_card_and_publication_name_it_and_no_other(folder: Path) -> None:
 
 
 def test_the_explorer_names_it_and_no_other(folder: Path) -> None:
-    command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
     assert "hinge" in (folder / "explorer.html").read_text(encoding="utf-8")
     assert not OTHER_KINDS.search(words_of(folder / "explorer.html"))
 
 
 @pytest.fixture(scope="module")
 def judged(folder: Path) -> Path:
-    """Return the folder with a set of as many gearboxes as folds need."""
-    enough = ("--set", "specimens=10")
-    command(folder, "siggen", "generate", "toy.yaml", *enough, "--out", "judged", "--engine", "serial")
+    """Return the folder with report and audit of a set of as many gearboxes as folds need."""
+    lines = {
+        "generate": "siggen generate toy.yaml --set specimens=10 --out judged --engine serial",
+        "report": "siggen-diagnostics report judged --no-cnn --out report",
+        "audit": "siggen-diagnostics audit judged --out audit",
+    }
+    said_by("tests.faults.with_toys", folder, lines)
     return folder
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("what", ["report", "audit"])
 def test_report_and_audit_name_no_other(judged: Path, what: str) -> None:
-    options = ("--no-cnn",) if what == "report" else ()
-    command(judged, "siggen-diagnostics", what, "judged", *options, "--out", what)
     said = words_of(judged / what / f"{what}.html")
     assert "hinge" in said
     assert not OTHER_KINDS.search(said)

@@ -1,12 +1,9 @@
-"""`python -m tests.noise.with_toys ...`: siggen, with the toy registered."""
-
-import sys
+"""`python -m tests.noise.with_toys`: commands from standard input, with the toy registered."""
 
 from siggen.noise.kinds import SOURCES
 from tests.noise.toy_drift import ToyDrift
+from tests.toy_process import serve
 
 if __name__ == "__main__":
     SOURCES.append(ToyDrift)
-    from siggen.cli.app import main
-
-    sys.exit(main())
+    serve()

@@ -1,14 +1,13 @@
 """What lies in a reader's folder before a page begins: sets smaller than those of their names, recordings of a machine.
 
-They are made once, by the installed commands, and copied.
+They are made once and copied.
 """
 
 from __future__ import annotations
 
 import re
 import shutil
-import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from nptdms import ChannelObject, TdmsWriter
@@ -17,6 +16,7 @@ import siggen
 from tests.diagnostics.calibration.hidden_machine import FS_HZ, write_recording
 from tests.publication.conftest import facts_file
 
+QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
 SET, SMALLER = "runs/quickstart", ("specimens=10", "splits={train: 10, validation: 5, test: 5}")
 READ_ALONE = ("specimens=1", "duration_s=0.5", "splits={train: 10, validation: 5, test: 5}")
 """What is smaller where blocks only read the set: those that evaluate it are slow ones."""
@@ -31,8 +31,8 @@ MONTHS = ("may", "june", "july", "august", "september")
 class Given:
     """Makes what pages begin with, each thing once."""
 
-    def __init__(self, cache: Path, environment: Mapping[str, str]) -> None:
-        self._cache, self._environment = cache, environment
+    def __init__(self, cache: Path) -> None:
+        self._cache = cache
 
     def put(self, name: str, folder: Path, changes: Sequence[str] = SMALLER) -> None:
         """Copy a thing of this name into a folder; `changes` are what is smaller of a set.
@@ -45,7 +45,7 @@ class Given:
         made = self._cache / re.sub(r"\W+", "_", " ".join((name, *changes)))
         if name == SET:
             if not made.exists():
-                self._generate(changes, made)
+                siggen.generate(siggen.load_config(QUICKSTART, changes), made, workers=0)
             shutil.copytree(made, folder / name)
         elif name.startswith("recordings "):
             if not made.exists():
@@ -55,12 +55,6 @@ class Given:
             facts_file(folder)
         elif name != STORE:
             raise ValueError(f"nothing is known of the given {name!r}")
-
-    def _generate(self, changes: Sequence[str], out: Path) -> None:
-        file = str(Path(__file__).parents[2] / "configs" / "quickstart.yaml")
-        command = ["siggen", "generate", file, "--out", str(out), "--engine", "serial"]
-        command += [word for change in changes for word in ("--set", change)]
-        subprocess.run(command, check=True, env=dict(self._environment), capture_output=True)
 
 
 def record(pair: str, folder: Path) -> None:

@@ -33,6 +33,9 @@ NOT_RUN = {
     "docs/start/publish.md": ["not run: installs isatools; tests/publication/test_isa_phm.py does the same"],
     "docs/understand/baselines.md": ["not run: the same commands run one by one below"],
     "docs/understand/run_to_failure.md": ["not run: minutes", "not run: minutes"],
+    "docs/understand/siggen_bench.md": [
+        "not run: simulates for minutes; tests/diagnostics/bench runs the same commands on short records"
+    ],
 }
 """Page -> what no test runs of it, and why. Nothing is added here that a smaller set or a local server could run."""
 
@@ -52,7 +55,7 @@ def pages(*, slow: bool) -> list[Path]:
 
 @pytest.fixture(scope="module")
 def things(tmp_path_factory: pytest.TempPathFactory) -> Given:
-    return Given(tmp_path_factory.mktemp("given"), reader_environment())
+    return Given(tmp_path_factory.mktemp("given"))
 
 
 @pytest.fixture

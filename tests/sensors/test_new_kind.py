@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import html
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +15,9 @@ from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from siggen.config import parse
 from siggen.errors import UsageError
-from tests.house.source_tree import ROOT
 from tests.publication.conftest import facts_file
 from tests.sensors.toy_strain_gauge import STRAIN_PER_FORCE
+from tests.toy_process import said_by
 
 CONFIG = """
 extends: quickstart
@@ -41,25 +38,40 @@ SIGNAL = "strain_seat_vertical_um_m"
 OTHER_QUANTITY = re.compile(r"accelerat\w*|accelerometer|(?<!m)m/s(²|\^?2)|m_s2", re.IGNORECASE)
 
 
-def command(folder: Path, *words: str, code: int = 0) -> str:
-    """Run a program with the toy registered, in a fresh process."""
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.sensors.with_toys", *words],
-        cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "COLUMNS": "160"},
-        capture_output=True, text=True, timeout=500, check=False,
-    )  # fmt: skip
-    said = done.stdout + done.stderr
-    assert done.returncode == code, said
-    assert "Traceback" not in said
-    return said
+MISTAKES = {
+    "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
+    "sensors.0.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
+    "dynamics.model=torsional": "allowed: one of pinion_rim, gear_rim",
+}
+LINES = {
+    "generate": "siggen generate toy.yaml --out set --engine serial",
+    "doubted": "siggen plan toy.yaml --trial 0 --set sensors.0.range_um_m=0.5",
+    **{change: f"siggen plan toy.yaml --trial 0 --set {change}" for change in MISTAKES},
+    "publish": "siggen publish set --facts publication.yaml --to published",
+    "alone": "siggen generate alone.yaml --out alone --engine serial",
+    "both": "siggen generate both.yaml --out both --engine serial",
+    "explore": "siggen-diagnostics explore set --out explorer.html",
+    "simulate": "siggen simulate toy.yaml --record 0 --signals --out one.parquet",
+}
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, str]]:
+    """Return a folder with all that commands made there in one process, and what they said."""
     folder = tmp_path_factory.mktemp("toy")
     (folder / "toy.yaml").write_text(CONFIG)
-    command(folder, "siggen", "generate", "toy.yaml", "--out", "set", "--engine", "serial")
-    return folder
+    lid = "  - {name: lid, place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
+    gauge = CONFIG.partition("sensors:\n")[2]
+    for name, sensors in (("alone", lid), ("both", gauge + lid)):
+        own = CONFIG.replace("specimens: 2", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
+        (folder / f"{name}.yaml").write_text(own)
+    facts_file(folder)
+    return folder, said_by("tests.sensors.with_toys", folder, LINES, dict.fromkeys(MISTAKES, 2))
+
+
+@pytest.fixture(scope="module")
+def folder(made: tuple[Path, dict[str, str]]) -> Path:
+    return made[0]
 
 
 def words_of(page: Path) -> str:
@@ -77,23 +89,15 @@ def test_its_channel_holds_its_quantity_with_its_own_noise(folder: Path) -> None
     assert 0.005 <= dataset.record(0)["noise_floor_seat_vertical_um_m"] <= 0.02
 
 
-def test_the_plan_takes_it_and_mistakes_in_it_are_named(folder: Path) -> None:
-    doubted = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", "sensors.0.range_um_m=0.5")
-    assert "seat_vertical" in doubted
-    assert "range [µm/m]" in doubted
-    changes = {
-        "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
-        "sensors.0.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
-        "dynamics.model=torsional": "allowed: one of pinion_rim, gear_rim",
-    }
-    for change, allowed in changes.items():
-        said = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", change, code=2)
-        assert allowed in " ".join(said.split()), said
+def test_the_plan_takes_it_and_mistakes_in_it_are_named(made: tuple[Path, dict[str, str]]) -> None:
+    said = made[1]
+    assert "seat_vertical" in said["doubted"]
+    assert "range [µm/m]" in said["doubted"]
+    for change, allowed in MISTAKES.items():
+        assert allowed in " ".join(said[change].split()), said[change]
 
 
 def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> None:
-    facts_file(folder)
-    command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
     for card in ("set/README.md", "published/README.md"):
         text = " ".join((folder / card).read_text(encoding="utf-8").split())
         assert "labelled strain records" in text
@@ -105,12 +109,6 @@ def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> No
 
 
 def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path) -> None:
-    lid = "  - {name: lid, place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
-    gauge = CONFIG.partition("sensors:\n")[2]
-    for name, sensors in (("alone", lid), ("both", gauge + lid)):
-        own = CONFIG.replace("specimens: 2", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
-        (folder / f"{name}.yaml").write_text(own)
-        command(folder, "siggen", "generate", f"{name}.yaml", "--out", name, "--engine", "serial")
     alone, both = (siggen.open(folder / name) for name in ("alone", "both"))
     record = both.record(0)
     assert record["accel_lid_vertical_m_s2"].tobytes() == alone.record(0)["accel_lid_vertical_m_s2"].tobytes()
@@ -125,7 +123,6 @@ def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path)
 
 
 def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:
-    command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
     assert '"seat_vertical":{"word":"strain","unit":"µm/m"}' in (folder / "explorer.html").read_text("utf-8")
     said = words_of(folder / "explorer.html")
     assert "RMS [µm/m]" in said
@@ -133,7 +130,6 @@ def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:
 
 
 def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
-    command(folder, "siggen", "simulate", "toy.yaml", "--record", "0", "--signals", "--out", "one.parquet")
     found = read_columns(folder / "one.parquet")
     assert found.own == {"seat_vertical": SIGNAL}
     assert found.units == {SIGNAL: "um/m"}
@@ -151,17 +147,19 @@ def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
 
 @pytest.fixture(scope="module")
 def judged(folder: Path) -> Path:
-    """Return the folder with a set of as many gearboxes as folds need."""
-    enough = ("--set", "specimens=10")
-    command(folder, "siggen", "generate", "toy.yaml", *enough, "--out", "judged", "--engine", "serial")
+    """Return the folder with report and audit of a set of as many gearboxes as folds need."""
+    lines = {
+        "generate": "siggen generate toy.yaml --set specimens=10 --out judged --engine serial",
+        "report": "siggen-diagnostics report judged --no-cnn --out report",
+        "audit": "siggen-diagnostics audit judged --out audit",
+    }
+    said_by("tests.sensors.with_toys", folder, lines)
     return folder
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("what", ["report", "audit"])
 def test_report_and_audit_name_its_unit_and_no_other(judged: Path, what: str) -> None:
-    options = ("--no-cnn",) if what == "report" else ()
-    command(judged, "siggen-diagnostics", what, "judged", *options, "--out", what)
     said = words_of(judged / what / f"{what}.html")
     assert not OTHER_QUANTITY.search(said)
 

@@ -47,7 +47,7 @@ def test_perfect_gears_have_no_errors() -> None:
     assert specimen_errors(made(), PAIR, 0, 0) is None
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6))
 def test_drawn_gears_keep_to_their_class_and_use_their_share(specimen: int) -> None:
     errors = errors_of(CLASS_6, specimen)
@@ -99,12 +99,13 @@ def test_misalignment_is_linear_across_the_face_and_drawn_with_either_sign() -> 
 
 
 def test_misalignment_by_the_standard_stays_within_the_helix_slopes_of_both_gears() -> None:
-    found = [errors_of(misaligned("iso_1328"), specimen) for specimen in range(200)]
+    found = [errors_of(misaligned("iso_1328"), specimen) for specimen in range(80)]
     limits = [sum(g.tolerance_share * g.tolerances.helix_slope_m for g in (e.pinion, e.gear)) for e in found]
     ratio = np.array([e.lead_misalignment_m for e in found]) / limits
     assert np.abs(ratio).max() <= 1.0
     # The sum of two uniform ones of about one size: a standard deviation of 1/√6 of their reach.
-    assert ratio.std() == pytest.approx(1.0 / np.sqrt(6.0), rel=0.15)
+    # Of 80 of them it scatters by 7 %.
+    assert ratio.std() == pytest.approx(1.0 / np.sqrt(6.0), rel=0.21)
 
 
 def records(config: Config, ids: list[int]) -> list[Record]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import chdir
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.io import wavfile
 
-from tests.walks.walking import FS_HZ, printed, recorded, walk
+from tests.command import command
+from tests.walks.walking import FS_HZ, printed, recorded
 
 DESCRIBED = "--unit g --teeth 18,47 --speed-range 28,32"
 
@@ -19,7 +21,9 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("machine")
     for seed, (name, depth) in enumerate({"may": 0.0, "june": 0.0, "july": 0.0, "august": 0.0, "worn": 0.7}.items()):
         wavfile.write(folder / f"{name}.wav", round(FS_HZ), recorded(seed, depth).astype(np.float32))
-    walk(folder, f"siggen-diagnostics baseline may.wav june.wav july.wav {DESCRIBED} --out machine")
+    with chdir(folder):
+        done = command("diagnostics", *f"baseline may.wav june.wav july.wav {DESCRIBED} --out machine".split())
+    assert done.returncode == 0, done.stderr
     return folder
 
 

@@ -52,7 +52,7 @@ class ExponentialMotion(PairMotion):
         return other
 
     def _take_steps(self, step_s: float, stride: int) -> None:
-        self._step_s = step_s
+        self._step_s, self.stride = step_s, stride
         of_pairs, k = self.pair_equations, self._stiffness
         self.scheme = exponential_scheme(self.structure, self.equations, of_pairs, self.damping, stride * step_s)
         light_n = np.array([mesh.light_force_n for mesh in self.meshes])

@@ -78,6 +78,7 @@ class LinearMotion:
     internal_names: tuple[str, ...] = ("mesh_force_n", "mesh_stiffness_n_per_m", "approach_m", "approach_rate_m_s")
 
     coarse_inputs = False
+    stride = 1
     starts_settled = False
 
     def __init__(

@@ -22,6 +22,7 @@ class Motion(Protocol):
     `teeth`: of the first gear, by which angles are counted in base pitches; `limits_m` (meshes,): approaches beyond
     which a state is refused. `coarse_inputs`: whether inputs may be splines over a coarse grid; motions of older sets
     keep every bit without.
+    `stride`: 2 where every other state stands in the middle of a step of the integrator, else 1.
     `starts_settled`: whether a motion starts near its end, on a whole sample. `transient_s` is discarded before a
     record, `decay_s` one decay time of the slowest mode that bearings show.
     """
@@ -34,6 +35,7 @@ class Motion(Protocol):
     limits_m: FloatArray
     internal_names: tuple[str, ...]
     coarse_inputs: bool
+    stride: int
     starts_settled: bool
 
     @property

@@ -77,6 +77,7 @@ class PairMotion:
     """
 
     coarse_inputs = False
+    stride = 1
     starts_settled = True
 
     def __init__(

@@ -41,14 +41,14 @@ class Run:
     excitation: Excitation | SampledExcitation | None = None
     motions: tuple[str, ...] = ()
 
-    def time_s(self, first: int, count: int) -> FloatArray:
-        """Return the times (count,) of the steps from step `first` on."""
-        return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
+    def time_s(self, first: int, count: int, each: int = 1) -> FloatArray:
+        """Return the times (count,) of steps from step `first` on, of every `each`-th one."""
+        return np.arange(first, first + count * each, each) / (self.fs_hz * self.steps_per_sample)
 
-    def pitches(self, first: int, count: int) -> FloatArray:
-        """Return the angle of the mesh law in base pitches at `count` steps from step `first`."""
+    def pitches(self, first: int, count: int, each: int = 1) -> FloatArray:
+        """Return the angle of the mesh law in base pitches at `count` steps as for `time_s`."""
         per_turn = self.motion.teeth * (1.0 - frame_turns(self.motion.structure))
-        turned = self.drive.angle_rad(self.time_s(first, count)) * (per_turn / (2.0 * np.pi))
+        turned = self.drive.angle_rad(self.time_s(first, count, each)) * (per_turn / (2.0 * np.pi))
         return turned + self.motion.structure.mesh.flanks.ahead_pitches
 
     def seen(self, first: int, states: FloatArray) -> FloatArray:
@@ -65,11 +65,21 @@ class Run:
         structure, static = self.motion.structure, self.motion.equations.static_deflection
         return at_rest_beside(structure.coordinates, static) if structure.frame else static
 
-    def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
-        """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
+    def inputs(self, first: int, pitches: FloatArray, each: int = 1) -> FloatArray:
+        """Return the external inputs (k, m) at the steps as for `time_s` whose pinion angles are given."""
         if self.excitation is None:
             return no_inputs(pitches)
-        return self.excitation.inputs(self.time_s(first, pitches.size), self.drive)
+        return self.excitation.inputs(self.time_s(first, pitches.size, each), self.drive)
+
+    def driven(self, first: int, count: int) -> tuple[FloatArray, FloatArray]:
+        """Return pitches (count + 1,) and inputs (count + 1, m) from step `first` on, as the integrator looks at them.
+
+        One that gives the state in the middle of its steps asks for nothing there: what it takes as linear is linear.
+        """
+        each = self.motion.stride if count % self.motion.stride == 0 else 1
+        pitches = self.pitches(first, count // each + 1, each)
+        inputs = self.inputs(first, pitches, each)
+        return (pitches, inputs) if each == 1 else (_with_middles(pitches), _with_middles(inputs))
 
 
 class Piece(NamedTuple):
@@ -220,14 +230,21 @@ def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterat
     for first in range(start, stop, block):
         count = min(block, stop - first)
         trajectory[0] = state
-        pitches = run.pitches(first, count + 1)
-        inputs = run.inputs(first, pitches)
+        pitches, inputs = run.driven(first, count)
         apart = run.motion.advance(pitches, inputs, trajectory[: count + 1])
         beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.motion.limits_m)
         if beyond >= 0:
             raise _divergence(run, first + beyond, trajectory[beyond])
         state[:] = trajectory[count]
         yield Stepped(first, trajectory[:count], inputs[:count], apart)
+
+
+def _with_middles(values: FloatArray) -> FloatArray:
+    """Return values (k, ...) with the mean of neighbours between them (2 k - 1, ...)."""
+    result = np.empty((2 * len(values) - 1, *values.shape[1:]))
+    result[::2] = values
+    result[1::2] = 0.5 * (values[1:] + values[:-1])
+    return result
 
 
 def _divergence(run: Run, step: int, state: FloatArray) -> SolverFailure:

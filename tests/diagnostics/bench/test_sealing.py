@@ -64,6 +64,8 @@ def test_a_benchmark_is_committed_to_scored_sealed_revealed_and_scored_again(mad
     early = diagnostics_command("score", str(bench), str(mine))
     assert early.returncode == 2
     assert "its labels are not revealed" in early.stderr
+    for wrong in ((str(bench), str(mine), "--split", "validation"), (str(bench / "learn"), str(mine), *secret)):
+        assert diagnostics_command("score", *wrong).returncode == 2
     printed = diagnostics_command("bench", "commit", str(bench), *secret).stdout.strip()
     assert printed == hashlib.sha256(made.sealed.read_bytes()).hexdigest()
     before = diagnostics_command("score", str(bench), str(mine), *secret, "--json")
@@ -104,6 +106,9 @@ def test_the_secret_alone_decides_seeds_and_order(made: Made, tmp_path: Path) ->
         for found in (same, other)
     )
     assert len({*seeds.values(), *others.values()}) == 2
+    shutil.rmtree(same.hidden)
+    with pytest.raises(DatasetError, match="was made with another secret"):
+        make(tmp_path / "same", secret=SECRET + b"!")
     card = (other.benchmark.path / "README.md").read_text()
     assert "license: cc-by-4.0" in card
     assert "Cite as: A citation" in card

@@ -30,8 +30,10 @@ def louder(sample: dict[str, Any], generator: np.random.Generator) -> dict[str, 
     return {**sample, "windows": sample["windows"] * generator.uniform(0.5, 2.0)}
 
 
-@pytest.mark.parametrize("options", [{}, {"num_workers": 2}, {"num_workers": 2, "persistent_workers": True}])
-@pytest.mark.parametrize("batch", [8, None])
+@pytest.mark.parametrize(
+    ("batch", "options"),
+    [(8, {}), (None, {"num_workers": 2}), (8, {"num_workers": 2, "persistent_workers": True})],
+)
 def test_every_epoch_of_a_dataloader_has_another_order_by_itself(
     dataset: Any, batch: int | None, options: dict[str, Any]
 ) -> None:

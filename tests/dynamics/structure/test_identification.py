@@ -30,6 +30,14 @@ def test_a_free_decay_gives_back_its_oscillator(ratio: float, frequency: float, 
     assert found.damping_ratio == pytest.approx(ratio, rel=2e-3, abs=1e-5)
 
 
+def test_three_maxima_are_a_decay_and_two_are_none() -> None:
+    time, signal = decay(50.0, 0.02, -0.5 * np.pi)  # maxima after 1/4, 5/4 and 9/4 periods
+    three, two = time < 2.5 / 50.0, time < 1.5 / 50.0
+    assert resonance_from_decay(time[three], signal[three]).damping_ratio == pytest.approx(0.02, rel=2e-3)
+    with pytest.raises(ValueError, match="received 2 positive maxima; allowed are at least 3"):
+        resonance_from_decay(time[two], signal[two])
+
+
 @given(
     ratio=st.floats(0.005, 0.3), quantity=st.sampled_from([("displacement", 0), ("velocity", 1), ("acceleration", 2)])
 )
