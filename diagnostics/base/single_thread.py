@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import wraps
-from importlib.util import find_spec
 from typing import ParamSpec, TypeVar
 
 Parameters = ParamSpec("Parameters")
@@ -21,24 +18,7 @@ def single_thread(function: Callable[Parameters, Result]) -> Callable[Parameters
         import sklearn.ensemble  # noqa: F401 - only libraries that are loaded can be limited
         from threadpoolctl import threadpool_limits
 
-        with threadpool_limits(1), known_to_be_missing("pandas"):
+        with threadpool_limits(1):
             return function(*positional, **named)
 
     return limited
-
-
-@contextmanager
-def known_to_be_missing(name: str) -> Iterator[None]:
-    """Let imports of a package that is not installed fail at once.
-
-    scikit-learn tries to import pandas at every fit and prediction of an imputer. Where it is missing, Python looks
-    through all folders each time: a tenth of a training.
-    """
-    if name in sys.modules or find_spec(name) is not None:
-        yield
-        return
-    sys.modules[name] = None  # type: ignore[assignment] # Python's own word for a module that is not there
-    try:
-        yield
-    finally:
-        sys.modules.pop(name, None)
