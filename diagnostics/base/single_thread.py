@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import wraps
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
-from importlib.util import find_spec
-from types import ModuleType
 from typing import ParamSpec, TypeVar
 
 Parameters = ParamSpec("Parameters")
@@ -24,49 +18,7 @@ def single_thread(function: Callable[Parameters, Result]) -> Callable[Parameters
         import sklearn.ensemble  # noqa: F401 - only libraries that are loaded can be limited
         from threadpoolctl import threadpool_limits
 
-        with threadpool_limits(1), known_to_be_missing("pandas"):
+        with threadpool_limits(1):
             return function(*positional, **named)
 
     return limited
-
-
-@contextmanager
-def known_to_be_missing(name: str) -> Iterator[None]:
-    """Let imports of a package that is not installed fail at once.
-
-    scikit-learn tries to import pandas at every fit and prediction of an imputer. Where it is missing, Python looks
-    through all folders each time: a tenth of a training.
-    """
-    if name in sys.modules or find_spec(name) is not None:
-        yield
-        return
-    finder = _Missing(name)
-    sys.meta_path.insert(0, finder)
-    try:
-        yield
-    finally:
-        sys.meta_path.remove(finder)
-
-
-class _Missing(MetaPathFinder, Loader):
-    """Finds a name that cannot be loaded, which ends the search for it; who only asks whether it is there goes on."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-
-    def find_spec(self, fullname: str, path: object, target: ModuleType | None = None) -> ModuleSpec | None:  # noqa: ARG002
-        """Return what cannot be loaded for the name, nothing for others."""
-        return ModuleSpec(fullname, self) if fullname == self._name else None
-
-    def create_module(self, spec: ModuleSpec) -> ModuleType:
-        """Refuse the name.
-
-        Raises
-        ------
-        ModuleNotFoundError
-            As the search would end.
-        """
-        raise ModuleNotFoundError(f"No module named {spec.name!r}", name=spec.name)
-
-    def exec_module(self, module: ModuleType) -> None:
-        """Do nothing: no module is ever made."""

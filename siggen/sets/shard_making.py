@@ -33,8 +33,11 @@ from siggen.sets.under_way import STOP_AT_ONCE_S, UnderWay
 if TYPE_CHECKING:
     from siggen.config import Config
 
-STRETCHES_PER_WORKER = 4
-"""Of what is left, a worker takes the share that leaves it so many: long stretches first, and short ones at the end."""
+STRETCHES_PER_WORKER = 2
+"""Of what is left, a worker takes the share that leaves it so many: long stretches first, and short ones at the end.
+
+With twice as many, 1,000 workers ended a million records 10 s later: most shards were closed by a task of its own.
+"""
 
 
 @dataclass(slots=True)

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
 from typer.testing import CliRunner
@@ -18,8 +19,10 @@ from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.planning.gearbox import gearbox_life
 from siggen.planning.plan import plan
+from siggen.planning.specimen import draw_specimen
 from siggen.publication.dataset_info import class_names
 from siggen.sets.extension import extend
+from siggen.specimen.gears import gear_pair
 from tests.config.minimal import minimal
 
 LIFE: dict[str, Any] = {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 1.2, "most": 6, "removed_share": 0.0}
@@ -125,6 +128,21 @@ def test_taken_out_gearboxes_have_no_remaining_life_but_a_least_one() -> None:
     for one in taken:
         assert all(row["rul_h"] is None and row["rul_at_least_h"] >= 0.0 for row in one["inspections"])
         assert one["units"][0]["observed_h"] < one["units"][0]["failure_h"]
+
+
+@pytest.mark.parametrize("gear", ["pinion", "gear"])
+def test_pits_begin_where_flanks_slide_against_their_rolling(gear: str) -> None:
+    from siggen.record.life_rows import life_rows
+
+    config = load_config({**lives(), "specimens": 6})
+    pair = gear_pair(draw_specimen(config, 0).gears)
+    rows = [row for number in range(6) for row in life_rows(config, number)["pits"] if row["gear"] == gear]
+    # Below the pitch point, whose arc from the base circle is R_b tan²(α)/2; from the lowest contact on.
+    pitch_mm = 1e3 * 0.5 * pair.member(gear).base_radius_m * np.tan(pair.working_pressure_angle_rad) ** 2
+    heights = np.array([row["height_mm"] for row in rows])
+    assert 0.9 * pitch_mm < heights.max() < pitch_mm
+    face = np.array([row["face_mm"] for row in rows])
+    assert np.all((face > 0.0) & (face < 1e3 * pair.face_width_m))
 
 
 def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
