@@ -156,3 +156,12 @@ def test_a_circling_point_stands_still_in_space():
     assert seen[:, y] == pytest.approx(np.zeros(7), abs=1e-15)
     others = [i for i in range(2 * n) if names[i % n][-2:] not in {"_s", "_c", "_r"}]
     assert np.array_equal(seen[:, others], states[:, others])
+
+
+def test_each_mesh_speeds_up_its_two_bodies_like_its_reduced_mass():
+    structure = planetary_structure(planetary_stage(3))
+    for mesh in structure.meshes:
+        rows = [structure.coordinates.index(name) for name in mesh.turning]
+        # A force F along the line of action gives the angles J^-1 p F, which part the flanks by p^T J^-1 p F = F / m.
+        turned = np.linalg.solve(structure.mass[np.ix_(rows, rows)], mesh.vector[rows])
+        assert 1.0 / (mesh.vector[rows] @ turned) == pytest.approx(mesh.mass_kg, rel=1e-12)
