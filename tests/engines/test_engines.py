@@ -7,7 +7,7 @@ from contextlib import closing
 
 import pytest
 
-from siggen.engines.processes import ProcessEngine, default_workers
+from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.engines.serial import SerialEngine
@@ -63,11 +63,12 @@ def test_closing_the_results_stops_the_work() -> None:
     assert list(results) == []
 
 
-def test_engines_are_found_by_name_and_objects_are_taken_as_they_are() -> None:
+def test_engines_are_found_by_name_and_objects_are_taken_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(engine_of(None, 0), SerialEngine)
     assert isinstance(engine_of("serial", None), SerialEngine)
     assert engine_of(None, 3).workers == 3
-    assert engine_of("processes", None).workers == default_workers()
+    monkeypatch.setattr("siggen.engines.registry.default_workers", lambda: 5)
+    assert engine_of("processes", None).workers == 5
     mine = ProcessEngine(2)
     assert engine_of(mine, None) is mine
     assert engine_of(mine, 2) is mine

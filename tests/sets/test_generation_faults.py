@@ -142,7 +142,7 @@ def test_a_killed_worker_does_not_stop_generation(
 
 
 def test_a_record_that_kills_every_worker_ends_with_an_error_that_names_its_chunk(tmp_path: Path) -> None:
-    with pytest.raises(EngineError, match=r"records 8 to 9 of shard \S+ was lost 3 times"):
+    with pytest.raises(EngineError, match=r"records 6 to 11 of shard \S+ was lost 3 times"):
         write_fake_set(tmp_path, workers=2, simulation=simulate_and_die)
     assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
 

@@ -85,8 +85,8 @@ def test_a_random_record_of_every_preset_meets_the_stated_error(preset: str) -> 
 
 def test_every_preset_that_takes_the_exponential_integrator_is_drawn_from() -> None:
     methods = {path.stem: siggen.load_config(path).dynamics.method for path in CONFIGS.glob("*.yaml")}
-    # industrial is bench, fleets have quickstart's law; helical and planetary have references of their own
-    others = {"industrial", "fleet", "fleet_500", "helical", "planetary"}
+    # industrial and siggen_bench are bench, fleets quickstart; helical and planetary have references of their own
+    others = {"industrial", "siggen_bench", "fleet", "fleet_500", "helical", "planetary"}
     assert {name for name, method in methods.items() if method == "exponential"} == {*PRESETS, *others}
 
 
