@@ -21,10 +21,8 @@ from siggen.dataset.reading import Dataset, as_record
 from siggen.keys.column import Role
 
 UNKNOWN = "unknown"
-TEXTS, NUMBERS = (
-    ("state", "fault", "severity"),
-    (*("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm", "mesh_stiffness_loss"),),
-)
+TEXTS = ("state", "fault", "severity")
+NUMBERS = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm", "mesh_stiffness_loss")
 """Columns that every reader of sets expects; of a test record they say nothing."""
 GIVEN = ("operating_point_id", "speed_hz", "torque_nm")
 """Conditions that every set has."""

@@ -24,8 +24,8 @@ def part_card(title: str, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
 
 {counted(tests, "record")} without labels in the split `test`. The split `train` has one healthy record of each gearbox
 ({told}), told as a reference. `state` and all that follows from it say `unknown`, or NaN. Numbers of records and
-gearboxes were drawn; order and files tell nothing. `config.yaml` is that of the part to learn from: the one that made
-these records is secret until labels are revealed.
+gearboxes were drawn; order and files tell nothing. `config.yaml` is that of the part to learn from; the seed of this
+part is secret until labels are revealed.
 """
 
 

@@ -32,7 +32,8 @@ def read_secret(file: Path) -> bytes:
     found = file.read_bytes().strip()
     if len(found) < FEWEST_BYTES:
         raise UsageError(
-            f"{file}: received a secret of {len(found)} bytes; allowed: {FEWEST_BYTES} or more, drawn at random"
+            f"{file}: received a secret of {len(found)} bytes; allowed: {FEWEST_BYTES} or more, drawn at random; "
+            "remove the file and one is drawn"
         )
     return found
 

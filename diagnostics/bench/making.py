@@ -84,6 +84,7 @@ def make_benchmark(
     if out.resolve().is_relative_to(hidden.resolve()) or hidden.resolve().is_relative_to(out.resolve()):
         raise UsageError(f"{hidden}: what is secret may not lie in {out}, nor that in it; name another folder")
     learn = siggen.load_config(wanted.config, [*wanted.overrides, f"specimens={wanted.size.learn}"])
+    secret = derived(secret, wanted.tier, learn.identity)  # what one benchmark reveals tells nothing of another
     tests = {name: _test_config(learn, name, wanted, secret) for name in wanted.conditions}
     _write_learn(learn, out / LEARN, hidden, wanted.facts, (workers, stage))
     parts = {}

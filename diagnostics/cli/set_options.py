@@ -41,7 +41,7 @@ class AmountOptions:
     ] = 100
     full: Annotated[
         bool,
-        typer.Option("--full", help="Keep every sample: up to 30 MB instead of 5 MB for 100 records of two channels."),
+        typer.Option("--full", help="Keep every sample, up to 30 MB of them."),
     ] = False
     workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1
 

@@ -119,8 +119,10 @@ def first_answer(found: Detectors) -> str:
 
 
 def detector_words(best: Detector) -> str:
-    """Return what a detector is: of one that other gearboxes choose, what they chose most often."""
-    return max(best.picks, key=lambda pick: pick[1])[0] if best.picks else best.title
+    """Return what a detector is: of one that other gearboxes choose, with what they chose most often."""
+    if not best.picks:
+        return best.title
+    return f"the detector that other gearboxes choose, mostly {max(best.picks, key=lambda pick: pick[1])[0]},"
 
 
 def _kind_words(best: Detector, kind: str, size: FoundSize | None, name: str) -> str:

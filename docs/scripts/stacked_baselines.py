@@ -1,4 +1,4 @@
-"""Table of docs/understand/siggen_bench.md: `python docs/scripts/stacked_baselines.py BENCH [sealed.json]`.
+"""Stack and kurtogram on a benchmark: `python docs/scripts/stacked_baselines.py BENCH [sealed.json]`.
 
 AUC of the kurtogram and of the stack on every test part of a benchmark that has its baselines, and their difference on
 the same resampled gearboxes; alone, and beside a healthy record.

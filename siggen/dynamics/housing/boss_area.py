@@ -45,8 +45,10 @@ def _nearest(seat: Seat, others: tuple[Seat, ...], x_m: FloatArray, y_m: FloatAr
     def distance(of: Seat) -> FloatArray:
         return np.asarray(np.hypot(x_m - of.x_m, y_m - of.y_m) / of.boss_radius_m)
 
-    own = distance(seat)
-    return np.asarray(np.all([own <= distance(seat), *(own <= distance(other) for other in others)], axis=0))
+    own, nearest = distance(seat), np.full(x_m.shape, True)
+    for other in others:
+        nearest &= own <= distance(other)
+    return nearest
 
 
 def _borders(seat: Seat, other: Seat, angle: FloatArray) -> FloatArray:
