@@ -54,3 +54,18 @@ def test_a_dish_hides_another_exactly_where_its_floor_is_nowhere_above() -> None
             exposed_inside += bool(above[[0, -1]].max() < 0.0 < above.max())
     assert 200 < sum(said) < len(said) - 200
     assert exposed_inside > 50  # both ends covered, the middle not: the vertex decides
+
+
+def test_a_flat_ellipse_hides_rectangles_whose_corners_lie_in_it_and_no_others() -> None:
+    ellipse, rng, said = np.zeros(COLUMNS), np.random.default_rng(4), []
+    ellipse[[HEIGHT, FACE, SEMI_HEIGHT, SEMI_FACE, DEPTH]] = 3e-3, 5e-3, 1e-3, 2e-3, 0.4e-3
+    ellipse[[LOWEST, HIGHEST]] = 2e-3, 4e-3
+    for _ in range(500):
+        low, high = np.sort(rng.uniform(2e-3, 4e-3, 2))
+        left, right = np.sort(rng.uniform(3e-3, 7e-3, 2))
+        box = dish(3e-3, 1e-3, 0.2e-3, (float(low), float(high)))
+        box[[LEFT_LOW, LEFT_HIGH, RIGHT_LOW, RIGHT_HIGH, DISH]] = left, left, right, right, 0.0
+        corners = [((x - 3e-3) / 1e-3) ** 2 + ((w - 5e-3) / 2e-3) ** 2 for x in (low, high) for w in (left, right)]
+        said.append(hides(ellipse, box))
+        assert said[-1] == (max(corners) <= 1.0)
+    assert 50 < sum(said) < 450

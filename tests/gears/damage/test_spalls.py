@@ -187,6 +187,7 @@ def test_a_further_damage_never_raises_the_stiffness(layout, further):
 @given(mixtures, st.floats(0.4, 5.0))
 @example([pit(2.0, 9.0, 2.0, 0.8, 0.4, "dish"), box(1.6, 2.6, 7.5, 10.5, 0.2)], 2.1)  # deeper in its middle alone
 @example([box(1.6, 2.6, 7.5, 10.5, 0.2), pit(2.0, 9.0, 2.0, 0.8, 0.4, "dish")], 2.1)
+@example([pit(2.0, 8.0, 1.5, 0.5, 0.3, "dish"), pit(2.1, 9.5, 1.5, 0.5, 0.3, "dish")], 2.0)  # they cross once
 def test_sections_equal_independent_integration_across_the_face(layout, height_mm):
     x = height_mm * MM
     # At an end itself, rounding decides on which side a height lies.

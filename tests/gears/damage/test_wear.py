@@ -128,3 +128,10 @@ def test_wear_without_depth_and_without_end_is_refused() -> None:
     assert not list(Wear("gear", (0.0, 1e-6)).own_problems())
     with pytest.raises(ValueError, match="a finite depth or turns"):
         worn_until(PAIR, rigid, COEFFICIENT)
+
+
+def test_depths_in_the_table_run_from_the_root_to_the_tip_of_either_gear() -> None:
+    pinion, gear = (Wear(name, (4e-6, 1e-6, 2e-6)).table_row()["wear_depths_um"] for name in ("pinion", "gear"))
+    # The path of contact begins at the pinion's root and ends at that of the gear.
+    assert [pinion[0], pinion[len(pinion) // 2], pinion[-1]] == pytest.approx([4.0, 1.0, 2.0])
+    assert gear == pytest.approx(pinion[::-1])
