@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType, TracebackType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
@@ -30,10 +35,12 @@ class Interruption:
         self.draining = False
         self._drain: Callable[[], bool] = _at_once
         self._before: dict[signal.Signals, object] = {}
+        self._report = sys.unraisablehook
 
     def __enter__(self) -> Interruption:
         if threading.current_thread() is threading.main_thread():
             self._before = {number: signal.signal(number, self._stop) for number in SIGNALS}
+            self._report, sys.unraisablehook = sys.unraisablehook, self._lost
         return self
 
     def __exit__(
@@ -41,6 +48,8 @@ class Interruption:
     ) -> None:
         for number, handler in self._before.items():
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)  # type: ignore[arg-type]
+        if self._before:
+            sys.unraisablehook = self._report
 
     def check(self) -> None:
         """Raise again if a signal came: an exception that met a destructor or a callback of C code is lost."""
@@ -55,6 +64,11 @@ class Interruption:
             yield
         finally:
             self._drain = _at_once
+
+    def _lost(self, unraisable: UnraisableHookArgs) -> None:
+        """Say nothing of an interruption that C code swallowed: `check` raises it again, and one message is enough."""
+        if not (self.requested and unraisable.exc_type is KeyboardInterrupt):
+            self._report(unraisable)
 
     def _stop(self, _number: int, _frame: FrameType | None) -> None:
         if self.requested:
