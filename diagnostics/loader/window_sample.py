@@ -83,17 +83,18 @@ class RowGroupSignals:
     def _cached(self, number: int) -> np.ndarray:
         assert self.cache is not None
         folder = self.cache / self._key()
-        path = folder / f"{self.split}-{number:05d}.npy"
+        path = folder / f"{self.split}-{number:05d}.f32"
+        lengths = self.index.lengths[number]
         if not path.exists():
             folder.mkdir(parents=True, exist_ok=True)
-            lengths = self.index.lengths[number]
             usable = [row for row in range(lengths.size) if lengths[row]]
             joined = np.concatenate([np.stack(found) for found in self._decoded(number, usable).values()], axis=1)
             part = path.with_suffix(f".{os.getpid()}.part")
-            with part.open("wb") as file:
-                np.save(file, joined)
+            np.asarray(joined, dtype=np.float32).tofile(part)
             part.replace(path)  # at once: another process sees the whole file or none
-        return np.asarray(np.load(path, mmap_mode="r"))
+        # Plain numbers: NumPy's header is parsed as Python source, which Python 3.11 at times refuses in a worker.
+        shape = (len(self.dataset.channels), int(lengths.sum()))
+        return np.asarray(np.memmap(path, dtype=np.float32, mode="r", shape=shape))
 
     def _key(self) -> str:
         facts = {

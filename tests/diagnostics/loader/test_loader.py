@@ -140,7 +140,7 @@ def test_the_cache_gives_the_same_windows_and_is_read_without_the_set(
     expected = contents(loader(dataset))
     assert contents(loader(dataset, 2, cache=tmp_path)) == contents(loader(dataset, 2))
     files = sorted(tmp_path.rglob("*"))
-    assert [path.suffix for path in files if path.is_file()] == [".npy"] * 6  # 36 records in groups of 7
+    assert [path.suffix for path in files if path.is_file()] == [".f32"] * 6  # 36 records in groups of 7
     again = loader(dataset, cache=tmp_path)
 
     def unreadable(*_: Any) -> None:
