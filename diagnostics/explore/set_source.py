@@ -18,7 +18,7 @@ from diagnostics.explore.payload import PageSource, packed_indicators
 from diagnostics.explore.record_views import packed_wave
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.channel_quantities import channel_quantities
-from diagnostics.records.gear_train import GEARS
+from diagnostics.records.gear_train import GEARS, GearNames
 from diagnostics.records.named_set import words_of
 from diagnostics.records.planetary_members import as_pair, teeth_labels
 from diagnostics.records.recording import TACHO_NAME, Recording, gear_names, recordings, turned
@@ -75,7 +75,7 @@ def set_source(dataset: Dataset, table: RecordTable, kept: np.ndarray) -> PageSo
         damage=lambda numbers: _damage(dataset, damage_table(), numbers),
         called=dict(words.names.gears),
         titles={name: words.column(name) for name in labels},
-        flanks=lambda row: _flanks(dataset, labels, row),
+        flanks=lambda row: _flanks(dataset, labels, table.named, row),
         quantities=shown_internals(dataset),
         internals=lambda numbers, detail, fine: internal_waves(dataset, numbers, detail, fine),
     )
@@ -155,8 +155,8 @@ def _damage(dataset: Dataset, table: pa.Table | None, ids: np.ndarray) -> dict[i
     return {record: outlines(found) for record, found in by_record.items()}
 
 
-def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[str, Any]:
-    names, known = words_of(dataset).names, gear_names(dataset)
+def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], known: GearNames, row: int) -> dict[str, Any]:
+    names = words_of(dataset).names
     every = [*GEARS, *(f"{mesh}.{gear}" for mesh in known.meshes for gear in GEARS)]
     return {
         gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear.replace('.', '_')}"][row]), names)

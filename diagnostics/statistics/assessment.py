@@ -22,14 +22,15 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.statistics.detectable_size import detection_curve, size_at
+from diagnostics.statistics.detectable_size import detection_curves, size_at
 from diagnostics.statistics.evaluation import LEVEL, RESAMPLES, Interval
 from diagnostics.statistics.indicator_result import UNDEFINED, IndicatorResult, StateResult
 from diagnostics.statistics.judged_records import JudgedRecords, judged_records, monotonicity
 from diagnostics.statistics.multiple_tests import false_discovery, holm, paired_p, specimen_means, two_sample_p
-from diagnostics.statistics.separability import Separability, separability_of, weighted_spearman
+from diagnostics.statistics.separability import Separability, rank_correlation, separability_of
 
 DEGREE = 2
 """Speed, load and noise enter as a parabola: amplitudes pass resonances."""
@@ -149,7 +150,7 @@ def assessment(
         found.append(_one(records, name, table.matrix.values[:, column], chosen))
         if advance:
             advance()
-    _adjust(found)
+    _test(records, table.matrix, found)
     _add_sensor_shares(table, found)
     return sorted(found, key=lambda result: (_last_if_nan(result.score_others.value), result.column))
 
@@ -159,8 +160,8 @@ def _one(records: JudgedRecords, name: str, values: np.ndarray, settings: Assess
     judged = separability_of(records, name, values)
     direction = judged.direction or 1
     rows = np.flatnonzero(np.isfinite(values))
-    loss = records.labels["mesh_stiffness_loss"][rows]
-    stiffness = records.interval(weighted_spearman(values[rows], loss, records.weights[:, rows]), rows)
+    loss = records.centred("mesh_stiffness_loss", rows)
+    stiffness = records.interval(rank_correlation(values[rows], loss, records.weights[:, rows]), rows)
     before, after = records.steps
     rise = values[after] - values[before]
     kept = np.isfinite(rise)
@@ -179,30 +180,38 @@ def _one(records: JudgedRecords, name: str, values: np.ndarray, settings: Assess
 
 def _other_specimens(records: JudgedRecords, values: np.ndarray, judged: Separability) -> dict[str, StateResult]:
     """Return each state against all healthy records."""
-    healthy, specimen = records.labels["fault"] == HEALTHY, records.labels["specimen_id"]
     found = {}
     for state, area in judged.auc.items():
-        rows = np.flatnonzero(np.isfinite(values) & (healthy | (records.labels["state"] == state)))
-        positive = ~healthy[rows]
-        effect = cohens_d(values[rows], positive, records.weights[:, rows])
-        groups = [rows[~positive], rows[positive]]
-        p_value = two_sample_p(*(specimen_means(values[group], specimen[group]) for group in groups))
-        found[state] = StateResult(area, records.interval(effect, rows), p_value)
+        groups = _against_healthy(records, values, state)
+        rows = np.sort(np.concatenate(groups))
+        effect = cohens_d(values[rows], records.labels["fault"][rows] != HEALTHY, records.weights[:, rows])
+        found[state] = StateResult(area, records.interval(effect, rows))
     return found
+
+
+def _against_healthy(records: JudgedRecords, values: np.ndarray, state: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rows of healthy records and of a state in which the indicator is defined."""
+    healthy, defined = records.labels["fault"] == HEALTHY, np.isfinite(values)
+    damaged = ~healthy & (records.labels["state"] == state)
+    return np.flatnonzero(defined & healthy), np.flatnonzero(defined & damaged)
 
 
 def _same_specimen(records: JudgedRecords, values: np.ndarray, judged: Separability) -> dict[str, StateResult]:
     """Return each state against the specimen's own healthy record."""
-    pairs, specimen = records.pairs, records.labels["specimen_id"]
-    change = values[pairs.rows] - values[pairs.partners]
     found = {}
     for state, share in judged.same.items():
-        kept = np.isfinite(change) & (records.labels["state"][pairs.rows] == state)
-        rows, difference = pairs.rows[kept], change[kept]
+        rows, difference = _changes(records, values, state)
         effect = paired_d(difference, records.weights[:, rows])
-        p_value = paired_p(specimen_means(difference, specimen[rows])) if rows.size else math.nan
-        found[state] = StateResult(records.interval(share, rows), records.interval(effect, rows), p_value)
+        found[state] = StateResult(records.interval(share, rows), records.interval(effect, rows))
     return found
+
+
+def _changes(records: JudgedRecords, values: np.ndarray, state: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rows of a state that have a healthy partner, and how far the indicator lies above it."""
+    pairs = records.pairs
+    change = values[pairs.rows] - values[pairs.partners]
+    kept = np.isfinite(change) & (records.labels["state"][pairs.rows] == state)
+    return pairs.rows[kept], change[kept]
 
 
 def _score(records: JudgedRecords, samples: list[np.ndarray], direction: int) -> Interval:
@@ -213,13 +222,21 @@ def _score(records: JudgedRecords, samples: list[np.ndarray], direction: int) ->
     return records.interval(0.5 + direction * (mean - 0.5), np.arange(records.weights.shape[1]))
 
 
-def _adjust(found: list[IndicatorResult]) -> None:
-    """Adjust the p-values of each design for all indicators, channels and states."""
-    for design in ("others", "same"):
+def _test(records: JudgedRecords, matrix: FeatureMatrix, found: list[IndicatorResult]) -> None:
+    """Add the p-values of both designs, adjusted for all indicators, channels and states."""
+    values = dict(zip(matrix.names, matrix.values.T, strict=True))
+    specimen = records.labels["specimen_id"]
+    others = [
+        tuple(specimen_means(own[group], specimen[group]) for group in _against_healthy(records, own, state))
+        for own, state in ((values[entry.column], state) for entry in found for state in entry.others)
+    ]
+    changes = [_changes(records, values[entry.column], state) for entry in found for state in entry.same]
+    same = [specimen_means(change, specimen[rows]) for rows, change in changes]
+    for design, p_values in (("others", two_sample_p(others)), ("same", paired_p(same))):
         results = [result for entry in found for result in getattr(entry, design).values()]
-        p_values = np.array([result.p_value for result in results], dtype=np.float64)
-        for result, strict, mild in zip(results, holm(p_values), false_discovery(p_values), strict=True):
-            result.holm, result.false_discovery = float(strict), float(mild)
+        adjusted = zip(results, p_values, holm(p_values), false_discovery(p_values), strict=True)
+        for result, p_value, strict, mild in adjusted:
+            result.p_value, result.holm, result.false_discovery = float(p_value), float(strict), float(mild)
 
 
 def _sensitivity(labels: dict[str, np.ndarray], values: np.ndarray, channel: str) -> dict[str, float]:
@@ -268,11 +285,10 @@ def _detectable(
     smallest: dict[str, float] = {}
     for design, (judged, healthy, rows) in designs.items():
         kept = np.isfinite(judged)
-        for size, label in SIZES.items():
-            if label not in records.labels:
-                continue
-            sizes, weights = records.labels[label][rows[kept]], records.weights[:, rows[kept]]
-            curve = detection_curve(judged[kept], healthy[kept], sizes, weights, false_alarms)
+        sizes = {size: records.labels[label][rows[kept]] for size, label in SIZES.items() if label in records.labels}
+        weights = records.weights[:, rows[kept]]
+        curves = detection_curves(judged[kept], healthy[kept], list(sizes.values()), weights, false_alarms)
+        for size, curve in zip(sizes, curves, strict=True):
             smallest[f"{design}_{size}"] = float(curve.size[0]) if curve else math.nan
             for name, level in DETECTION_SHARES.items():
                 found[f"{design}_{size}_{name}"] = size_interval(size_at(curve, level)) if curve else UNDEFINED

@@ -14,6 +14,7 @@ records. Source: derived.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,18 +113,32 @@ def detection_curve(
     false_alarms : float
         Share of healthy records above the threshold.
     """
-    damaged = np.flatnonzero(~healthy & (size > 0.0))
+    return detection_curves(values, healthy, [size], weights, false_alarms)[0]
+
+
+def detection_curves(
+    values: np.ndarray, healthy: np.ndarray, sizes: Sequence[np.ndarray], weights: np.ndarray, false_alarms: float
+) -> list[DetectionCurve | None]:
+    """Return the curve over each of several sizes of the same damage; parameters as of `detection_curve`."""
+    if not healthy.any():
+        return [None] * len(sizes)
+    threshold = weighted_quantile(values[healthy], weights[:, healthy], 1.0 - false_alarms)
+    alarms = weights * (values > threshold[:, None])
+    return [_curve(alarms, ~healthy & (size > 0.0), size, weights) for size in sizes]
+
+
+def _curve(alarms: np.ndarray, chosen: np.ndarray, size: np.ndarray, weights: np.ndarray) -> DetectionCurve | None:
+    damaged = np.flatnonzero(chosen)
     order = damaged[np.argsort(size[damaged], kind="stable")]
     members = _groups(order, size[order])
-    if len(members) < 2 or not healthy.any():
+    if len(members) < 2:
         return None
-    threshold = weighted_quantile(values[healthy], weights[:, healthy], 1.0 - false_alarms)
-    counts = np.stack([weights[:, rows].sum(axis=1) for rows in members], axis=1)
-    alarms = np.stack(
-        [(weights[:, rows] * (values[rows] > threshold[:, None])).sum(axis=1) for rows in members], axis=1
-    )
+    belongs = np.zeros((size.size, len(members)))
+    for group, rows in enumerate(members):
+        belongs[rows, group] = 1.0
     medians = np.array([float(np.median(size[rows])) for rows in members])
-    return DetectionCurve(medians, isotonic(alarms, counts))
+    # sums of whole numbers: a product of matrices gives them without a rounding error
+    return DetectionCurve(medians, isotonic(alarms @ belongs, weights @ belongs))
 
 
 def _groups(order: np.ndarray, size: np.ndarray) -> list[np.ndarray]:
@@ -151,19 +166,24 @@ def isotonic(sums: np.ndarray, counts: np.ndarray) -> np.ndarray:
     sums, counts : (b, g) float64
         Sum and weight of each group; a group without weight takes the value of the one below.
     """
-    groups = sums.shape[1]
-    zero = np.zeros((sums.shape[0], 1))
-    total = np.concatenate([zero, np.cumsum(sums, axis=1)], axis=1)
-    weight = np.concatenate([zero, np.cumsum(counts, axis=1)], axis=1)
-    # mean of groups j ... k for all j <= k; empty stretches take part in neither bound
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = (total[:, None, 1:] - total[:, :-1, None]) / (weight[:, None, 1:] - weight[:, :-1, None])
+    total, weight = _sums_from_start(sums), _sums_from_start(counts)
     fit = np.empty_like(sums)
-    for i in range(groups):
-        block = mean[:, : i + 1, i:]
-        highest = np.where(np.isfinite(block), block, -np.inf).max(axis=1)
-        fit[:, i] = np.where(np.isfinite(highest), highest, np.inf).min(axis=1)
+    highest = np.full(sums.T.shape, -np.inf)
+    # mean of groups j ... k: the largest over j <= i, of which the least over k >= i is the fit of group i
+    for i in range(sums.shape[1]):
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = (total[i + 1 :] - total[i]) / (weight[i + 1 :] - weight[i])
+        mean[~np.isfinite(mean)] = -np.inf  # a stretch without weight takes part in neither bound
+        np.maximum(highest[i:], mean, out=highest[i:])
+        fit[:, i] = np.where(np.isneginf(highest[i:]), np.inf, highest[i:]).min(axis=0)
     return fit
+
+
+def _sums_from_start(values: np.ndarray) -> np.ndarray:
+    """Return the sums of the groups before each, (g + 1, b): resamples stand together in memory."""
+    found = np.zeros((values.shape[1] + 1, values.shape[0]))
+    np.cumsum(values.T, axis=0, out=found[1:])
+    return found
 
 
 def size_at(curve: DetectionCurve, share: float) -> np.ndarray:

@@ -98,12 +98,33 @@ def weighted_midranks(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """
     order = np.argsort(values, kind="stable")
     ordered = values[order]
-    below = np.concatenate([np.zeros((weights.shape[0], 1)), np.cumsum(weights[:, order], axis=1)], axis=1)
+    # resamples stand together in memory, so that every step below is one over long rows
+    below = np.zeros((values.size + 1, weights.shape[0]))
+    np.cumsum(weights.T[order], axis=0, out=below[1:])
     first = np.searchsorted(ordered, ordered, side="left")
     last = np.searchsorted(ordered, ordered, side="right")
-    ranks = np.empty_like(weights)
-    ranks[:, order] = 0.5 * (below[:, first] + below[:, last])
-    return ranks
+    ranks = np.empty((values.size, weights.shape[0]))
+    ranks[order] = below[first] + below[last]
+    ranks *= 0.5
+    return ranks.T
+
+
+@dataclass(frozen=True, slots=True)
+class CentredRanks:
+    """Midranks about their mean in every resample, (b, n); the same times the weights; their squared spread, (b,)."""
+
+    ranks: np.ndarray
+    weighted: np.ndarray
+    spread: np.ndarray
+
+
+def centred_ranks(values: np.ndarray, weights: np.ndarray) -> CentredRanks:
+    """Return the centred ranks of values; parameters as of `weighted_midranks`."""
+    ranks = weighted_midranks(values, weights)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ranks = ranks - ((weights * ranks).sum(axis=1) / weights.sum(axis=1))[:, None]
+    weighted = weights * ranks
+    return CentredRanks(ranks, weighted, (weighted * ranks).sum(axis=1))
 
 
 def weighted_auc(values: np.ndarray, positive: np.ndarray, weights: np.ndarray, specimen: np.ndarray) -> np.ndarray:
@@ -175,7 +196,9 @@ def column_auc(values: np.ndarray, positive: np.ndarray) -> np.ndarray:
 
 def interval(samples: np.ndarray, specimens: int) -> Interval:
     """Return the interval of a statistic: row 0 is its value, the others its resamples."""
-    defined = samples[1:][np.isfinite(samples[1:])]
+    drawn = samples[1:]
+    finite = np.isfinite(drawn)
+    defined = drawn if finite.all() else drawn[finite]
     if specimens < 2 or defined.size == 0:
         return Interval(float(samples[0]), math.nan, math.nan)
     low, high = np.quantile(defined, [(1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0])

@@ -28,7 +28,7 @@ class StateResult:
 
     separation: Interval
     effect: Interval
-    p_value: float
+    p_value: float = math.nan
     holm: float = math.nan
     false_discovery: float = math.nan
 

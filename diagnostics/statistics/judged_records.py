@@ -9,19 +9,21 @@ Each ladder is one specimen at one operating point and repeat, its records in or
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 
 from diagnostics.indicators.history import histories
 from diagnostics.records.state_classes import HEALTHY, ordered_states
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval
+from diagnostics.statistics.evaluation import CentredRanks, Interval, bootstrap_weights, centred_ranks, interval
 from diagnostics.statistics.multiple_tests import PairedRecords, paired_records
 
 RESAMPLES = 400
 LARGEST_BLOCK = 4_000_000
 """Largest resamples times records; more records get fewer resamples, since their intervals are narrow anyway."""
+
+MOST_KNOWN = 4
 
 
 def ladder_steps(ladders: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -67,6 +69,8 @@ class JudgedRecords:
         Same specimen before and after.
     steps : ((k,) int, (k,) int)
         Rows before and after each step up a ladder of damage.
+    known : dict
+        Ranks of labels that were asked for.
     """
 
     labels: dict[str, np.ndarray]
@@ -74,6 +78,16 @@ class JudgedRecords:
     weights: np.ndarray
     pairs: PairedRecords
     steps: tuple[np.ndarray, np.ndarray]
+    known: dict[tuple[str, bytes], CentredRanks] = field(default_factory=dict, repr=False, compare=False)
+
+    def centred(self, label: str, rows: np.ndarray) -> CentredRanks:
+        """Return the centred ranks of a label over these rows; most indicators are defined on the same."""
+        key = (label, rows.tobytes())
+        if key not in self.known:
+            if len(self.known) >= MOST_KNOWN:
+                self.known.clear()
+            self.known[key] = centred_ranks(self.labels[label][rows], self.weights[:, rows])
+        return self.known[key]
 
     def interval(self, samples: np.ndarray, rows: np.ndarray) -> Interval:
         """Return the interval of a statistic over these rows."""

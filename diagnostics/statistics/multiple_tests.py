@@ -12,8 +12,7 @@ operating points falls out; noise and start angle do not. Source: derived.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,24 +100,60 @@ def specimen_means(values: np.ndarray, specimen: np.ndarray) -> np.ndarray:
     return np.asarray(np.bincount(index, values) / np.bincount(index))
 
 
-def two_sample_p(healthy: np.ndarray, damaged: np.ndarray) -> float:
-    """Return the two-sided p-value of Mann-Whitney's test on specimen means; NaN below three specimens a side."""
-    if min(healthy.size, damaged.size) < FEWEST_SPECIMENS:
-        return math.nan
+def two_sample_p(samples: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    """Return the two-sided p-values of Mann-Whitney's test on specimen means; NaN below three specimens a side.
+
+    Parameters
+    ----------
+    samples : sequence of ((h,), (d,) float64)
+        Healthy and damaged specimens of each test.
+
+    Returns
+    -------
+    (tests,) float64
+    """
     from scipy.stats import mannwhitneyu
 
-    return float(mannwhitneyu(damaged, healthy, alternative="two-sided").pvalue)
+    found = np.full(len(samples), np.nan)
+    judged = {k: pair for k, pair in enumerate(samples) if min(map(len, pair)) >= FEWEST_SPECIMENS}
+    for alike in _alike(
+        {k: np.concatenate(pair) for k, pair in judged.items()}, {k: len(p[0]) for k, p in judged.items()}
+    ):
+        healthy, damaged = (np.stack([judged[k][side] for k in alike]) for side in (0, 1))
+        found[alike] = mannwhitneyu(damaged, healthy, alternative="two-sided", axis=1).pvalue
+    return found
 
 
-def paired_p(difference: np.ndarray) -> float:
-    """Return the two-sided p-value of Wilcoxon's signed-rank test on specimen means; NaN below three specimens."""
-    if difference.size < FEWEST_SPECIMENS:
-        return math.nan
-    if not difference.any():
-        return 1.0
+def paired_p(differences: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the two-sided p-values of Wilcoxon's signed-rank test on specimen means; NaN below three specimens.
+
+    Parameters
+    ----------
+    differences : sequence of (k,) float64
+        Of the specimens of each test.
+
+    Returns
+    -------
+    (tests,) float64
+    """
     from scipy.stats import wilcoxon
 
-    return float(wilcoxon(difference, alternative="two-sided").pvalue)
+    found = np.array([np.nan if own.size < FEWEST_SPECIMENS or own.any() else 1.0 for own in differences])
+    judged = {k: own for k, own in enumerate(differences) if own.size >= FEWEST_SPECIMENS and own.any()}
+    # a zero beside the amounts: one that is zero itself counts as a tie
+    amounts = {k: np.append(np.abs(own), 0.0) for k, own in judged.items()}
+    for alike in _alike(amounts, dict.fromkeys(judged, 0)):
+        found[alike] = wilcoxon(np.stack([judged[k] for k in alike]), alternative="two-sided", axis=1).pvalue
+    return found
+
+
+def _alike(values: Mapping[int, np.ndarray], sides: Mapping[int, int]) -> list[list[int]]:
+    """Return tests that can be done together: of one size, without ties, for which scipy takes another method."""
+    groups: dict[tuple[int, int, int], list[int]] = {}
+    for k, own in values.items():
+        is_tied = np.unique(own).size < own.size
+        groups.setdefault((own.size, sides[k], k if is_tied else -1), []).append(k)
+    return list(groups.values())
 
 
 def holm(p_values: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.statistics.evaluation import Interval, weighted_auc, weighted_midranks
+from diagnostics.statistics.evaluation import CentredRanks, Interval, centred_ranks, weighted_auc
 from diagnostics.statistics.judged_records import RESAMPLES, JudgedRecords, judged_records
 from diagnostics.statistics.multiple_tests import shares_above
 
@@ -93,8 +93,7 @@ def separability_of(records: JudgedRecords, name: str, values: np.ndarray) -> Se
         kept = np.isfinite(change) & (labels["state"][records.pairs.rows] == state)
         same[state] = shares_above(change[kept], records.weights[:, records.pairs.rows[kept]])
     rows = np.flatnonzero(defined)
-    area = labels["damaged_area_mm2"][rows]
-    correlation = weighted_spearman(values[rows], area, records.weights[:, rows])
+    correlation = rank_correlation(values[rows], records.centred("damaged_area_mm2", rows), records.weights[:, rows])
     direction = _sign([own[0] for own in same.values()]) or _sign([found.value for found in auc.values()])
     spearman = records.interval(correlation, rows)
     return Separability(name, auc, spearman, float(np.mean(defined)), direction, samples, same)
@@ -130,12 +129,11 @@ def weighted_spearman(first: np.ndarray, second: np.ndarray, weights: np.ndarray
     -------
     (b,) float64
     """
-    total = weights.sum(axis=1, keepdims=True)
+    return rank_correlation(first, centred_ranks(second, weights), weights)
+
+
+def rank_correlation(first: np.ndarray, second: CentredRanks, weights: np.ndarray) -> np.ndarray:
+    """Return what `weighted_spearman` does, the ranks of the second side given."""
+    own = centred_ranks(first, weights)
     with np.errstate(invalid="ignore", divide="ignore"):
-        centred = [
-            ranks - (weights * ranks).sum(axis=1, keepdims=True) / total
-            for ranks in (weighted_midranks(first, weights), weighted_midranks(second, weights))
-        ]
-        covariance = (weights * centred[0] * centred[1]).sum(axis=1)
-        spread = [(weights * side * side).sum(axis=1) for side in centred]
-        return np.asarray(covariance / np.sqrt(spread[0] * spread[1]))
+        return np.asarray((own.weighted * second.ranks).sum(axis=1) / np.sqrt(own.spread * second.spread))
