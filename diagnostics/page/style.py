@@ -82,7 +82,8 @@ def png_bytes(figure: Figure) -> bytes:
     write_powers(figure)
     drawn, stream = io.BytesIO(), io.BytesIO()
     with styled():
-        figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH)
+        # packed once, with its palette
+        figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH, pil_kwargs={"compress_level": 0})
     picture = Image.open(drawn).convert("RGB")
     small = picture.quantize(PALETTE, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     small.save(stream, format="png", optimize=True)

@@ -19,6 +19,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+Densities = Mapping[str, tuple[np.ndarray, np.ndarray]]
+"""Frequencies [Hz] and density per Hz of every channel."""
+
 ROUGHNESS = "floor_roughness"
 DIFFERENCE = "floor_difference"
 
@@ -61,9 +64,13 @@ def floor_roughness(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[st
         frequency. `floor_difference`, of two channels or more: of the log density off the mean over channels, each
         channel's own mean taken off, so that gains do not count.
     """
+    return _roughness(fs_hz, _densities(channels, fs_hz))
+
+
+def _roughness(fs_hz: float, densities: Densities) -> dict[str, float]:
     if fs_hz / RATE_PER_BANDWIDTH < BAND_HZ[1]:
         return {}
-    found = [_log_floor(np.asarray(signal, dtype=np.float64), fs_hz) for signal in channels.values()]
+    found = [_log_floor(*density) for density in densities.values()]
     if not all(floor.size for floor in found):
         return {}
     level = np.array([floor - floor.mean() for floor in found])
@@ -78,12 +85,16 @@ def floor_roughness(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[st
 
 def floor_features(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[str, float]:
     """Return what distances take from between the lines: `noise_floor` and `floor_roughness`."""
-    return noise_floor(channels, fs_hz) | floor_roughness(channels, fs_hz)
+    densities = _densities(channels, fs_hz)
+    return _medians(fs_hz, densities) | _roughness(fs_hz, densities)
 
 
-def _log_floor(signal: np.ndarray, fs_hz: float) -> np.ndarray:
+def _densities(channels: Mapping[str, np.ndarray], fs_hz: float) -> Densities:
+    return {name: spectral_density(np.asarray(signal, dtype=np.float64), fs_hz) for name, signal in channels.items()}
+
+
+def _log_floor(frequency_hz: np.ndarray, density: np.ndarray) -> np.ndarray:
     """Return the log of a low quantile of the density in every bin of the band; empty where bins hold too little."""
-    frequency_hz, density = spectral_density(signal, fs_hz)
     edges = np.arange(BAND_HZ[0], BAND_HZ[1] + 0.5 * BIN_HZ, BIN_HZ)
     ends = np.searchsorted(frequency_hz, edges - 1e-6)
     if np.diff(ends).min() < LEAST_IN_BIN:
@@ -123,9 +134,12 @@ def noise_floor(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[str, f
     dict of str to float
         `noise_floor_100hz__lid` is the octave from 100 Hz on in channel `lid`.
     """
+    return _medians(fs_hz, _densities(channels, fs_hz))
+
+
+def _medians(fs_hz: float, densities: Densities) -> dict[str, float]:
     found = {}
-    for channel, signal in channels.items():
-        frequency_hz, density = spectral_density(np.asarray(signal, dtype=np.float64), fs_hz)
+    for channel, (frequency_hz, density) in densities.items():
         for low_hz, high_hz in octaves_hz(fs_hz):
             inside = density[(frequency_hz >= low_hz) & (frequency_hz < high_hz)]
             found[f"{FLOOR}_{low_hz:g}hz__{channel}"] = float(np.median(inside)) if inside.size else np.nan

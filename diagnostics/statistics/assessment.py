@@ -226,10 +226,12 @@ def _test(records: JudgedRecords, matrix: FeatureMatrix, found: list[IndicatorRe
     """Add the p-values of both designs, adjusted for all indicators, channels and states."""
     values = dict(zip(matrix.names, matrix.values.T, strict=True))
     specimen = records.labels["specimen_id"]
-    others = [
-        tuple(specimen_means(own[group], specimen[group]) for group in _against_healthy(records, own, state))
-        for own, state in ((values[entry.column], state) for entry in found for state in entry.others)
-    ]
+    others = []
+    for entry in found:
+        for state in entry.others:
+            healthy, damaged = _against_healthy(records, values[entry.column], state)
+            means = [specimen_means(values[entry.column][rows], specimen[rows]) for rows in (healthy, damaged)]
+            others.append((means[0], means[1]))
     changes = [_changes(records, values[entry.column], state) for entry in found for state in entry.same]
     same = [specimen_means(change, specimen[rows]) for rows, change in changes]
     for design, p_values in (("others", two_sample_p(others)), ("same", paired_p(same))):
