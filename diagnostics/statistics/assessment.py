@@ -157,11 +157,12 @@ def assessment(
 
 def _one(records: JudgedRecords, name: str, values: np.ndarray, settings: AssessmentSettings) -> IndicatorResult:
     indicator, channel = name.split("__", 1)
-    judged = separability_of(records, name, values)
+    ranks = records.centred_values(values)
+    judged = separability_of(records, name, values, ranks)
     direction = judged.direction or 1
     rows = np.flatnonzero(np.isfinite(values))
     loss = records.centred("mesh_stiffness_loss", rows)
-    stiffness = records.interval(rank_correlation(values[rows], loss, records.weights[:, rows]), rows)
+    stiffness = records.interval(rank_correlation(ranks, loss), rows)
     before, after = records.steps
     rise = values[after] - values[before]
     kept = np.isfinite(rise)

@@ -23,7 +23,8 @@ RESAMPLES = 400
 LARGEST_BLOCK = 4_000_000
 """Largest resamples times records; more records get fewer resamples, since their intervals are narrow anyway."""
 
-MOST_KNOWN = 4
+MOST_KNOWN = 2
+"""Ranks of labels that are kept: area and loss of stiffness where most indicators are defined; more fill memory."""
 
 
 def ladder_steps(ladders: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -88,6 +89,11 @@ class JudgedRecords:
                 self.known.clear()
             self.known[key] = centred_ranks(self.labels[label][rows], self.weights[:, rows])
         return self.known[key]
+
+    def centred_values(self, values: np.ndarray) -> CentredRanks:
+        """Return the centred ranks of an indicator, (records,), over the rows where it is defined."""
+        rows = np.flatnonzero(np.isfinite(values))
+        return centred_ranks(values[rows], self.weights[:, rows])
 
     def interval(self, samples: np.ndarray, rows: np.ndarray) -> Interval:
         """Return the interval of a statistic over these rows."""

@@ -75,12 +75,13 @@ def separability(matrix: FeatureMatrix, seed: int, resamples: int = RESAMPLES) -
         Most resamples to draw.
     """
     records = judged_records(matrix.labels, seed, resamples)
-    found = [separability_of(records, name, matrix.values[:, column]) for column, name in enumerate(matrix.names)]
+    columns = zip(matrix.names, matrix.values.T, strict=True)
+    found = [separability_of(records, name, values, records.centred_values(values)) for name, values in columns]
     return sorted(found, key=lambda entry: (-entry.strength, entry.feature))
 
 
-def separability_of(records: JudgedRecords, name: str, values: np.ndarray) -> Separability:
-    """Return the separability of one column, (records,)."""
+def separability_of(records: JudgedRecords, name: str, values: np.ndarray, ranks: CentredRanks) -> Separability:
+    """Return the separability of one column, (records,), whose centred ranks are given."""
     labels, defined = records.labels, np.isfinite(values)
     healthy = labels["fault"] == HEALTHY
     change = values[records.pairs.rows] - values[records.pairs.partners]
@@ -93,7 +94,7 @@ def separability_of(records: JudgedRecords, name: str, values: np.ndarray) -> Se
         kept = np.isfinite(change) & (labels["state"][records.pairs.rows] == state)
         same[state] = shares_above(change[kept], records.weights[:, records.pairs.rows[kept]])
     rows = np.flatnonzero(defined)
-    correlation = rank_correlation(values[rows], records.centred("damaged_area_mm2", rows), records.weights[:, rows])
+    correlation = rank_correlation(ranks, records.centred("damaged_area_mm2", rows))
     direction = _sign([own[0] for own in same.values()]) or _sign([found.value for found in auc.values()])
     spearman = records.interval(correlation, rows)
     return Separability(name, auc, spearman, float(np.mean(defined)), direction, samples, same)
@@ -129,11 +130,10 @@ def weighted_spearman(first: np.ndarray, second: np.ndarray, weights: np.ndarray
     -------
     (b,) float64
     """
-    return rank_correlation(first, centred_ranks(second, weights), weights)
+    return rank_correlation(centred_ranks(first, weights), centred_ranks(second, weights))
 
 
-def rank_correlation(first: np.ndarray, second: CentredRanks, weights: np.ndarray) -> np.ndarray:
-    """Return what `weighted_spearman` does, the ranks of the second side given."""
-    own = centred_ranks(first, weights)
+def rank_correlation(first: CentredRanks, second: CentredRanks) -> np.ndarray:
+    """Return what `weighted_spearman` does of ranks of the same records and weights."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray((own.weighted * second.ranks).sum(axis=1) / np.sqrt(own.spread * second.spread))
+        return np.asarray((first.weighted * second.ranks).sum(axis=1) / np.sqrt(first.spread * second.spread))
