@@ -25,6 +25,7 @@ def specimen_housing(config: Config, specimen: Specimen) -> SpecimenHousing | No
     return None
 
 
+@lru_cache(maxsize=4)
 def housing_settle_s(config: Config, specimen: Specimen) -> float:
     """Return the time over which the modes settle [s], which every record asks for; 0 without any."""
     numbers = _giving_way(specimen)
