@@ -23,6 +23,7 @@ from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
 from diagnostics.page.provenance import without_path
+from diagnostics.records.usable_records import with_channels
 from diagnostics.report import report
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.report import PageOptions, write_report
@@ -31,6 +32,7 @@ from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.realism import meaning_of_scores
 from diagnostics.training.training import Training
 from siggen.errors import DatasetError, UsageError
+from tests.diagnostics.conftest import CHANNELS
 
 
 @pytest.fixture(scope="module")
@@ -201,8 +203,9 @@ def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
     assert any("--no-cnn" in note for note in notes)
 
 
+@pytest.mark.usefixtures("few_trees")
 def test_records_too_short_for_the_network_leave_the_rest(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
-    short = make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25)
+    short = with_channels(make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25), CHANNELS[:1])
     earlier = [tmp_path / "models" / "cnn.onnx", tmp_path / "figures" / "confusion_network.png"]
     for path in earlier:
         path.parent.mkdir()
@@ -226,7 +229,7 @@ def test_strongest_mesh_harmonic_is_found() -> None:
 def test_a_set_without_test_specimens_still_gets_its_report(dataset: Any, tmp_path: Path) -> None:
     only_training = dataset.table.filter(pc.equal(dataset.table.column("split"), "train"))
     small = type(dataset)(pa.table(only_training).slice(0, 9))
-    write_report(small, tmp_path, seed=0)
+    write_report(with_channels(small, CHANNELS[:1]), tmp_path, seed=0)
     metrics = json.loads((tmp_path / "metrics.json").read_text())
     assert metrics["training"] is None
     assert any("No classifier: split 'test' has no specimens" in note for note in metrics["notes"])
