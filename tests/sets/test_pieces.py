@@ -124,6 +124,7 @@ def test_ctrl_c_in_the_first_shard_loses_what_is_under_way_alone(
     assert not (run.path / FOLDER).exists()
 
 
+@pytest.mark.slow  # Ctrl-C above, and SIGKILL of test_generation_faults.py
 def test_a_killed_run_loses_no_more_than_a_part_of_each_worker(tmp_path: Path, reference: dict[str, bytes]) -> None:
     run = Started(tmp_path, "processes", 2, record_s=0.02, speed=200.0)
     run.wait(lambda: len(run.records()) >= 40)
