@@ -100,7 +100,8 @@ class TrainingOptions:
         typer.Option(
             "--test",
             metavar="DIR3",
-            help="Judge the classifiers on this set too. It needs the same channels, sampling rate and classes.",
+            help="Judge the classifiers on this set too. It needs the same channels (see --channel) and rate, and a "
+            "damage in common; of its other states it is said whether they are found.",
             show_default=False,
         ),
     ] = None

@@ -44,9 +44,10 @@ from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability, separability
 from diagnostics.training.detectors import Detectors, judged_detectors
 from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.other_set import OtherSet
 from diagnostics.training.realism import is_error_free
 from diagnostics.training.studies import Studies, run_studies, studies_metrics
-from diagnostics.training.training import OtherSet, Training, train_models, training_metrics
+from diagnostics.training.training import Training, train_models, training_metrics
 from diagnostics.training.training_sets import checked_table, measured_table, other_table
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError

@@ -83,15 +83,16 @@ def fitted_temperature(predictions: Predictions) -> float:
     change = 0.0
     for group in groups:
         left = predictions.specimen == group
-        temperature = _lowest(_rows(predictions, ~left))
-        found = _rows(predictions, left)
+        temperature = _lowest(predictions_of(predictions, ~left))
+        found = predictions_of(predictions, left)
         change += _log_loss(found, temperature) - _log_loss(found, 1.0)
     if change >= 0.0:
         return 1.0
     return float(_lowest(predictions) ** (groups.size / (groups.size + SHRINKING_SPECIMENS)))
 
 
-def _rows(predictions: Predictions, chosen: np.ndarray) -> Predictions:
+def predictions_of(predictions: Predictions, chosen: np.ndarray) -> Predictions:
+    """Return the predictions of some records; `chosen` are their numbers, or (n,) bool."""
     truth, probability, specimen = predictions.truth, predictions.probability, predictions.specimen
     return replace(predictions, truth=truth[chosen], probability=probability[chosen], specimen=specimen[chosen])
 

@@ -16,6 +16,8 @@ from diagnostics.base.seeding import Purpose, generator
 
 RESAMPLES = 1000
 LEVEL = 0.95
+UNKNOWN = -1
+"""Index of a state that a classifier does not know."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +43,7 @@ class Predictions:
     classes : tuple of str
         State names in the order of the columns of `probability`.
     truth : (n,) int
-        Index of the true state.
+        Index of the true state; UNKNOWN for a record of another set in a state that is none of `classes`.
     probability : (n, classes) float64
         Predicted probabilities.
     specimen : (n,) int

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.statistics.calibration import Calibration, calibrated, calibration
+from diagnostics.statistics.calibration import Calibration, calibrated, calibration, predictions_of
 from diagnostics.statistics.detection import Detection, detection, detection_metrics
-from diagnostics.statistics.evaluation import Predictions, macro_auroc
+from diagnostics.statistics.evaluation import UNKNOWN, Predictions, macro_auroc
 from diagnostics.statistics.scores import Scores, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
@@ -72,14 +72,19 @@ def judged(
     seed: int,
     healthy: str | None = None,
 ) -> Judged:
-    """Judge the test predictions of one classifier; its temperature comes from validation specimens."""
+    """Judge the test predictions of one classifier; its temperature comes from validation specimens.
+
+    Records of a class that it does not know are judged by whether they are found damaged, and by nothing else.
+    """
     found = calibrated(uncalibrated, temperature)
+    known = np.flatnonzero(found.truth != UNKNOWN)
+    named = predictions_of(found, known)
     return Judged(
         name,
-        scores(found, seed),
+        scores(named, seed),
         permuted_auroc,
         details,
-        calibration(uncalibrated, temperature, seed),
+        calibration(predictions_of(uncalibrated, known), temperature, seed),
         found,
         detection(found, healthy, seed) if healthy else None,
     )

@@ -10,9 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pyarrow as pa
 
-from diagnostics.indicators.table import RecordTable
+from diagnostics.indicators.classifier_table import table_settings
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.signal.shaft_signals import SHAFT_ORDERS
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 STEPS = 1024
@@ -169,3 +172,8 @@ def moved(records: AveragedRecords, rng: np.random.Generator, gain_db: float, te
     factor = np.exp(gain + 1j * (phase + turn)).astype(np.complex64)
     healthy = None if records.healthy is None else records.healthy * factor
     return replace(records, lines=records.lines * factor, healthy=healthy)
+
+
+def table_averages(dataset: Dataset, table: pa.Table) -> AveragedRecords:
+    """Return the averages of the records of a feature table, from the table of indicators that it was made of."""
+    return averaged_records(record_table(dataset, table_settings(table)))

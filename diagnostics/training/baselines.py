@@ -19,7 +19,7 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import CLASS
 from diagnostics.statistics.calibration import calibrated, fitted_temperature
-from diagnostics.statistics.evaluation import Predictions, macro_auroc
+from diagnostics.statistics.evaluation import UNKNOWN, Predictions, macro_auroc
 from diagnostics.training.splits import SpecimenSplit
 
 STRENGTHS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
@@ -93,8 +93,12 @@ def calibrated_classifier(
 
 
 def state_index(matrix: FeatureMatrix, classes: tuple[str, ...]) -> np.ndarray:
-    """Return the position of every record's class in `classes`, (n,) int; healthy states are one class."""
-    return np.array([classes.index(name) for name in matrix.labels[CLASS].tolist()], dtype=np.int64)
+    """Return the position of every record's class in `classes`, (n,) int; healthy states are one class.
+
+    UNKNOWN where it is none of them, which only records of another set can be.
+    """
+    places = {name: place for place, name in enumerate(classes)}
+    return np.array([places.get(name, UNKNOWN) for name in matrix.labels[CLASS].tolist()], dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,22 +2,37 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+import pyarrow as pa
 
+from diagnostics.base.progress import Stage
+from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.record_classes import STATE, set_classes
 from diagnostics.records.recording import gear_names
-from diagnostics.records.state_classes import HEALTHY
-from diagnostics.statistics.evaluation import Predictions
+from diagnostics.records.state_classes import CLASS, HEALTHY
+from diagnostics.statistics.evaluation import UNKNOWN, Predictions
+from diagnostics.statistics.judgement import CIRCULAR, NETWORK, Judged, judged
+from diagnostics.training.average_rows import table_averages
 from diagnostics.training.baselines import FeatureClassifier, state_index
+from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of
 from diagnostics.training.network_training import TrainedNetworkFile
+from diagnostics.training.splits import SpecimenSplit
 from siggen.dataset.reading import Dataset
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 
 OTHER_SPECIMENS = 1 << 40
 """Added to specimen numbers of the other set where both sets are in one table: they share numbers, not gearboxes."""
+
+
+@dataclass(frozen=True, slots=True)
+class OtherSet:
+    """Another set to judge on: what `siggen.open` returned, and its feature table."""
+
+    dataset: Dataset
+    table: pa.Table
 
 
 def check_other_set(dataset: Dataset, other: Dataset, kind: str = STATE) -> None:
@@ -26,7 +41,7 @@ def check_other_set(dataset: Dataset, other: Dataset, kind: str = STATE) -> None
     Raises
     ------
     UsageError
-        If channels, sampling rate or classes differ, or both are the same set.
+        If channels, sampling rate or indicators differ, no damage is known, or both are the same set.
     """
     if dataset.manifest["identity"] == other.manifest["identity"]:
         raise UsageError(f"--test {other.path}: is the set that is trained on; leave --test out, or give another set")
@@ -50,11 +65,30 @@ def check_other_set(dataset: Dataset, other: Dataset, kind: str = STATE) -> None
             "with the same names in `stages`, or the same kind of gearbox."
         )
     known, found = (set(set_classes(each, kind, HEALTHY).names) for each in (dataset, other))
-    if not found <= known:  # any healthy state belongs to the healthy class, whatever its name
+    if not found & known - {HEALTHY}:  # any healthy state belongs to the healthy class, whatever its name
         raise UsageError(
             f"--test {other.path}: has the {kind}s {', '.join(sorted(found - known))}, which training does not know; "
-            f"allowed are {', '.join(sorted(known))}. Name its {kind}s like those, or train on a set that has them."
+            f"allowed are {', '.join(sorted(known))} and others beside them. Name its {kind}s like those, or train on "
+            "a set that has them."
         )
+
+
+def strange_states_note(other: OtherSet, split: SpecimenSplit) -> str:
+    """Return how records were judged whose class training does not know; an empty text without any."""
+    matrix = _matrix(other, split)
+    strange = state_index(matrix, split.classes) == UNKNOWN
+    if not strange.any():
+        return ""
+    names = ", ".join(sorted(set(matrix.labels[CLASS][strange].tolist())))
+    return (
+        f"--test: {counted(int(strange.sum()), 'record')} of {names}, which training does not know, are judged by "
+        "whether damage is found, and left out of what names it."
+    )
+
+
+def known_rows(matrix: FeatureMatrix, classes: tuple[str, ...]) -> FeatureMatrix:
+    """Return the rows of another set whose class is one of `classes`."""
+    return matrix.rows(state_index(matrix, classes) != UNKNOWN)
 
 
 def classifier_predictions(model: FeatureClassifier, matrix: FeatureMatrix) -> Predictions:
@@ -73,3 +107,33 @@ def network_predictions_of(network: TrainedNetworkFile, other: Dataset, matrix: 
     return network_predictions(
         trained, records, every, state_index(matrix, trained.classes), matrix.labels["specimen_id"]
     )
+
+
+def _matrix(other: OtherSet, split: SpecimenSplit) -> FeatureMatrix:
+    return feature_matrix(other.table, set_classes(other.dataset, split.kind, split.healthy))
+
+
+def judge_other(
+    models: dict[str, FeatureClassifier],
+    networks: tuple[TrainedNetworkFile | None, TrainedCircularFile | None],
+    results: list[Judged],
+    other: OtherSet,
+    split: SpecimenSplit,
+    seed: int,
+    stage: Stage,
+) -> tuple[Judged, ...]:
+    """Judge every classifier on all records of the other set, none of whose gearboxes was trained on."""
+    matrix, (network, circular) = _matrix(other, split), networks
+    found: dict[str, tuple[Predictions, float]] = {
+        name: (classifier_predictions(model, matrix), model.temperature) for name, model in models.items()
+    }
+    if network:
+        with stage("network on the other set", 1) as advance:
+            votes = network_predictions_of(network, other.dataset, matrix)
+            advance()
+        found[NETWORK] = (votes, network.trained.temperature)
+    if circular:
+        votes = circular_predictions_of(circular, table_averages(other.dataset, other.table), matrix)
+        found[CIRCULAR] = (votes, circular.trained.temperature)
+    details = {result.name: result.details for result in results}
+    return tuple(judged(name, *votes, np.empty(0), details[name], seed, split.healthy) for name, votes in found.items())

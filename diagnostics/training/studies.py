@@ -20,6 +20,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.record_classes import set_classes
 from diagnostics.statistics.evaluation import macro_auroc
 from diagnostics.training.baselines import rms_features, state_index, train_classifier
+from diagnostics.training.other_set import known_rows
 from diagnostics.training.split_study import SplitScore, rows_of_study, split_study, window_matrix
 from diagnostics.training.splits import SpecimenSplit
 from siggen.dataset.reading import Dataset
@@ -113,7 +114,8 @@ def run_studies(
     second = None
     if other is not None:
         with stage("windows of the other set", int(other.labels(columns=["record_id"]).num_rows)) as advance:
-            second = window_matrix(other, set_classes(other, split.kind, split.healthy), advance)
+            strange = window_matrix(other, set_classes(other, split.kind, split.healthy), advance)
+            second = known_rows(strange, split.classes)
     with stage("splits", rows_of_study(second is not None)) as advance:
         splits = split_study(windows, split.classes, seed, second, advance)
     with stage("learning curve", len(curve_sizes(matrix, split))) as advance:

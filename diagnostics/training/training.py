@@ -11,17 +11,15 @@ import pyarrow as pa
 
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
-from diagnostics.indicators.classifier_table import feature_matrix, table_notes, table_settings
+from diagnostics.indicators.classifier_table import feature_matrix, table_notes
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.table import record_table
 from diagnostics.records.record_classes import set_classes
 from diagnostics.statistics.comparison import Comparison, comparison, state_auc
-from diagnostics.statistics.evaluation import Interval, Predictions
+from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import (
     BOOSTING,
     CIRCULAR,
     INDICATORS,
-    NETWORK,
     RMS_ALONE,
     TITLES,
     Judged,
@@ -29,6 +27,7 @@ from diagnostics.statistics.judgement import (
     judged_metrics,
     validation_score,
 )
+from diagnostics.training.average_rows import table_averages
 from diagnostics.training.baselines import (
     PERMUTATIONS,
     FeatureClassifier,
@@ -38,7 +37,7 @@ from diagnostics.training.baselines import (
     train_classifier,
 )
 from diagnostics.training.boosting import train_boosting
-from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
+from diagnostics.training.circular_training import TrainedCircularFile, judge_circular
 from diagnostics.training.nested_folds import Nested, nested_folds, nested_metrics, strange_classes
 from diagnostics.training.network_training import (
     NetworkOptions,
@@ -46,7 +45,7 @@ from diagnostics.training.network_training import (
     judge_networks,
     network_records,
 )
-from diagnostics.training.other_set import classifier_predictions, network_predictions_of
+from diagnostics.training.other_set import OtherSet, classifier_predictions, judge_other, strange_states_note
 from diagnostics.training.referenced import Referenced, referenced_classifiers
 from diagnostics.training.severity import (
     AreaScores,
@@ -58,14 +57,6 @@ from diagnostics.training.severity import (
 )
 from diagnostics.training.splits import SpecimenSplit, specimen_split
 from siggen.dataset.reading import Dataset
-
-
-@dataclass(frozen=True, slots=True)
-class OtherSet:
-    """Another set to judge on: what `siggen.open` returned, and its feature table."""
-
-    dataset: Dataset
-    table: pa.Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,13 +148,14 @@ def train_models(
     if windows is not None:
         identity = str(dataset.manifest["identity"])
         found, trained = judge_networks(identity, windows, matrix, split, seed, options, stage)
-        averages = _averages(dataset, table)
+        averages = table_averages(dataset, table)
         network_alone, judged_alone = judge_circular(CIRCULAR, averages, matrix, split, seed, options, stage)
         circular = TrainedCircularFile(network_alone, averages.channels, identity)
         results += [*found, judged_alone]
     specimens = {name: _specimens(matrix, mask) for name, mask in _masks(split).items()}
     details = (str(found.details["note"]) for found in results if found.details.get("note"))
-    notes = dict.fromkeys((*table_notes(table), *details))
+    strange = strange_states_note(other, split) if other else ""
+    notes = dict.fromkeys((*table_notes(table), *details, *([strange] if strange else ())))
     return Training(
         judged=tuple(results),
         classifier=models[INDICATORS],
@@ -171,7 +163,7 @@ def train_models(
         split=split,
         specimens=specimens,
         notes=tuple(notes),
-        other=_judge_other(models, trained, circular, results, other, split, seed, stage) if other else (),
+        other=judge_other(models, (trained, circular), results, other, split, seed, stage) if other else (),
         other_name=other.dataset.path.name if other else "",
         comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
@@ -186,13 +178,6 @@ def train_models(
 def _nested(matrix: FeatureMatrix, split: SpecimenSplit, seed: int, stage: Stage) -> Nested | None:
     with stage("nested folds", len(strange_classes(split)) or 1) as advance:
         return nested_folds(matrix, split, seed, advance)
-
-
-def _averages(dataset: Dataset, table: pa.Table) -> Any:
-    """Return the averages of the records of a feature table, from the table of indicators that it was made of."""
-    from diagnostics.training.average_rows import averaged_records
-
-    return averaged_records(record_table(dataset, table_settings(table)))
 
 
 def _masks(split: SpecimenSplit) -> dict[str, np.ndarray]:
@@ -237,33 +222,6 @@ def _judge(
     permuted = control if name == INDICATORS else np.empty(0)
     result = judged(name, found, model.temperature, permuted, details, seed, split.healthy)
     return replace(result, validation=validation)
-
-
-def _judge_other(
-    models: dict[str, FeatureClassifier],
-    network: TrainedNetworkFile | None,
-    circular: TrainedCircularFile | None,
-    results: list[Judged],
-    other: OtherSet,
-    split: SpecimenSplit,
-    seed: int,
-    stage: Stage,
-) -> tuple[Judged, ...]:
-    """Judge every classifier on all records of the other set, none of whose gearboxes was trained on."""
-    matrix = feature_matrix(other.table, set_classes(other.dataset, split.kind, split.healthy))
-    found: dict[str, tuple[Predictions, float]] = {
-        name: (classifier_predictions(model, matrix), model.temperature) for name, model in models.items()
-    }
-    if network:
-        with stage("network on the other set", 1) as advance:
-            votes = network_predictions_of(network, other.dataset, matrix)
-            advance()
-        found[NETWORK] = (votes, network.trained.temperature)
-    if circular:
-        votes = circular_predictions_of(circular, _averages(other.dataset, other.table), matrix)
-        found[CIRCULAR] = (votes, circular.trained.temperature)
-    details = {result.name: result.details for result in results}
-    return tuple(judged(name, *votes, np.empty(0), details[name], seed, split.healthy) for name, votes in found.items())
 
 
 def _comparisons(results: list[Judged], healthy: str | None, seed: int) -> tuple[Comparison, ...]:

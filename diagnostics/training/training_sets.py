@@ -15,8 +15,7 @@ from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.records.named_set import open_set
 from diagnostics.records.record_classes import STATE
 from diagnostics.records.usable_records import with_channels
-from diagnostics.training.other_set import check_other_set
-from diagnostics.training.training import OtherSet
+from diagnostics.training.other_set import OtherSet, check_other_set
 from siggen.dataset.reading import Dataset
 
 

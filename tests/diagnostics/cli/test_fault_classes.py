@@ -24,8 +24,8 @@ from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.record_classes import FAULT
 from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.other_set import check_other_set
-from diagnostics.training.training import OtherSet, train_models, training_metrics
+from diagnostics.training.other_set import OtherSet, check_other_set
+from diagnostics.training.training import train_models, training_metrics
 from diagnostics.training.training_sets import set_table
 from siggen.errors import UsageError
 from tests.command import command
@@ -85,7 +85,7 @@ def test_another_fault_of_another_set_is_refused_by_that_word(kinds: Any) -> Non
     place = kinds.table.schema.get_field_index("primary_fault")
     other = replace(kinds, table=kinds.table.set_column(place, "primary_fault", fault), manifest={"identity": "3" * 64})
     with pytest.raises(
-        UsageError, match=r"has the faults crack, .* allowed are healthy, pitting\. Name its faults like"
+        UsageError, match=r"has the faults crack, .* allowed are healthy, pitting and others .*\. Name its faults"
     ):
         check_other_set(kinds, other, FAULT)
 

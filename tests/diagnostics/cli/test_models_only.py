@@ -35,6 +35,28 @@ def sets(make_dataset: Callable[..., Any]) -> dict[str, Any]:
     return {"first": make_dataset(SPLITS), "second": replace(other, manifest={"identity": "1" * 64, "name": "second"})}
 
 
+def test_states_that_training_does_not_know_are_found_damaged_and_not_named(
+    sets: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def other(states: dict[str, str]) -> Any:
+        table = sets["second"].table
+        named = pa.array([states.get(name, name) for name in table.column("state").to_pylist()])
+        return replace(sets["second"], table=table.set_column(table.column_names.index("state"), "state", named))
+
+    offered = {"first": sets["first"], "second": other({"severe": "chipped"})}
+    command = ("first", "--out", str(tmp_path / "out"), "--test", "second", "--no-cnn")
+    assert run(monkeypatch, offered, *command) == 0
+    assert "of chipped, which training does not know, are judged by whether damage is found" in capsys.readouterr().err
+    found = json.loads((tmp_path / "out" / "metrics.json").read_text())["classifiers_on_other_set"]["indicators"]
+    whole = sets["second"].table.num_rows
+    assert found["test_records"] == whole * 2 // 3
+    assert found["detection"]["auroc_by_state"].keys() == {"slight"}
+    assert found["detection"]["auroc"]["value"] > 0.5
+    offered = {"first": sets["first"], "second": other({"severe": "chipped", "slight": "worn"})}
+    assert run(monkeypatch, offered, *command) == 2
+    assert "chipped, worn, which training does not know" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 def test_another_set_and_studies_are_in_the_metrics(
     sets: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch

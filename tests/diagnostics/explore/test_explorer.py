@@ -120,8 +120,7 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     assert ["predicted", "Predicted"] in data["filters"]
     assert all((record["seen"] == "seen in training") == (record["split"] != "test") for record in records)
     seen = sum(record["split"] != "test" for record in records)
-    start = f"{seen} of {len(records)}\N{NO-BREAK SPACE}records are of the gearboxes that the model was trained"
-    assert data["seen"].startswith(start)
+    assert f"learnt from the gearboxes of {seen} of {len(records)}, marked" in data["seen"]
     table, another = measured, replace(dataset, manifest={"identity": "another set"})
     assert set(predicted_labels(table, another, tmp_path / "report")["seen"]) == {"no"}
     other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))

@@ -22,8 +22,8 @@ from diagnostics.report.detector_table import detection_blocks
 from diagnostics.report.sentences import scores_sentence
 from diagnostics.training.baselines import state_index
 from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.other_set import check_other_set
-from diagnostics.training.training import OtherSet, Training, train_models, training_metrics
+from diagnostics.training.other_set import OtherSet, check_other_set
+from diagnostics.training.training import Training, train_models, training_metrics
 from diagnostics.training.training_sets import set_table
 
 SPLITS = ("train",) * 8 + ("validation",) * 3 + ("test",) * 5

@@ -15,8 +15,8 @@ import pytest
 from diagnostics.base.progress import silent_stage
 from diagnostics.records.usable_records import with_channels
 from diagnostics.training.network_training import NetworkOptions, check_device
-from diagnostics.training.other_set import check_other_set
-from diagnostics.training.training import OtherSet, train_models, training_metrics
+from diagnostics.training.other_set import OtherSet, check_other_set
+from diagnostics.training.training import train_models, training_metrics
 from diagnostics.training.training_sets import set_table
 from siggen.errors import DatasetError, UsageError
 
@@ -70,13 +70,13 @@ def test_other_sets_must_match_in_channels_rate_and_states(dataset: Any) -> None
     other = replace(dataset, manifest=OTHER, path=Path("second"))
     check_other_set(dataset, other)
     table = other.table
-    renamed = pc.replace_substring(table.column("state"), "severe", "broken")
+    renamed = pc.replace_substring(pc.replace_substring(table.column("state"), "severe", "broken"), "slight", "worn")
     renamed_table = table.set_column(table.schema.get_field_index("state"), "state", renamed)
     cases = [
         (dataset, "is the set that is trained on"),
         (with_channels(other, ["bearing_vertical"]), "received the channels bearing_vertical; .*--channel"),
         (replace(other, fs_hz=6400.0), "received a sampling rate of 6400 Hz.*`fs_hz: 12800`"),
-        (replace(other, table=renamed_table), "has the states broken, .*allowed are healthy, severe, slight"),
+        (replace(other, table=renamed_table), "has the states broken, worn, .*allowed are healthy, severe, slight and"),
     ]
     for found, message in cases:
         with pytest.raises(UsageError, match=message):

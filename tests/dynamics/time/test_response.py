@@ -141,6 +141,7 @@ def test_an_unstable_step_is_reported_with_numbers_and_without_samples(
     assert "allowed are finite values within" in response.reason
     assert f"{40e-6 + 0.1 * BASE_PITCH:.3e}" in response.reason
     assert response.acceleration_m_s2[PINION].size == response.angle_rad.size == 0
+    assert response.contact_loss_share == 0.0
 
 
 def test_sample_zero_is_at_the_start_angle(structure: Structure, sharp_tables: MeshTables) -> None:
