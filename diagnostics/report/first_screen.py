@@ -129,18 +129,26 @@ def detector_words(best: Detector) -> str:
 
 def _kind_words(best: Detector, kind: str, size: FoundSize | None, name: str) -> str:
     """Return what is found of a kind of damage, behind the `**` that opens it."""
-    largest = max(
-        (state for state in best.states if best.states[state].kind == kind),
+    states = sorted(
+        (state for state, found in best.states.items() if found.kind == kind),
         key=lambda state: best.states[state].area_mm2,
     )
     if size is not None and size.reached:
         limit = size.smallest_mm2 if size.is_bound else size.area_mm2.value
-        smallest = " (none of this kind is smaller)" if size.is_bound else ""
+        smallest = f" ({states[0]}; none of this kind is smaller)" if size.is_bound else ""
         return f"{name} from {rounded(limit)}{SPACE}mm² on** is found in **nine of ten records**{smallest}"
-    found = best.states[largest]
-    share = percent(found.share.value) if found.share else "an unknown share"
-    area = f", {rounded(found.area_mm2)}{SPACE}mm²" if found.area_mm2 > 0.0 else ""
-    return f"{name}** ({largest}{area}) is found in only **{share}** of records"
+    said = f"{name}** is found in only **{_share(best, states[-1])}** of records ({_size(best, states[-1])})"
+    return f"{said}, down to {_share(best, states[0])} ({_size(best, states[0])})" if len(states) > 1 else said
+
+
+def _share(best: Detector, state: str) -> str:
+    share = best.states[state].share
+    return percent(share.value) if share else "an unknown share"
+
+
+def _size(best: Detector, state: str) -> str:
+    area_mm2 = best.states[state].area_mm2
+    return f"{state}, {rounded(area_mm2)}{SPACE}mm²" if area_mm2 > 0.0 else state
 
 
 def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:

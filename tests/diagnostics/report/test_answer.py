@@ -135,7 +135,9 @@ def test_the_first_screen_names_damage_size_detector_and_certainty() -> None:
     assert (
         first_answer(never)
         .replace("\xa0", " ")
-        .startswith("**Pitting** (severe, 8 mm²) is found in only **40 %** of records. Detector")
+        .startswith(
+            "**Pitting** is found in only **40 %** of records (severe, 8 mm²), down to 40 % (slight, 1 mm²). Detector"
+        )
     )
     sure = first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")
     assert sure == (
