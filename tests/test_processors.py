@@ -50,6 +50,7 @@ def check_on(processor: dict[str, str], tests: tuple[str, ...]) -> None:
     assert found.returncode == 0, found.stdout[-4000:] + found.stderr[-2000:]
 
 
+@pytest.mark.slow
 def test_a_record_and_a_network_hold_on_a_processor_of_2008() -> None:
     check_on(OLD, FEW)
 

@@ -18,7 +18,6 @@ from diagnostics.explore.payload import PageSource, Shown
 from diagnostics.explore.set_source import set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
-from diagnostics.page.wording import counted
 from diagnostics.prediction.released_model import load_model
 from diagnostics.records.named_set import words_of
 from diagnostics.records.record_classes import set_classes
@@ -100,9 +99,9 @@ def seen_sentence(seen: Sequence[str]) -> str:
     if count == 0:
         return ""
     return (
-        f"{count} of {counted(len(seen), 'record')} are of the gearboxes that the model was trained or chosen on: they "
-        f"are marked \N{LEFT DOUBLE QUOTATION MARK}{SEEN}\N{RIGHT DOUBLE QUOTATION MARK}. That these are rightly named "
-        "says nothing about other gearboxes."
+        f"The saved model names these records. It has learnt from the gearboxes of {count} of {len(seen)}, marked "
+        f"\N{LEFT DOUBLE QUOTATION MARK}{SEEN}\N{RIGHT DOUBLE QUOTATION MARK}: that they are named rightly says "
+        "nothing about other gearboxes. A report's scores come from models that never saw the gearbox."
     )
 
 

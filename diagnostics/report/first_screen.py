@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 MOST_SIZES, MOST_KINDS = 4, 3
 """Rows of the figure, and kinds of damage in the sentence; more do not fit the first screen."""
 
+TRAP = "something other than damage that tells the labels"
 SPACE = "\N{NO-BREAK SPACE}"
 SIZE_IN, ORDERS = (5.6, 1.0, 1.0), 4.6
 """Width, and height of the frame and of a row [in]; how far from the mesh line spectra are shown."""
@@ -106,35 +107,48 @@ def first_answer(found: Detectors) -> str:
             "**No answer**: that needs healthy and damaged records of "
             f"**{FEWEST_SPECIMENS} gearboxes or more** in this set."
         )
-    by = f"**{capitalised(detector_words(best))}**"
+    by = f"Detector: **{detector_words(best)}**."
     if not best.sizes:
         name = max(best.states, key=lambda state: best.states[state].auc.value)
-        return f"{by} tells the state **{name}** best; {best.healthy} healthy records are too few to name a size."
+        return f"The state **{name}** is told best; {best.healthy} healthy records are too few to name a size. {by}"
     kinds = list(dict.fromkeys(state.kind for state in best.states.values()))
     reached = {kind: kind in best.sizes and best.sizes[kind].reached for kind in kinds}
     order = sorted(kinds, key=lambda kind: not reached[kind])
     said = [_kind_words(best, kind, best.sizes.get(kind), kind_name(kind, kinds)) for kind in order]
     more = f"; further kinds of damage: {len(said) - MOST_KINDS}" if len(said) > MOST_KINDS else ""
-    return f"{by} finds {'; '.join(said[:MOST_KINDS])}{more}."
+    return f"{'; '.join([f'**{capitalised(said[0])}', *(f'**{one}' for one in said[1:MOST_KINDS])])}{more}. {by}"
 
 
 def detector_words(best: Detector) -> str:
-    """Return what a detector is: of one that other gearboxes choose, with what they chose most often."""
+    """Return what a detector is: of one that is chosen for each group of gearboxes, what was chosen most often."""
     if not best.picks:
         return best.title
-    return f"the detector that other gearboxes choose, mostly {max(best.picks, key=lambda pick: pick[1])[0]},"
+    most = max(best.picks, key=lambda pick: pick[1])[0]
+    return most if len(best.picks) == 1 else f"mostly {most}"
 
 
 def _kind_words(best: Detector, kind: str, size: FoundSize | None, name: str) -> str:
-    states = [found for found in best.states.values() if found.kind == kind]
-    largest = max(states, key=lambda found: found.area_mm2)
+    """Return what is found of a kind of damage, behind the `**` that opens it."""
+    states = sorted(
+        (state for state, found in best.states.items() if found.kind == kind),
+        key=lambda state: best.states[state].area_mm2,
+    )
     if size is not None and size.reached:
         limit = size.smallest_mm2 if size.is_bound else size.area_mm2.value
-        smallest = ", the smallest of the set" if size.is_bound else ""
-        return f"**{name} from {rounded(limit)}{SPACE}mm²** on{smallest}, in nine of ten records"
-    share = percent(largest.share.value) if largest.share else "an unknown share"
-    area = f", up to {rounded(largest.area_mm2)}{SPACE}mm²," if largest.area_mm2 > 0.0 else ""
-    return f"of **{name}**{area} only **{share}**"
+        smallest = f" ({states[0]}; none of this kind is smaller)" if size.is_bound else ""
+        return f"{name} from {rounded(limit)}{SPACE}mm² on** is found in **nine of ten records**{smallest}"
+    said = f"{name}** is found in only **{_share(best, states[-1])}** of records ({_size(best, states[-1])})"
+    return f"{said}, down to {_share(best, states[0])} ({_size(best, states[0])})" if len(states) > 1 else said
+
+
+def _share(best: Detector, state: str) -> str:
+    share = best.states[state].share
+    return percent(share.value) if share else "an unknown share"
+
+
+def _size(best: Detector, state: str) -> str:
+    area_mm2 = best.states[state].area_mm2
+    return f"{state}, {rounded(area_mm2)}{SPACE}mm²" if area_mm2 > 0.0 else state
 
 
 def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
@@ -153,8 +167,9 @@ def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
         return "Nothing is known."
     spread = f"95{SPACE}% limits {limits(best.every)}" if math.isfinite(best.every.low) else "no limits"
     parts = [
-        f"Judged on **{counted(best.specimens, 'gearbox')} that it had not learnt from**, at 5{SPACE}% false alarms: "
-        f"**AUC {decimal(best.every.value)}** for all damage ({spread}; 0.5 is chance, 1 is perfect)."
+        f"**Each of {counted(best.specimens, 'gearbox')} was judged by a model that had learnt from others alone.** Of "
+        f"healthy records 5{SPACE}% give a false alarm. All damage together: **AUC {decimal(best.every.value)}** "
+        f"({spread}; 0.5 is chance, 1 is perfect)."
     ]
     sham = best.sham
     lost = [name for name, state in best.states.items() if sham and not state.auc.value > sham.value]
@@ -162,4 +177,4 @@ def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
         parts.append(f"**Damage without effect is told too (AUC {decimal(sham.value)})**: {joined(lost)} is not found.")
     if error_free:
         parts.append("**The gears have no manufacturing errors**: on a real machine nothing is known.")
-    return " ".join([*parts, f"{audit.split('. ', maxsplit=1)[0].rstrip('.')}."])
+    return " ".join([*parts, f"{audit.split('. ', maxsplit=1)[0].rstrip('.')} ({TRAP})."])

@@ -10,12 +10,13 @@ As balls pass, a bearing gives way by a drawn size; one whose stiffness follows 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from math import pi, sqrt
 
 import numpy as np
 
-from siggen.arrays import FloatArray
+from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
 from siggen.dynamics.drive.external_forces import OF_SET
@@ -43,6 +44,8 @@ PASSING_LINES = 3
 VARYING_LINES = 8
 """Of bearings under load: what balls do beyond has less than 1 % of its power (test)."""
 AXES = ("horizontal", "vertical")
+Turned = Callable[[float], ComplexArray]
+"""Order -> exp(i order Θ) (k,) of a course, each once: both axes of a bearing share their cage."""
 WEAKEST = 0.2
 """Displacements of passing balls lie between this share of the drawn one and all of it, by axis (assumed)."""
 
@@ -67,7 +70,11 @@ class BearingVelocities:
         self._loaded = specimen_bearings(specimen)
         self._sense = {shaft: cage_sense(specimen.dynamics, shaft) for shaft in bearings}
         names = INPUTS if specimen.planetary is None else SEATS_OF_SHAFTS
-        self._noise = {name: self._shaped(name, course) for name in names}
+        taps = {shaft: _taps(numbers, course, shaft) for shaft, numbers in bearings.items()}
+        self._noise = {
+            name: ShapedNoise(taps[shaft_of(name)], course.fs_hz, course.of_record(f"background.bearings.{name}"))
+            for name in names
+        }
         self._levels = {shaft: _level(shaft, numbers, course) for shaft, numbers in bearings.items()}
         self.labels = {
             f"bearing_velocity_{shaft}_um_s": constant(numbers.high_um_s) for shaft, numbers in bearings.items()
@@ -76,24 +83,18 @@ class BearingVelocities:
     def take(self, course: Course) -> dict[str, FloatArray]:
         """Return the next velocities (k,) by input."""
         random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
-        found = {}
+        found, turned = {}, cache(lambda order: turns_of(course.angle_rad, order))
         for name, noise in self._noise.items():
             shaft = shaft_of(name)
             strength = _strength(self._bearings[shaft], course, name) * random[shaft]
-            found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(name, course)
+            found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(name, course, turned)
         return found
 
-    def _shaped(self, name: str, course: Course) -> ShapedNoise:
-        shaft = shaft_of(name)
-        numbers, shaft_hz = self._bearings[shaft], course.point.speed_hz * course.orders[shaft]
-        taps = shape_taps(lambda f: velocity_density(numbers, shaft_hz, f), TAPS, course.fs_hz)
-        return ShapedNoise(taps, course.fs_hz, course.of_record(f"background.bearings.{name}"))
-
-    def _passing(self, name: str, course: Course) -> FloatArray:
+    def _passing(self, name: str, course: Course, turned: Turned) -> FloatArray:
         """Return the velocity (k,) of a displacement with every ball that passes the loaded side."""
         shaft = shaft_of(name)
         if shaft in self._loaded:
-            return self._varying(name, self._loaded[shaft], course)
+            return self._varying(name, self._loaded[shaft], course, turned)
         numbers, path = self._bearings[shaft], f"background.bearings.{name}.passing"
         slip = SLIP[0] + (SLIP[1] - SLIP[0]) * course.of_record(f"background.bearings.{shaft}.slip").random()
         order = course.orders[shaft] * constant(numbers.ball_pass_order) * (1.0 - slip)
@@ -104,9 +105,9 @@ class BearingVelocities:
         number = np.arange(1.0, count + 1.0)
         amplitude = size_m * np.power(0.5, number - 1.0) * 2.0 * pi * number * order * course.point.speed_hz
         phase = 2.0 * pi * course.of_record(path).random(PASSING_LINES)[:count]
-        return Comb(order, amplitude, phase).force_n(turns_of(course.angle_rad, order))
+        return Comb(order, amplitude, phase).force_n(turned(order))
 
-    def _varying(self, name: str, loaded: LoadedBearing, course: Course) -> FloatArray:
+    def _varying(self, name: str, loaded: LoadedBearing, course: Course, turned: Turned) -> FloatArray:
         """Return the velocity (k,) of what lies in series with both bearings' spring as balls pass under their load.
 
         Its axes are tied: the spring along each of them gets what pushes as both do.
@@ -120,8 +121,8 @@ class BearingVelocities:
             slip = SLIP[0] + (SLIP[1] - SLIP[0]) * rng.random()
             order = course.orders[shaft] * loaded.bearing.outer_order * (1.0 - slip)
             number = np.arange(1.0, 1.0 + min(VARYING_LINES, int(course.top_order / order)))
-            turned = np.exp(2j * pi * rng.random() * number) * 2j * pi * number * order * course.point.speed_hz
-            found += harmonic_sum(turns_of(course.angle_rad, order), lines[: number.size] * turned / BEARINGS)
+            rates = np.exp(2j * pi * rng.random() * number) * 2j * pi * number * order * course.point.speed_hz
+            found += harmonic_sum(turned(order), lines[: number.size] * rates / BEARINGS)
         return found
 
 
@@ -129,6 +130,11 @@ def shaft_of(name: str) -> str:
     """Return the shaft of a bearing's input: of a planetary set sun and carrier stand for pinion and gear."""
     held = name.partition("_")[0]
     return {"sun": "pinion", "carrier": "gear"}.get(held, held)
+
+
+def _taps(numbers: BearingNumbers, course: Course, shaft: str) -> FloatArray:
+    shaft_hz = course.point.speed_hz * course.orders[shaft]
+    return shape_taps(lambda f: velocity_density(numbers, shaft_hz, f), TAPS, course.fs_hz)
 
 
 def _level(shaft: str, numbers: BearingNumbers, course: Course) -> LevelCourse:

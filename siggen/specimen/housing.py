@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from siggen.config import Config, ModalHousing, RigidHousing
 from siggen.planning.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
@@ -11,6 +13,7 @@ from siggen.specimen.plate_housing import damped_modes, plate_housing
 from siggen.specimen.specimen_housing import SpecimenHousing, modes_settle_s, settle_s
 
 
+@lru_cache(maxsize=4)  # instrument, structure, background and labels of a gearbox ask for it
 def specimen_housing(config: Config, specimen: Specimen) -> SpecimenHousing | None:
     """Return the housing of a specimen; the same for all of its states and records; None for one without modes."""
     numbers = _giving_way(specimen)
@@ -22,6 +25,7 @@ def specimen_housing(config: Config, specimen: Specimen) -> SpecimenHousing | No
     return None
 
 
+@lru_cache(maxsize=4)
 def housing_settle_s(config: Config, specimen: Specimen) -> float:
     """Return the time over which the modes settle [s], which every record asks for; 0 without any."""
     numbers = _giving_way(specimen)

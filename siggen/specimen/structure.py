@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 from siggen.config import Config, Dynamics, RigidHousing
 from siggen.config import Coupling as CouplingSection
@@ -91,6 +92,7 @@ def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
     return loaded_bearings(specimen.dynamics, gear_stage(specimen.dynamics, pair), pair, torque_nm)
 
 
+@lru_cache(maxsize=4)  # structure and background of a gearbox ask for it
 def specimen_body(config: Config, specimen: Specimen) -> Body:
     """Return the body that carries the bearings of a specimen, sensors and entries on it included."""
     pair, housing = gear_pair(specimen.gears), specimen_housing(config, specimen)

@@ -167,6 +167,7 @@ def test_modes_are_those_of_all_shafts_and_call_a_machines_gears_by_name(tmp_pat
     assert moving == {"motor", "ida", "otto", "eva", "karl", "load"}
 
 
+@pytest.mark.slow
 def test_the_preset_of_two_stages_is_generated_and_verified(tmp_path: Path) -> None:
     little = ("--set", "specimens=1", "--set", "duration_s=0.1")
     done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"), "--engine", "serial")

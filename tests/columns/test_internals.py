@@ -103,7 +103,7 @@ def test_columns_and_rows_of_a_batch_are_those_asked_for(reference: Path) -> Non
         next(open_set(reference).internals(columns=["colour"]))
 
 
-@pytest.mark.parametrize("workers", [0, 2])
+@pytest.mark.parametrize("workers", [0, pytest.param(2, marks=pytest.mark.slow)])
 def test_bytes_do_not_depend_on_the_number_of_workers(reference: Path, tmp_path: Path, workers: int) -> None:
     write_fake_set(tmp_path, config(), workers=workers)
     assert file_bytes(tmp_path) == file_bytes(reference)

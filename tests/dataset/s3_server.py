@@ -7,6 +7,7 @@ import logging
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partialmethod
 from pathlib import PurePath
 
 import pytest
@@ -20,7 +21,13 @@ BUCKET = "sets"
 def s3_server(monkeypatch: pytest.MonkeyPatch, port: int = 0) -> Iterator[str]:
     """Serve one empty bucket; give the address, which is in the environment with credentials."""
     pytest.importorskip("boto3")
+    from werkzeug.serving import BaseWSGIServer
+
     server_module = pytest.importorskip("moto.server")
+    serve = BaseWSGIServer.serve_forever
+    monkeypatch.setattr(
+        BaseWSGIServer, "serve_forever", partialmethod(serve, poll_interval=0.01)
+    )  # else stops wait 0.5 s
     server = server_module.ThreadedMotoServer(ip_address="127.0.0.1", port=port, verbose=False)
     logging.getLogger("werkzeug").setLevel(logging.ERROR)
     server.start()

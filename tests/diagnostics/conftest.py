@@ -234,3 +234,12 @@ def models_folder(
 def make_dataset() -> Callable[..., MemoryDataset]:
     """Return the function that makes such sets."""
     return memory_dataset
+
+
+@pytest.fixture
+def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Boosting of at most three trees, where what it reaches is not asked: it is a sixth of a report's time."""
+    from diagnostics.training import boosting
+
+    model = boosting._model
+    monkeypatch.setattr(boosting, "_model", lambda trees, seed: model(min(trees, 3), seed))

@@ -18,8 +18,8 @@ from tests.toy_process import said_by
 CONFIG = """
 extends: quickstart
 name: toy
-specimens: 2
-duration_s: 0.4
+specimens: 1
+duration_s: 0.3
 repeats: 1
 splits: {train: 10, validation: 5, test: 5}
 dynamics: {mesh: {damage: all}}

@@ -65,8 +65,10 @@ def callers() -> dict[tuple[str, str], set[str]]:
     found: dict[tuple[str, str], set[str]] = {}
     for module, file in files().items():
         names = known(module, file)
+        last = {name.rpartition(".")[2] for name in names}
         for node in by_python(tree(file)) if names else ():
-            if (named := ast.unparse(node)) in names:
+            ends_in = node.id if isinstance(node, ast.Name) else node.attr
+            if ends_in in last and (named := ast.unparse(node)) in names:
                 found.setdefault(names[named], set()).add(f"{file.relative_to(ROOT)}:{node.lineno}")
     return found
 

@@ -38,7 +38,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a set of this version, extended once."""
     folder = tmp_path_factory.mktemp("kept")
     siggen.generate(load_config(CONFIG, ["specimens=1"]), folder / "set", engine="serial")
-    siggen.extend(folder / "set", 2, workers=1)
+    siggen.extend(folder / "set", 2, workers=0)
     return folder / "set"
 
 

@@ -27,7 +27,7 @@ def channel_errors(gearboxes: int, *overrides: str) -> dict[str, list[float]]:
     return found
 
 
-@pytest.mark.parametrize("overrides", [PARALLEL, ()], ids=["parallel", "tilting"])
+@pytest.mark.parametrize("overrides", [pytest.param(PARALLEL, marks=pytest.mark.slow), ()], ids=["parallel", "tilting"])
 def test_records_meet_the_tolerance_healthy_and_damaged_alike(overrides: tuple[str, ...]) -> None:
     found = channel_errors(1, *overrides)
     assert set(found) == {"healthy", "severe"}

@@ -26,7 +26,7 @@ CONFIGS = {
 }
 
 
-@pytest.mark.parametrize("name", CONFIGS)
+@pytest.mark.parametrize("name", ["bench", pytest.param("linear_pits", marks=pytest.mark.slow)])
 def test_a_record_has_the_same_bits_for_any_number_of_numeric_threads(name: str) -> None:
     threadpoolctl = pytest.importorskip("threadpoolctl")
     config = load_config(f"configs/{name}.yaml", CONFIGS[name])

@@ -160,6 +160,7 @@ def test_a_rim_has_no_axis_across() -> None:
     assert "sensors.0.cross_axis" in problems(rim, dynamics__model="torsional")
 
 
+@pytest.mark.slow  # a set without sensors of its own: tests/sets/test_generation.py
 def test_the_bytes_do_not_depend_on_workers(tmp_path: Path) -> None:
     from siggen.sets.generation import generate
 

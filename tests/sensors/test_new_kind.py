@@ -23,7 +23,7 @@ from tests.toy_process import said_by
 CONFIG = """
 extends: quickstart
 name: toy
-specimens: 2
+specimens: 1
 duration_s: 0.4
 repeats: 1
 splits: {train: 10, validation: 5, test: 5}
@@ -64,7 +64,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, str]
     lid = "  - {name: lid, place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
     gauge = CONFIG.partition("sensors:\n")[2]
     for name, sensors in (("alone", lid), ("both", gauge + lid)):
-        own = CONFIG.replace("specimens: 2", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
+        own = CONFIG.replace("specimens: 1", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
         (folder / f"{name}.yaml").write_text(own)
     facts_file(folder)
     return folder, said_by("tests.sensors.with_toys", folder, LINES, dict.fromkeys(MISTAKES, 2))

@@ -109,6 +109,7 @@ def test_a_signal_ends_with_130_committed_shards_and_a_hint(
     assert_complete(tmp_path, reference)
 
 
+@pytest.mark.slow  # quiet after a signal to the driver: above
 def test_ctrl_c_for_the_whole_process_group_is_quiet_too(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.dataset.fake_set", str(tmp_path), "2"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)

@@ -89,6 +89,7 @@ def test_ids_have_a_fixed_stride_and_tables_tell_the_same_truth_as_labels(fleet:
         )
 
 
+@pytest.mark.slow
 def test_more_gearboxes_leave_those_that_exist_as_they_are(fleet: Path, tmp_path: Path) -> None:
     siggen.generate(load_config({**lives(), "specimens": 1}), tmp_path / "grown", workers=0)
     extend(tmp_path / "grown", "+1", 0)

@@ -102,7 +102,7 @@ class Started:
             time.sleep(0.01)
 
 
-@pytest.mark.parametrize(("engine", "workers"), [("serial", 0), ("processes", 2)])
+@pytest.mark.parametrize(("engine", "workers"), [pytest.param("serial", 0, marks=pytest.mark.slow), ("processes", 2)])
 def test_ctrl_c_in_the_first_shard_loses_what_is_under_way_alone(
     tmp_path: Path, reference: dict[str, bytes], engine: str, workers: int
 ) -> None:
@@ -124,6 +124,7 @@ def test_ctrl_c_in_the_first_shard_loses_what_is_under_way_alone(
     assert not (run.path / FOLDER).exists()
 
 
+@pytest.mark.slow  # Ctrl-C above, and SIGKILL of test_generation_faults.py
 def test_a_killed_run_loses_no_more_than_a_part_of_each_worker(tmp_path: Path, reference: dict[str, bytes]) -> None:
     run = Started(tmp_path, "processes", 2, record_s=0.02, speed=200.0)
     run.wait(lambda: len(run.records()) >= 40)
@@ -136,17 +137,17 @@ def test_a_killed_run_loses_no_more_than_a_part_of_each_worker(tmp_path: Path, r
     assert file_bytes(run.path) == reference
 
 
-@pytest.mark.parametrize(("engine", "workers"), [("serial", 0), ("processes", 2)])
+@pytest.mark.parametrize(("engine", "workers"), [("serial", 0), pytest.param("processes", 2, marks=pytest.mark.slow)])
 def test_records_that_take_longer_than_a_minute_are_finished_before_the_run_stops(
     tmp_path: Path, reference: dict[str, bytes], engine: str, workers: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A second stands for more than a minute: the limit, of the driver, is patched to 0.2 s."""
-    limit = "    from siggen.sets import shard_making\n    shard_making.STOP_AT_ONCE_S = 0.2\n"
+    """Half a second stands for more than a minute: the limit, of the driver, is patched to 0.1 s."""
+    limit = "    from siggen.sets import shard_making\n    shard_making.STOP_AT_ONCE_S = 0.1\n"
     code = RUN.replace("    engine,", f"{limit}    engine,", 1)
     monkeypatch.setattr(sys.modules[__name__], "RUN", code)
-    run = Started(tmp_path, engine, workers, record_s=1.0, speed=100.0)
+    run = Started(tmp_path, engine, workers, record_s=0.5, speed=200.0)
     run.wait(lambda: len(run.records()) >= max(workers, 1))
-    time.sleep(0.6)
+    time.sleep(0.3)
     run.process.send_signal(signal.SIGINT)
     _, said = run.process.communicate(timeout=30)
     assert run.process.returncode == 130

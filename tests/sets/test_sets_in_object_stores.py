@@ -103,6 +103,7 @@ def test_a_changed_bit_is_found_by_the_reader_in_words() -> None:
         list(siggen.open(PLACE).records())
 
 
+@pytest.mark.slow
 def test_parts_are_merged_and_a_set_is_extended_there(tmp_path: Path) -> None:
     parts = [f"s3://{BUCKET}/parts/{number}" for number in (1, 2)]
     with fake_physics(), small_shards():

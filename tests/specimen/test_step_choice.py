@@ -81,6 +81,7 @@ def test_friction_that_stops_light_gears_at_once_takes_more_steps() -> None:
     assert steps_of(loaded(*light)) > steps_of(loaded(*light, "dynamics.friction.model=off"))
 
 
+@pytest.mark.slow  # presets within their stated error: test_fast_against_reference.py
 def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
     config = loaded()
     record = planned_record(config, 3)

@@ -65,6 +65,7 @@ STIFF = ("dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynam
 PINION = ("sensors.0.place=pinion_bearing", "sensors.0.position_mm=null")
 
 
+@pytest.mark.slow
 def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
     # Runge-Kutta steps of first order at contact events; sampled forces differ most at their steps.
     coarse, fine = (
@@ -75,6 +76,7 @@ def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
     assert max(coarse) > 2.0 * max(fine)
 
 
+@pytest.mark.slow
 def test_scipy_gives_the_motion_of_helical_teeth_whose_slices_rub_both_ways() -> None:
     changed = ("gears.helix_deg=15", "dynamics.mesh.damping=constant", "dynamics.model=8dof", "housing={}")
     geometry = "dynamics.mesh.damage=geometry"
@@ -170,7 +172,7 @@ def with_spikes(own: list, other: list) -> tuple[float, float]:
 def test_scipy_gives_the_motion_of_a_damaged_misaligned_record_of_bench_from_its_file_alone() -> None:
     # As shipped, with varying speed and torque, unbalance, tones, coupling, friction and tilt; record 5 is spalled over
     # 80 % of the face, and its tooth 16 comes after 8 ms. Eight steps per sample leave 6e-4 of the mesh force.
-    model, own = beginning("configs/bench.yaml", 5, 330, 8, "manufacture.lead_misalignment_um=5")
+    model, own = beginning("configs/bench.yaml", 5, 260, 8, "manufacture.lead_misalignment_um=5")
     assert len(own) == 3
     assert largest(own, by_scipy(model, own, 1e-5)) < 1e-3
     sound = model | {"mesh.0.law.table_of_pair": np.zeros_like(model["mesh.0.law.table_of_pair"])}
@@ -188,6 +190,7 @@ SLOW_SPALL = (
 )
 
 
+@pytest.mark.slow
 def test_scipy_gives_the_motion_of_two_stages_from_their_file_alone() -> None:
     """Every tooth of the second pinion is spalled through the face; friction and errors in both meshes."""
     model, own = beginning(two_stages(), 14, 350, 8, SLOW_SPALL, "manufacture={accuracy_class: 6}")
@@ -208,6 +211,7 @@ def planetary(**changes: object) -> dict:
     return planets(**{**made, **changes})
 
 
+@pytest.mark.slow
 def test_scipy_gives_the_motion_of_a_planetary_set_from_its_file_alone() -> None:
     """Six meshes in a frame that turns, by the steps that records take."""
     model, own = beginning(planetary(), 1, 80, 16, runge_kutta=False)

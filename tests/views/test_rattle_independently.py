@@ -31,6 +31,7 @@ KNOCKED_S = -0.13294921875
 TOUCHES_N = 1.0
 KNOCKS = [(0.0, -0.3), (0.0, 0.5), (1.0, -0.3)]
 """Torque [N m], and approach of the flanks [m/s] by the knock: they turn at 2.5 m/s."""
+ONE_FAST = [KNOCKS[0], *(pytest.param(*knock, marks=pytest.mark.slow) for knock in KNOCKS[1:])]
 WITHIN = 0.02
 """Of shares and rms over 80 ms: one impact of fifty, which motions that have parted may have more or less."""
 
@@ -99,7 +100,7 @@ def test_runge_kutta_bounces_as_scipy_does(torque_nm: float, knock_m_s: float) -
     assert largest(own, by_scipy(model, own, TIGHT)) < 1.5e-3
 
 
-@pytest.mark.parametrize(("torque_nm", "knock_m_s"), KNOCKS)
+@pytest.mark.parametrize(("torque_nm", "knock_m_s"), ONE_FAST)
 def test_later_flanks_are_apart_as_long_and_push_as_hard_as_by_scipy(torque_nm: float, knock_m_s: float) -> None:
     model, own = knocked(torque_nm, knock_m_s, 16, LONG)
     other = by_scipy(model, own, 1e-6)

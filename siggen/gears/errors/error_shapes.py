@@ -85,13 +85,13 @@ def _slope(teeth: int, rng: np.random.Generator) -> FloatArray:
 
 def _form(waves: FloatArray, rng: np.random.Generator) -> FloatArray:
     place, nodes = np.linspace(0.0, 1.0, FLANK_POINTS), np.linspace(0.0, 1.0, NOISE_POINTS)
-    form = np.empty((waves.size, FLANK_POINTS))
+    form, noise = np.empty((waves.size, FLANK_POINTS)), np.empty((NOISE_POINTS, waves.size))
     # Tooth by tooth, so that further teeth leave those before them as they are.
     for tooth, cycles in enumerate(waves):
         phase, amplitude = 2.0 * np.pi * rng.random(), 1.0 + TOOTH_SCATTER * rng.standard_normal()
-        noise = CubicSpline(nodes, NOISE_SHARE * rng.standard_normal(NOISE_POINTS))(place)
-        form[tooth] = amplitude * np.sin(2.0 * np.pi * cycles * place + phase) + noise
-    return without_line(form)
+        noise[:, tooth] = NOISE_SHARE * rng.standard_normal(NOISE_POINTS)
+        form[tooth] = amplitude * np.sin(2.0 * np.pi * cycles * place + phase)
+    return without_line(form + CubicSpline(nodes, noise)(place).T)
 
 
 def without_line(profiles: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from tests.dataset.fake_set import fake_config, write_fake_set
 
 @pytest.fixture(scope="module")
 def perfect_gears() -> PlantedSet:
-    return planted(Plant(specimens=4, error_depth=0.0))
+    return planted(Plant(specimens=4, points=1, error_depth=0.0))
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +123,8 @@ def test_the_card_of_a_set_on_disk_is_written_and_the_set_still_verifies(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = tmp_path / "set"
-    write_fake_set(folder, fake_config())  # noise over 0.1 s: nearly everything is undefined, and nothing breaks
+    # noise over 0.1 s: nearly everything is undefined, and nothing breaks
+    write_fake_set(folder, fake_config(specimens=3))
     assert run(monkeypatch, str(folder), "--out", str(tmp_path / "report"), "--write-card") == 0
     card = (folder / "README.md").read_text()
     assert card.count("## What this set was measured to teach") == 1

@@ -28,7 +28,7 @@ def bursts() -> MeasuredSet:
     return cast(MeasuredSet, found)
 
 
-@pytest.mark.parametrize("referenced", [False, True])
+@pytest.mark.parametrize("referenced", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_it_finds_a_burst_wherever_it_is_and_says_the_same_twice(
     referenced: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -10,7 +10,8 @@ import pytest
 from diagnostics.bench.conditions import Tier
 from diagnostics.bench.making import SEALED, SIMULATED, Wanted, make_benchmark
 from diagnostics.bench.revealing import commit
-from diagnostics.scoring.benchmark import Benchmark
+from diagnostics.scoring.benchmark import Benchmark, open_benchmark
+from tests.shared import shared_folder
 
 SECRET = b"a secret of a test, which is long enough to be one"
 PITS = {
@@ -67,7 +68,11 @@ def make(folder: Path, size: Tier = SMALL, secret: bytes = SECRET, facts: Path |
 
 @pytest.fixture(scope="session")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
-    """The benchmark, committed to, not revealed."""
-    found = make(tmp_path_factory.mktemp("bench"), Tier(6, GEARBOXES))
-    commit(found.benchmark, found.sealed)
-    return found
+    """The benchmark, committed to, not revealed; files share it, and copy what they change."""
+
+    def committed(folder: Path) -> None:
+        found = make(folder, Tier(6, GEARBOXES))
+        commit(found.benchmark, found.sealed)
+
+    folder = shared_folder(tmp_path_factory, "benchmark", committed)
+    return Made(open_benchmark(folder / "bench"), folder / "hidden")

@@ -18,7 +18,7 @@ from siggen.cli.app import app as siggen_app
 from siggen.errors import UsageError
 from tests.diagnostics.calibration.hidden_machine import FS_HZ, channel_data, hidden_recordings
 
-GEARBOXES = 3
+GEARBOXES = 2
 
 
 def band_levels_db(signal: np.ndarray) -> np.ndarray:

@@ -132,6 +132,7 @@ def off_db(folder: Path, rig: Rig, channels: dict[str, str]) -> np.ndarray:
     return np.asarray(np.median([levels_db(one, rig) for one in made], axis=0) - wanted)
 
 
+@pytest.mark.slow
 def test_spectra_come_near_to_a_recording_held_out_and_levels_of_both_meshes(folder: Path, said: str) -> None:
     after, before = distances_db(folder)
     # 5.6 and 21 dB; of one pair a third to a half is left (docs/understand/calibration.md)
@@ -158,6 +159,7 @@ def test_a_helical_pair_is_calibrated_with_its_forces_along_the_shafts_and_an_ax
     assert np.abs(found).max() < LEVEL_DB, found
 
 
+@pytest.mark.slow
 def test_nothing_at_a_line_of_a_simulated_mesh_is_replayed(folder: Path, said: str) -> None:
     rig = read_rig(folder / "mill.yaml")
     for name in CHANNELS:
@@ -169,6 +171,7 @@ def test_nothing_at_a_line_of_a_simulated_mesh_is_replayed(folder: Path, said: s
                 assert apart[orders > 4.0].min() > 0.5 / 44, (name, mesh.words, beside)
 
 
+@pytest.mark.slow
 def test_all_that_is_written_says_the_users_words_alone(folder: Path, said: str) -> None:
     facts = json.loads((folder / "mine_data" / "calibration.json").read_text())
     assert {"mesh fast 1", "mesh slow 1", "middle sidebands of mesh slow 1"} <= set(
@@ -182,6 +185,7 @@ def test_all_that_is_written_says_the_users_words_alone(folder: Path, said: str)
         assert "pinion" not in text
 
 
+@pytest.mark.slow
 def test_the_result_generates_a_set(folder: Path, said: str) -> None:
     few = ["--set", "specimens=1", "--set", "duration_s=0.5"]
     made = command(

@@ -78,7 +78,7 @@ def test_shaft_teeth_and_levels_of_a_stage_are_found_again(teeth: tuple[int, int
             assert level.low < level.value < level.high
 
 
-@pytest.mark.parametrize("teeth", [(18, 47), (20, 40)])
+@pytest.mark.parametrize("teeth", [(18, 47), pytest.param((20, 40), marks=pytest.mark.slow)])
 def test_errors_of_the_teeth_pass_for_no_stage(teeth: tuple[int, int]) -> None:
     for seed in range(10, 16):
         assert second_stage(machine_multiples(records(seed, teeth, None), pair(teeth)), pair(teeth)) is None
@@ -97,7 +97,7 @@ def test_a_stage_whose_three_lines_one_channel_shows_is_found() -> None:
     assert (found.shaft, found.teeth) == ("gear", 25)
 
 
-@pytest.mark.parametrize("resonant_order", [12.1, 13.0, 31.4])
+@pytest.mark.parametrize("resonant_order", [12.1, 13.0, pytest.param(31.4, marks=pytest.mark.slow)])
 def test_a_resonance_of_the_housing_is_no_stage(resonant_order: float) -> None:
     for seed in range(20, 24):
         channels = records(seed, (18, 47), None, resonant_order)

@@ -106,30 +106,18 @@ def test_both_programs_word_every_kind_of_error_alike(
 
 
 def test_features_are_written_where_asked(
-    dataset: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(reading, "open", lambda path: dataset)
-    out = tmp_path / "sub" / "features.parquet"
-    assert run(monkeypatch, "indicators", "anything", "--out", str(out)) == 0
-    assert capsys.readouterr().out.strip() == str(out)
-    table = pq.read_table(out)
-    assert table.num_rows == 72
-    assert set(table.column("revolutions_pinion").to_pylist()) <= {28, 29, 30}
-
-
-def test_indicators_are_ranked_with_the_users_own(
     make_dataset: Callable[..., Any],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    (tmp_path / "own_functions.py").write_text("def peak(signal, tacho, gears):\n    return abs(signal).max()\n")
-    monkeypatch.syspath_prepend(str(tmp_path))
-    monkeypatch.setattr(reading, "open", lambda path: make_dataset(("test",) * 3))
-    assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o"), "--indicator", "own_functions:peak") == 0
-    assert capsys.readouterr().out.strip().endswith(str(tmp_path / "o" / "evaluation.csv"))
-    table = pq.read_table(tmp_path / "o" / "evaluation.parquet")
-    assert "peak" in table.column("indicator").to_pylist()
+    monkeypatch.setattr(reading, "open", lambda path: make_dataset(("train", "test")))
+    out = tmp_path / "sub" / "features.parquet"
+    assert run(monkeypatch, "indicators", "anything", "--out", str(out)) == 0
+    assert capsys.readouterr().out.strip() == str(out)
+    table = pq.read_table(out)
+    assert table.num_rows == 6
+    assert set(table.column("revolutions_pinion").to_pylist()) <= {28, 29, 30}
 
 
 def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(

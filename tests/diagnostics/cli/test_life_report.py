@@ -6,6 +6,7 @@ import base64
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -35,12 +36,19 @@ def report(*arguments: str) -> str:
     return CliRunner().invoke(app, ["report", *arguments], catch_exceptions=False).output
 
 
-def test_a_report_of_lives_judges_baselines_of_remaining_life(
-    fleet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("diagnostics.training.life_network.STEPS", 20)
-    metrics = json.loads(report(str(fleet), "--json", "--out", str(tmp_path / "report")))
-    assert "five indicators, age" in (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+@pytest.fixture(scope="module")
+def judged(fleet: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """Return the page of the set, by a network of few steps, and what the command printed."""
+    out = tmp_path_factory.mktemp("judged")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("diagnostics.training.life_network.STEPS", 20)
+        metrics = json.loads(report(str(fleet), "--json", "--out", str(out)))
+    return out / "report.html", metrics
+
+
+def test_a_report_of_lives_judges_baselines_of_remaining_life(fleet: Path, judged: tuple[Path, dict[str, Any]]) -> None:
+    page, metrics = judged
+    assert "five indicators, age" in page.read_text(encoding="utf-8")
     assert metrics["gearboxes_judged"] == 5
     assert list(metrics["baselines"])[:2] == ["constant", "age"]
     assert {"oil debris, age", "five indicators with their history, age"} < set(metrics["baselines"])
@@ -54,15 +62,17 @@ def test_a_report_of_lives_judges_baselines_of_remaining_life(
     assert known == pytest.approx(np.sqrt(np.mean(error_h**2)), rel=1e-12)
 
 
-def test_the_page_shows_each_gearbox_over_its_life_and_each_record_with_its_age(fleet: Path, tmp_path: Path) -> None:
-    report(str(fleet), "--no-cnn", "--out", str(tmp_path))
-    found = held(tmp_path / "report.html")
+def test_the_page_shows_each_gearbox_over_its_life_and_each_record_with_its_age(
+    fleet: Path, judged: tuple[Path, dict[str, Any]]
+) -> None:
+    page, _ = judged
+    found = held(page)
     lives = [value for name, value in found.items() if name.startswith("look-life-")]
     assert len(lives) == 5
     assert all(base64.b64decode(one["png"]).startswith(b"\x89PNG") for one in lives)
     ages = {row["record_id"]: row["age_h"] for row in siggen.open(fleet).life("inspections").to_pylist()}
     assert {record["record_id"]: record["age_h"] for record in listed(found["look-data"])} == pytest.approx(ages)
-    said = (tmp_path / "report.html").read_text(encoding="utf-8").split('<section class="answer"')[1]
+    said = page.read_text(encoding="utf-8").split('<section class="answer"')[1]
     assert re.search(r"<h2>What is found</h2><p><b>.*</b> tell the remaining life to <b>\d+ h</b>", said)
     assert "<b>5 gearboxes that failed</b>" in said
 

@@ -120,8 +120,7 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     assert ["predicted", "Predicted"] in data["filters"]
     assert all((record["seen"] == "seen in training") == (record["split"] != "test") for record in records)
     seen = sum(record["split"] != "test" for record in records)
-    start = f"{seen} of {len(records)}\N{NO-BREAK SPACE}records are of the gearboxes that the model was trained"
-    assert data["seen"].startswith(start)
+    assert f"learnt from the gearboxes of {seen} of {len(records)}, marked" in data["seen"]
     table, another = measured, replace(dataset, manifest={"identity": "another set"})
     assert set(predicted_labels(table, another, tmp_path / "report")["seen"]) == {"no"}
     other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))
@@ -129,15 +128,20 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
         predicted_labels(other, dataset, tmp_path / "report")  # type: ignore[arg-type]
 
 
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a set with plain names."""
+    return write_set_page(memory_dataset(("train", "test")), tmp_path_factory.mktemp("plain") / "page.html")
+
+
 @pytest.mark.skipif(not BROWSER, reason="needs a browser")
 @pytest.mark.parametrize(
     ("asked", "shown", "opened"),
     [("state=severe&indicator=fm4_pinion", 2, 2), ("record=4", 6, 4), ("state=%3Cb%3E&record=99", 6, 0)],
 )
-def test_an_address_chooses_records(tmp_path: Path, asked: str, shown: int, opened: int) -> None:
-    page = write_set_page(memory_dataset(("train", "test")), tmp_path / "page.html")
+def test_an_address_chooses_records(plain: Path, tmp_path: Path, asked: str, shown: int, opened: int) -> None:
     command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
-    address = f"{page.as_uri()}#{asked}"
+    address = f"{plain.as_uri()}#{asked}"
     done = subprocess.run([*command, "--dump-dom", address], capture_output=True, text=True, timeout=120, check=True)
     assert f"{shown} of 6 records shown" in done.stdout
     assert done.stdout.count('class="uplot') >= 7  # histogram, scatter, and what the record shows
@@ -146,7 +150,8 @@ def test_an_address_chooses_records(tmp_path: Path, asked: str, shown: int, open
     assert (f"FM4, pinion ({CHANNELS[0]})</button>" in done.stdout) == ("fm4" in asked)
 
 
-def test_a_server_gives_every_sample_to_this_machine_alone(dataset: MemoryDataset) -> None:
+def test_a_server_gives_every_sample_to_this_machine_alone() -> None:
+    dataset = memory_dataset(("train", "test"))
     look = set_look(dataset, LookOptions(served=True))
     server = page_server("<p>page</p>", dataset, np.array([3]), {DETAIL: look.detail})
     threading.Thread(target=server.serve_forever, daemon=True).start()
@@ -243,8 +248,9 @@ def test_all_records_are_listed_and_the_signals_of_as_many_as_are_wanted_are_kep
 
 
 def test_the_code_to_copy_gives_the_values_of_the_page(
-    dataset: MemoryDataset, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    dataset = memory_dataset(("train", "test"))
     data = set_look(dataset, LookOptions(served=True)).live.data["look-data"]
     column = next(one for one in data["indicators"] if one["name"] == f"fm4_pinion__{CHANNELS[0]}")
     monkeypatch.setattr("siggen.open", lambda path: {str(dataset.path): dataset}[path])
@@ -253,7 +259,8 @@ def test_the_code_to_copy_gives_the_values_of_the_page(
     shown = np.frombuffer(base64.b64decode(column["data"]), "<f4")
     np.testing.assert_array_equal(np.asarray(scope["values"], "<f4"), shown)
     healthy = np.array([record["fault"] == "healthy" for record in listed(data)])
-    assert (shown[healthy] > scope["limit"]).sum() == 1  # one of 24, as the code says
+    # one of twenty healthy records may be above it, of two none; the page holds single precision
+    assert scope["limit"] == pytest.approx(shown[healthy].max(), rel=1e-6)
     assert capsys.readouterr().out.startswith("[")
 
 

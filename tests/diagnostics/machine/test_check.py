@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -144,14 +145,16 @@ def test_a_load_between_the_references_is_judged_and_one_outside_is_not(way: str
     facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--load", said, "--out", tmp_path / "rig")
     assert run("baseline", *files, *facts)[0] == 0
 
-    def verdict(seed: int, load: float, **changed: float) -> str:
-        new = loaded(tmp_path / "new.npz", seed, load, **changed)
-        given = ("--load", load) if way == "numbers" else ()
-        return run("check", tmp_path / "rig", new, *given, "--no-keep")[1].split(": ")[1]
+    within = [loaded(tmp_path / f"within_{k}.npz", 20 + k, 47.0, knock=2.0 * k) for k in range(2)]
+    outside = loaded(tmp_path / "outside.npz", 22, 140.0, knock=2.0)
 
-    assert verdict(20, 47.0) == "unchanged"
-    assert verdict(21, 47.0, knock=2.0) == "changed"
-    assert verdict(22, 140.0, knock=2.0) == "other load or speed"
+    def verdicts(load: float, *new: Path) -> list[str]:
+        given = ("--load", load) if way == "numbers" else ()
+        printed = run("check", tmp_path / "rig", *new, *given, "--no-keep")[1]
+        return [re.search(rf"^{file.name}: ([^:;,]+)", printed, re.MULTILINE)[1] for file in new]  # type: ignore[index]
+
+    assert verdicts(47.0, *within) == ["unchanged", "changed"]
+    assert verdicts(140.0, outside) == ["other load or speed"]
 
 
 def test_speeds_that_do_not_differ_tell_no_load(tmp_path: Path) -> None:

@@ -11,9 +11,10 @@ import pytest
 
 from diagnostics.cli.app import app
 from diagnostics.page import html
+from diagnostics.records.usable_records import with_channels
 from diagnostics.report.report import write_report
 from diagnostics.training.network_training import NetworkOptions
-from tests.diagnostics.conftest import MemoryDataset, memory_dataset
+from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
 from tests.diagnostics.explore.test_explorer import NAMES, renamed
 from tests.diagnostics.machine.test_check import FS_HZ, run, write_recording
 
@@ -65,11 +66,13 @@ def malicious() -> MemoryDataset:
     return renamed(memory_dataset(("train",) * 4 + ("validation",) * 2 + ("test",) * 4), names)
 
 
+@pytest.mark.usefixtures("few_trees")
 def test_a_report_shows_every_name_as_text(malicious: MemoryDataset, tmp_path: Path) -> None:
     states = list(dict.fromkeys(malicious.table.column("state").to_pylist()))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # letters that the font of figures lacks; no room for a name
-        page = write_report(malicious, tmp_path / "report", 0, network=NetworkOptions(cnn=False))
+        one_channel = with_channels(malicious, CHANNELS[:1])
+        page = write_report(one_channel, tmp_path / "report", 0, network=NetworkOptions(cnn=False))
     check(page, states, scripts=2)
 
 

@@ -47,7 +47,7 @@ def test_bound_of_single_values_is_the_prediction_bound_of_the_normal_distributi
     assert group_bound(values, np.arange(9), 0.97) == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize("groups", [4, 12, 40])
+@pytest.mark.parametrize("groups", [4, 12, pytest.param(40, marks=pytest.mark.slow)])
 def test_bound_holds_for_records_of_new_groups_however_few_groups_were_seen(groups: int) -> None:
     rng = np.random.default_rng(groups)
     members, trials = 8, 4000
@@ -70,7 +70,7 @@ def family(rng: np.random.Generator, gearboxes: int, records: int = 4) -> tuple[
 PARTS = (("rms__a", "mesh_amplitude_h1__a"), tuple(f"noise_floor_{hz}hz__a" for hz in (100, 200, 400)))
 
 
-@pytest.mark.parametrize("gearboxes", [12, 40])
+@pytest.mark.parametrize("gearboxes", [12, pytest.param(40, marks=pytest.mark.slow)])
 def test_one_part_alone_makes_a_record_foreign_and_few_of_the_family_are(gearboxes: int) -> None:
     rng = np.random.default_rng(3)
     refused, foreign = [], {"lines": [], "floor": []}  # type: list[float], dict[str, list[float]]

@@ -170,8 +170,9 @@ def channels(dataset: Any, row: int, ratio: tuple[int, int] = (1, 1)) -> dict[st
 
 
 def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
-    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
     assert other.table.num_rows == 6
     folder, file = trained
     code, found = predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", f"{file}:0,3")
@@ -179,6 +180,7 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
     assert found["state"] == "severe"
     assert list(found["probabilities"]) == ["healthy_referenced"]
     assert found["distance"] != found["distance_without_reference"]
+    assert "by healthy_referenced: healthy " in capsys.readouterr().out  # a long label stands apart from its text
 
 
 @pytest.mark.usefixtures("other")
@@ -208,6 +210,7 @@ def test_a_reference_is_judged_against_none_on_the_records_that_have_one(trainin
     assert any("logistic regression beside a healthy record − logistic regression" in table for table in tables)
 
 
+@pytest.mark.slow  # trains four networks
 def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
     indicators_of_both: RecordTable, features_of_both: pa.Table, training: Training,
     monkeypatch: pytest.MonkeyPatch,
@@ -260,15 +263,6 @@ def test_test_records_do_not_widen_the_speeds_at_which_references_may_run(
     found = referenced_classifiers(feature_matrix(table), split, [], None, 0, NetworkOptions(cnn=False), silent_stage)
     training: Any = SimpleNamespace(split=split, referenced=found)
     assert release(training, table, twice).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
-
-
-def test_a_long_label_stands_apart_from_its_text(
-    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
-    folder, file = trained
-    predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", f"{file}:0")
-    assert "by healthy_referenced: healthy " in capsys.readouterr().out
 
 
 def test_references_at_another_rate_are_brought_to_that_of_the_model(

@@ -128,13 +128,22 @@ def test_the_figure_has_a_mark_for_the_chosen_size_and_says_where_sizes_are_too_
 def test_the_first_screen_names_damage_size_detector_and_certainty() -> None:
     found = Detectors({CLASSIFIER: detector(0.8, 4.0), CHOSEN: detector(0.8, 4.0)}, {})
     answer = first_answer(found).replace("\xa0", " ")
-    assert answer == "**Logistic regression** finds **pitting from 4 mm²** on, in nine of ten records."
+    assert answer == (
+        "**Pitting from 4 mm² on** is found in **nine of ten records**. Detector: **logistic regression**."
+    )
     never = Detectors({CHOSEN: detector(0.8, math.inf)}, {})
-    assert first_answer(never).replace("\xa0", " ").endswith("finds of **pitting**, up to 8 mm², only **40 %**.")
+    assert (
+        first_answer(never)
+        .replace("\xa0", " ")
+        .startswith(
+            "**Pitting** is found in only **40 %** of records (severe, 8 mm²), down to 40 % (slight, 1 mm²). Detector"
+        )
+    )
     sure = first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")
     assert sure == (
-        "Judged on **24 gearboxes that it had not learnt from**, at 5 % false alarms: **AUC 0.80** for all damage "
-        "(95 % limits 0.70 to 0.90; 0.5 is chance, 1 is perfect). No trap was found."
+        "**Each of 24 gearboxes was judged by a model that had learnt from others alone.** Of healthy records 5 % give "
+        "a false alarm. All damage together: **AUC 0.80** (95 % limits 0.70 to 0.90; 0.5 is chance, 1 is perfect). No "
+        "trap was found (something other than damage that tells the labels)."
     )
 
 
@@ -143,5 +152,5 @@ def test_what_takes_from_the_answer_stands_on_the_first_screen() -> None:
     sure = first_certainty(leaking, error_free=True, audit="A trap was found. More.")
     assert "**Damage without effect is told too (AUC 0.70)**: slight is not found." in sure
     assert "**The gears have no manufacturing errors**" in sure
-    assert sure.endswith("A trap was found.")
+    assert sure.endswith("A trap was found (something other than damage that tells the labels).")
     assert first_answer(Detectors({}, {})).startswith("**No answer**")

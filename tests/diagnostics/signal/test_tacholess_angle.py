@@ -78,6 +78,7 @@ def test_drift_of_four_percent_in_a_range_of_nearly_an_octave_at_noise_as_strong
     assert np.abs(error[6:-6]).max() < 0.03 / TEETH
 
 
+@pytest.mark.slow  # of pulses by every shaft: tests/diagnostics/recordings/test_shaft_pulses.py
 @given(
     speed_hz=st.floats(22.0, 50.0),
     wrong=st.sampled_from([(1.1, 2.05), (1.4, 2.7), (0.45, 0.85), (0.26, 0.48)]),

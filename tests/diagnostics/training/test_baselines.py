@@ -171,6 +171,7 @@ def test_classifier_survives_its_file(
     assert json.loads((tmp_path / "feature_names.json").read_text())["features"] == list(matrix.names)
 
 
+@pytest.mark.slow  # so does the walk that predicts
 def test_a_process_that_has_imported_nothing_else_reads_a_classifier(
     model: FeatureClassifier, split: SpecimenSplit, tmp_path: Path
 ) -> None:

@@ -141,6 +141,7 @@ def test_more_training_specimens_raise_the_score(features: pa.Table) -> None:
     assert curve[-1].indicators[0] > 0.9
 
 
+@pytest.mark.slow
 def test_the_end_of_the_curve_is_the_score_of_the_classifiers(features: pa.Table) -> None:
     matrix = feature_matrix(features)
     whole = specimen_split(matrix.labels)

@@ -57,6 +57,7 @@ def healthy():
     return run(IN_THREE)
 
 
+@pytest.mark.slow  # records of tests/cli/test_planetary_sets.py prove these three by command
 def test_a_healthy_set_shows_multiples_of_its_planets_alone_and_none_at_the_mesh_frequency(healthy):
     found = power(*healthy)
     assert share_of_others(found) < 1e-4  # -40 dB
@@ -64,10 +65,12 @@ def test_a_healthy_set_shows_multiples_of_its_planets_alone_and_none_at_the_mesh
     assert all(TEETH.carries_line(order) for order in np.argsort(found)[::-1][:6].tolist())
 
 
+@pytest.mark.slow
 def test_a_planet_out_of_place_brings_back_all_orders():
     assert share_of_others(power(*run(IN_THREE, late_m=20e-6))) > 1e-3  # ten times what a healthy set may have
 
 
+@pytest.mark.slow
 def test_a_damaged_tooth_of_the_ring_changes_heights_and_adds_no_line(healthy):
     found, before = power(*run(IN_THREE, faulty="ring")), power(*healthy)
     assert share_of_others(found) < 1e-4
