@@ -95,7 +95,7 @@ def first_caption(examples: ExampleSet) -> str:
         f"Vibration of one gearbox with growing damage (colour), over the same gearbox healthy (grey): specimen "
         f"{examples.specimen_id}, {examples.channel}, {examples.speed_hz:.3g}{SPACE}Hz, "
         f"{examples.torque_nm:.3g}{SPACE}N{SPACE}m. Damage lifts the marked sidebands of the tooth mesh. Sizes are "
-        "damaged area."
+        "damaged areas of this gearbox, shares those of all."
     )
 
 
