@@ -44,9 +44,10 @@ def in_mesh(stage: Structure, hz: np.ndarray, motions: tuple[str, ...] = ()) -> 
 
 
 @pytest.fixture
-def stiff(monkeypatch) -> None:
+def stiff(monkeypatch, made_anew) -> None:
     """Let walls be 10,000 times as stiff as those of steel."""
     monkeypatch.setattr("siggen.specimen.housing_layout._material", lambda _: Material(2.06e15, 0.3, 7850.0))
+    made_anew()
 
 
 @pytest.mark.usefixtures("stiff")

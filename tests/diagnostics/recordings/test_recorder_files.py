@@ -134,7 +134,7 @@ def test_mutated_files_give_indicators_or_a_sentence(kind: str, sound: Callable[
     path, chance = tmp_path / f"run.{kind}", Random(11)
     content = sound(kind).read_bytes()
     outcomes = []
-    for _ in range(15):
+    for _ in range(30):
         path.write_bytes(mutated_bytes(content, chance))
         case = judged(path.name, lambda: recording_indicators(path, (20, 30), RecordingFacts(), (20.0, 30.0)))
         assert case.outcome in ("accepted", "refused"), case.message
