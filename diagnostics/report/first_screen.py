@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 MOST_SIZES, MOST_KINDS = 4, 3
 """Rows of the figure, and kinds of damage in the sentence; more do not fit the first screen."""
 
-TRAP = "something other than damage that tells the labels"
+TRAP_WORD, TRAP = "trap", "something other than damage that tells the labels"
 SPACE = "\N{NO-BREAK SPACE}"
 SIZE_IN, ORDERS = (5.6, 1.0, 1.0), 4.6
 """Width, and height of the frame and of a row [in]; how far from the mesh line spectra are shown."""
@@ -177,4 +177,5 @@ def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
         parts.append(f"**Damage without effect is told too (AUC {decimal(sham.value)})**: {joined(lost)} is not found.")
     if error_free:
         parts.append("**The gears have no manufacturing errors**: on a real machine nothing is known.")
-    return " ".join([*parts, f"{audit.split('. ', maxsplit=1)[0].rstrip('.')} ({TRAP})."])
+    told = audit.split(". ", maxsplit=1)[0].rstrip(".")
+    return " ".join([*parts, f"{told} ({TRAP})." if TRAP_WORD in told else f"{told}."])

@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
-ALONE = "own_gearbox"
+IN_DEFAULT = "own_gearbox"
 """Shows the commands and the Python interface, and is the fastest: 11 s of CPU time."""
 
 
@@ -36,7 +36,6 @@ def test_a_notebook_has_no_outputs_and_its_links_lead_to_pages(path: Path) -> No
             assert (path.parent / target).is_file(), target
 
 
-@pytest.mark.slow  # what its cells do, walks and pages do in the fast suite
 @pytest.mark.timeout(1200)
 @pytest.mark.filterwarnings("ignore")
 def test_a_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -50,7 +49,7 @@ def test_a_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     monkeypatch.setattr(script, "KEPT", tmp_path)  # no copy of an earlier run
-    notebook = script.executed(script.FOLDER / f"{ALONE}.ipynb")
+    notebook = script.executed(script.FOLDER / f"{IN_DEFAULT}.ipynb")
     outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
     assert not [output for output in outputs if output.output_type == "error"]
     assert any("image/png" in output.get("data", {}) for output in outputs)

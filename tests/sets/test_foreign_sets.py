@@ -21,7 +21,7 @@ from tests.dataset.fake_set import fake_config, fake_physics, write_fake_set
 from tests.dataset.resealed_set import facts
 from tests.publication.conftest import facts_file
 
-CHANGES = 5
+CHANGES = 15
 QUICK_READERS = ("open", "verify", "publish", "merge", "extend", "generate")
 
 

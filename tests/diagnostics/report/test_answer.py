@@ -153,4 +153,6 @@ def test_what_takes_from_the_answer_stands_on_the_first_screen() -> None:
     assert "**Damage without effect is told too (AUC 0.70)**: slight is not found." in sure
     assert "**The gears have no manufacturing errors**" in sure
     assert sure.endswith("A trap was found (something other than damage that tells the labels).")
+    unasked = first_certainty(leaking, error_free=False, audit="The audit was not run. So it is not known.")
+    assert unasked.endswith("The audit was not run.")
     assert first_answer(Detectors({}, {})).startswith("**No answer**")
