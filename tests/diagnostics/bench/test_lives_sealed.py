@@ -13,8 +13,11 @@ import pytest
 import yaml
 from scipy.stats import kstest, rankdata
 
+import diagnostics
 import siggen
+from diagnostics.bench.conditions import LIFE_CONDITIONS
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
+from diagnostics.bench.life_predictions import pace
 from diagnostics.bench.making import SEALED, SECRET_FILE, SIMULATED
 from diagnostics.scoring.benchmark import open_benchmark
 from diagnostics.training.life_baselines import AGE, DEBRIS
@@ -109,6 +112,36 @@ def test_predicted_lives_are_scored_and_ranked_by_their_error_before_and_after_l
     said = (page.parent / BOARD).read_text()
     assert "knows all leads with a mean error [h] of 0.00" in said
     assert "sham" not in said
+
+
+def test_a_model_of_ones_own_takes_age_and_indicators_from_the_public_table(made: Made) -> None:
+    """A line of age that knows the lives to learn from, to the least squares of numpy."""
+    bench = diagnostics.open_benchmark(str(made.benchmark.path))
+    learn, asked = diagnostics.table(bench.learn()), diagnostics.table(bench.part("same")).split("test")
+    age_h, left_h = (learn.labels[name] for name in ("age_h", "rul_h"))
+    failed = np.isfinite(left_h)
+    assert failed.any()
+    line = np.polyfit(age_h[failed], left_h[failed], 1)
+    mine = {"record_id": asked.labels["record_id"], "rul_h": np.maximum(np.polyval(line, asked.labels["age_h"]), 0.0)}
+    (found,) = diagnostics.score_benchmark(bench, mine, labels=made.sealed).parts
+    told = {row["record_id"]: row["rul_h"] for row in truth(made, "same")}
+    errors = [
+        abs(told[record] - hours) for record, hours in zip(*mine.values(), strict=True) if told[record] is not None
+    ]
+    assert found.rows[0].score.value == pytest.approx(np.mean(errors))
+    assert np.isnan(asked.labels["rul_h"]).all()
+    assert asked.roles["rul_h"] == "target"
+    assert asked.values.shape == (GEARBOXES, learn.values.shape[1])
+
+
+@pytest.mark.parametrize(
+    ("history", "exponent", "expected"),
+    [([], 10.0, 1.05**10), ([[2.0, 1.05], [1.0, 0.0]], 10.0, 1.5), ([[1.0, 60.0, 30.0]], 10.0, 1.0)],
+)
+def test_baselines_count_hours_by_what_wears_as_much(history: list[Any], exponent: float, expected: float) -> None:
+    config = {"life": {"history": history, "damage": {"torque_exponent": exponent}}}
+    assert pace(config, LIFE_CONDITIONS["other_load"]) == pytest.approx(expected, rel=1e-12)
+    assert pace(config, LIFE_CONDITIONS["same"]) == 1.0
 
 
 def shown(made: Made, part: str) -> tuple[Dataset, Dataset, list[tuple[Row, Row]]]:
