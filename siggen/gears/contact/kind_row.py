@@ -51,6 +51,8 @@ class KindRow(NamedTuple):
         """Return the gaps at fine points (chosen,)."""
         inside = chosen - self.first
         here = (inside >= 0) & (inside < len(self.gaps.left_m))
+        if here.all():
+            return FaceGaps(*(near[inside] for near in self.gaps))
         found = []
         for near, far in zip(self.gaps, self.elsewhere, strict=True):
             values = far[chosen]
