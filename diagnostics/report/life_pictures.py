@@ -12,9 +12,9 @@ from diagnostics.indicators.table import RecordTable
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.report.life_detection import CAPTION
 from diagnostics.report.life_figure import life_figure
-from diagnostics.report.life_rows import inspections_of
 from diagnostics.report.unit_lives import unit_lives, watches
 from diagnostics.training.life_baselines import HISTORY, OUTLOOK, history_predictions
+from diagnostics.training.life_rows import inspections_of
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
