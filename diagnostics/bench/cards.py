@@ -35,9 +35,8 @@ test parts are sealed until their maker reveals them.
 
 Digest: `{facts["digest"]}`. It is part of every score; a score of another digest is another benchmark's.
 
-    siggen-diagnostics score . mine.parquet                       # once `revealed.json` is here
-    siggen-diagnostics score . mine.parquet --labels sealed.json  # its maker, before
-    sha256sum revealed.json                                       # is what `commitment.json` says
+    siggen-diagnostics score . mine.parquet   # its maker; others once `revealed.json` is here
+    sha256sum revealed.json                   # is what `commitment.json` says
 
 `commitment.json` holds the SHA-256 of labels, salt, seeds and configurations, published before the first score.
 `revealed.json` is that file. `siggen.generate` makes the test parts again from its configurations.

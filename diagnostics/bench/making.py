@@ -24,13 +24,13 @@ from diagnostics.bench.conditions import TIERS, Tier, changed
 from diagnostics.bench.derived_secret import derived, seed_of
 from diagnostics.bench.question import Question, Renumbered
 from diagnostics.bench.questions import question_of
-from diagnostics.scoring.benchmark import FACTS, LEARN, TESTS, Benchmark, benchmark_facts, open_benchmark
+from diagnostics.scoring.benchmark import FACTS, LEARN, SEALED, TESTS, Benchmark, benchmark_facts, open_benchmark
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
 
 PRESET = "siggen_bench"
-SECRET_FILE, SEALED, SIMULATED, CARD = "secret", "sealed.json", "simulated", "README.md"
+SECRET_FILE, SIMULATED, CARD = "secret", "simulated", "README.md"
 
 
 @dataclass(frozen=True, slots=True)

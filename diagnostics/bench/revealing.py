@@ -11,8 +11,8 @@ from diagnostics.scoring.sealed_labels import labels_of
 from siggen.errors import UsageError
 
 
-def commit(benchmark: Benchmark, sealed: Path) -> str:
-    """Return the SHA-256 of the sealed labels, and write it into the benchmark.
+def commit(benchmark: Benchmark, sealed: Path | None = None) -> str:
+    """Return the SHA-256 of the sealed labels, and write it into the benchmark; labels as of `labels_of`.
 
     Raises
     ------
@@ -25,8 +25,8 @@ def commit(benchmark: Benchmark, sealed: Path) -> str:
     return found
 
 
-def reveal(benchmark: Benchmark, sealed: Path) -> Path:
-    """Copy the sealed labels into the benchmark; return the file.
+def reveal(benchmark: Benchmark, sealed: Path | None = None) -> Path:
+    """Write the sealed labels into the benchmark; return the file. Labels as of `labels_of`.
 
     Raises
     ------
@@ -35,8 +35,7 @@ def reveal(benchmark: Benchmark, sealed: Path) -> Path:
     """
     if benchmark.commitment() is None:
         raise UsageError(f"{benchmark.path}: nothing was committed to; run `siggen-diagnostics bench commit` first")
-    labels_of(benchmark, sealed)
-    target = benchmark.path / REVEALED
-    if not target.exists() or not target.samefile(sealed):
-        shutil.copyfile(sealed, target)
+    found, target = labels_of(benchmark, sealed), benchmark.path / REVEALED
+    if not target.exists() or not target.samefile(found.file):
+        shutil.copyfile(found.file, target)
     return target

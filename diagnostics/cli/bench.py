@@ -15,7 +15,10 @@ Bench = Annotated[Path, typer.Argument(metavar="BENCH", help="Folder of a benchm
 Sealed = Annotated[
     Path | None,
     typer.Option(
-        "--labels", metavar="FILE", help="Sealed labels, BENCH_secret/sealed.json unless told.", show_default=False
+        "--labels",
+        metavar="FILE",
+        help="Sealed labels; those revealed, else BENCH_secret/sealed.json unless told.",
+        show_default=False,
     ),
 ]
 
@@ -76,15 +79,17 @@ def make(
 
     Example: siggen-diagnostics bench make data/bench_tiny --tier tiny
     """
+    from diagnostics.base.beside import beside
     from diagnostics.base.progress import terminal_stage
     from diagnostics.bench.conditions import TIERS, Tier
     from diagnostics.bench.derived_secret import read_secret
     from diagnostics.bench.making import SECRET_FILE, Wanted, make_benchmark
+    from diagnostics.scoring.benchmark import SECRET
     from siggen.errors import UsageError
 
     if size.tier not in TIERS:
         raise UsageError(f"--tier: received {size.tier!r}; allowed are {', '.join(TIERS)}")
-    usual, folder = TIERS[size.tier], _secret_folder(out, hidden)
+    usual, folder = TIERS[size.tier], hidden or beside(out, SECRET)
     chosen = Tier(size.learn or usual.learn, size.test or usual.test)
     numbers = f" ({chosen.learn} gearboxes to learn from, {chosen.test} in a test part)" if chosen != usual else ""
     named = f"{size.tier}{numbers}"
@@ -103,7 +108,7 @@ def commit(folder: Bench, labels: Sealed = None) -> None:
     from diagnostics.bench.revealing import commit as committed
     from diagnostics.scoring.benchmark import open_benchmark
 
-    typer.echo(committed(open_benchmark(folder), _sealed(folder, labels)))
+    typer.echo(committed(open_benchmark(folder), labels))
 
 
 @bench.command()
@@ -115,7 +120,7 @@ def reveal(folder: Bench, labels: Sealed = None) -> None:
     from diagnostics.bench.revealing import reveal as revealed
     from diagnostics.scoring.benchmark import open_benchmark
 
-    typer.echo(str(revealed(open_benchmark(folder), _sealed(folder, labels))))
+    typer.echo(str(revealed(open_benchmark(folder), labels)))
 
 
 @bench.command()
@@ -145,10 +150,7 @@ def board(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="BENCH_board unless told.", show_default=False)
     ] = None,
-    labels: Annotated[
-        Path | None,
-        typer.Option("--labels", metavar="FILE", help="Sealed labels; those revealed unless told.", show_default=False),
-    ] = None,
+    labels: Sealed = None,
     seed: Seed = 0,
     show: Open = False,
 ) -> None:
@@ -169,15 +171,3 @@ def board(
     typer.echo(str(path))
     if show:
         opened(path)
-
-
-def _secret_folder(folder: Path, told: Path | None) -> Path:
-    from diagnostics.base.beside import beside
-
-    return told or beside(folder, "_secret")
-
-
-def _sealed(folder: Path, told: Path | None) -> Path:
-    from diagnostics.bench.making import SEALED
-
-    return told or _secret_folder(folder, None) / SEALED

@@ -20,7 +20,9 @@ class JudgedOptions:
     labels: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Sealed labels of a benchmark; those that it reveals unless told.", show_default=False
+            metavar="FILE",
+            help="Sealed labels of a benchmark; those revealed, else SET_secret/sealed.json unless told.",
+            show_default=False,
         ),
     ] = None
     split: Annotated[str, typer.Option(metavar="test|validation", help="Whose records are judged.")] = "test"

@@ -4,7 +4,8 @@
 `ranking_table`, `audit.measured_set`). Values do not depend on the number of workers: records are handed out in the
 order of the files and come back in it. Functions of the user are called anew each time, since their code may change.
 
-Where the table of a set is kept: `DIR_table/` beside the set's folder, one Parquet file per settings and channels.
+Where the table of a set is kept: `DIR_table/` beside the set's folder, one Parquet file per settings and channels. Of a
+part of a benchmark, which is published as a whole: `BENCH_table/PART/` beside the benchmark.
 
 A file's name carries what its numbers depend on: the set (digest of its manifest, size and time of its files), the
 source code of signals, records and indicators, the settings, the channels. So nothing has to be declared out of date;
@@ -25,6 +26,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from diagnostics.base.beside import beside
 from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.own_indicator import OwnIndicator, all_own, own_columns
 from diagnostics.indicators.record import RecordResult, record_result
@@ -41,6 +43,8 @@ from siggen.errors import DatasetError
 
 CODE = ("signal", "records", "indicators")
 DIGITS = 12
+WHOLE = "benchmark.json"
+"""Lies one or two folders above the parts of a benchmark."""
 
 Advance = Callable[[], None]
 PULSE_CONDITIONS = ("pulses_per_s", "speed_variation_percent", "start_turn")
@@ -68,7 +72,12 @@ def table_file(dataset: Dataset, settings: IndicatorSettings, channels: Sequence
     facts = [(name, *_stat(folder / name)) for name in files]
     state = _digest([dataset.manifest, facts, _code_digest()])
     chosen = _digest([asdict(settings), list(channels)])
-    return folder.with_name(f"{folder.name}_table") / f"{state}-{chosen}.parquet"
+    return _table_folder(folder) / f"{state}-{chosen}.parquet"
+
+
+def _table_folder(folder: Path) -> Path:
+    whole = next((one for one in folder.parents[:2] if (one / WHOLE).is_file()), folder)
+    return beside(whole, "_table") / folder.relative_to(whole)
 
 
 def _stat(path: Path) -> tuple[int, int]:

@@ -14,12 +14,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from diagnostics.indicators.table import WHOLE
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
 
-FACTS, COMMITMENT, REVEALED = "benchmark.json", "commitment.json", "revealed.json"
+FACTS, COMMITMENT, REVEALED = WHOLE, "commitment.json", "revealed.json"
 LEARN, TESTS, BASELINES = "learn", "test", "baselines"
+SECRET, SEALED = "_secret", "sealed.json"
+"""Ending of the maker's folder beside the benchmark, and its file of labels."""
 FORMAT = "siggen benchmark"
 NAME = re.compile(r"[a-z0-9_]{1,60}")
 """Of a test part: that of a folder."""

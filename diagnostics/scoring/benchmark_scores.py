@@ -110,7 +110,7 @@ def score_benchmark(
     predictions : path, mapping of str to (n,), pyarrow table or data frame
         As of `diagnostics.score`, for the records of one or several parts.
     labels : path, optional
-        Sealed labels; by default those that were revealed.
+        Sealed labels; by default those revealed, else those of the maker beside it.
     baselines : path, optional
         Folder with predictions to be judged beside them; default that of the benchmark, if it has one.
     seed : int

@@ -17,7 +17,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from diagnostics.scoring.benchmark import Benchmark
+from diagnostics.base.beside import beside
+from diagnostics.scoring.benchmark import SEALED, SECRET, Benchmark
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
@@ -37,12 +38,14 @@ class SealedLabels:
         Of every test part `labels` and `damage`, columns by name; of lives tables by name in `life`.
     commitment : str
         SHA-256 of the file.
+    file : Path
     """
 
     digest: str
     simulation_version: int
     parts: Mapping[str, Mapping[str, Any]]
     commitment: str
+    file: Path
 
 
 def read_labels(file: Path) -> SealedLabels:
@@ -62,22 +65,23 @@ def read_labels(file: Path) -> SealedLabels:
             f"{file}: is no file of labels ({type(error).__name__}: {error}); allowed: sealed.json of the maker, or "
             "revealed.json of the benchmark"
         ) from error
-    return SealedLabels(commitment=hashlib.sha256(content).hexdigest(), **named)
+    return SealedLabels(commitment=hashlib.sha256(content).hexdigest(), file=file, **named)
 
 
 def labels_of(benchmark: Benchmark, file: Path | None) -> SealedLabels:
-    """Return the labels of a benchmark, by default those that were revealed.
+    """Return the labels of a benchmark: of a file, else those revealed, else its maker's beside it.
 
     Raises
     ------
     UsageError
         If there are none, or they are of another benchmark or version, or not those that were committed to.
     """
-    chosen = file or benchmark.revealed()
+    own = beside(benchmark.path, SECRET) / SEALED
+    chosen = file or benchmark.revealed() or (own if own.is_file() else None)
     if chosen is None:
         raise UsageError(
-            f"{benchmark.path}: its labels are not revealed; its maker scores with --labels sealed.json, others after "
-            "`bench reveal`"
+            f"{benchmark.path}: its labels are not revealed, and {own} is not there; its maker names the file with "
+            "--labels, others wait for `bench reveal`"
         )
     found = read_labels(chosen)
     ours = (benchmark.digest, benchmark.simulation_version)

@@ -35,6 +35,7 @@ STATES = (
     "slight",
     *(f"face_{share}" for share in FACES),
     *(f"through_{i:03d}" for i in LENGTHS),
+    "sham",
 )
 SAME = ("healthy", "healthy_again", "face_80", *(f"through_{i:03d}" for i in LENGTHS))
 """Of bench with parallel edges: enough to compare it with bench."""
@@ -197,7 +198,7 @@ def draw(found: dict[str, dict[str, dict[str, Entry]]]) -> None:
                 )
                 axis.plot(at, value, color=colour, marker=marker, label=label)
             axis.axhline(0.5, color="0.6", linewidth=0.8)
-            axis.set(xlabel=what, title=f"{name}: {what.partition(' [')[0]}", ylim=(0.35, 1.02))
+            axis.set(xlabel=what, title=f"{name}: {what.partition(' [')[0]}", ylim=(0.25, 1.02))
         row[0].set_ylabel("AUC against healthy records [-]")
         row[0].set_xlim(15.0, 103.0)
     figure.legend(handles=axes[0, 0].lines[: len(SEEN)], loc="outside lower center", ncols=len(SEEN), fontsize=8)

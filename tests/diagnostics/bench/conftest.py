@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import pytest
 
 from diagnostics.bench.conditions import Tier
-from diagnostics.bench.making import SEALED, SIMULATED, Wanted, make_benchmark
+from diagnostics.bench.making import SIMULATED, Wanted, make_benchmark
 from diagnostics.bench.revealing import commit
-from diagnostics.scoring.benchmark import Benchmark, open_benchmark
+from diagnostics.scoring.benchmark import SEALED, Benchmark, open_benchmark
 from tests.shared import shared_folder
 
 SECRET = b"a secret of a test, which is long enough to be one"

@@ -49,6 +49,8 @@ def test_every_baseline_says_something_of_every_test_record(made: Made, learned:
         assert sorted(row["record_id"] for row in own) == sorted(asked)
         assert {row["reference"] for row in own} == {name.endswith(BESIDE)}
         assert np.isfinite([row["damage"] for row in own]).all()
+    assert not [*learned.rglob("*_table")]  # the folder is published
+    assert (learned.with_name("bench_table") / "test" / "same").is_dir()
 
 
 def test_the_board_orders_entries_and_pairs_their_differences(made: Made, learned: Path, tmp_path: Path) -> None:

@@ -69,7 +69,11 @@ def test_a_benchmark_is_committed_to_scored_sealed_revealed_and_scored_again(mad
     printed = diagnostics_command("bench", "commit", str(bench), *secret).stdout.strip()
     assert printed == hashlib.sha256(made.sealed.read_bytes()).hexdigest()
     before = diagnostics_command("score", str(bench), str(mine), *secret, "--json")
-    revealed = diagnostics_command("bench", "reveal", str(bench), *secret).stdout.strip()
+    (tmp_path / "bench_secret").mkdir()
+    shutil.copy(made.sealed, tmp_path / "bench_secret")
+    assert diagnostics_command("score", str(bench), str(mine), "--json").stdout == before.stdout
+    revealed = diagnostics_command("bench", "reveal", str(bench)).stdout.strip()
+    shutil.rmtree(tmp_path / "bench_secret")
     assert hashlib.sha256(Path(revealed).read_bytes()).hexdigest() == printed
     after = diagnostics_command("score", str(bench), str(mine), "--json")
     assert before.stdout == after.stdout
