@@ -193,6 +193,15 @@ def test_a_part_shows_each_gearbox_up_to_an_inspection_and_nothing_of_what_comes
     assert "as its manifest promises" in command("siggen", "verify", str(published.path)).stdout
 
 
+def test_records_of_a_part_are_looked_at_and_a_report_says_why_it_cannot_judge(made: Made, tmp_path: Path) -> None:
+    part = str(made.benchmark.path / "test" / "same")
+    bench("explore", part, "--out", str(tmp_path / "look.html"))
+    assert "Age [h]" in (tmp_path / "look.html").read_text()
+    refused = command("diagnostics", "report", part, "--out", str(tmp_path / "report"))
+    assert refused.returncode != 0
+    assert "does not tell when its gearboxes fail, as a test part of a benchmark" in refused.stderr
+
+
 def strongest(values: dict[str, np.ndarray], rest: np.ndarray) -> tuple[str, float]:
     """Return the attacker that orders best what age leaves of lives, and the share of permuted lives so ordered."""
     names = [name for name, column in values.items() if np.ptp(column) > 0]
