@@ -1,9 +1,10 @@
 """`python -m benchmarks.mutants [--count N] [--seed S] [--only K ...]`: changes that the nearest tests miss.
 
 Operators and numbers of physics and data code are drawn by a seed and changed one at a time in a copy of the working
-tree; the test files that import the changed module run there, in a process of their own. A mutant that survives is a
-missing check or an equivalent change; someone has to look at each. Compiled code that a change cannot reach, since its
-module imports the changed one at no remove, is kept.
+tree; the test files that import the changed module, or one that imports it, run there, in a process of their own. A
+mutant that survives is a missing check or an equivalent change; someone has to look at each. One that hangs or is
+killed is told apart. Compiled code that a change cannot reach, since its module imports the changed one at no remove,
+is kept.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ def sources_digest(patterns):
 """
 """What the copy's `sources.py` ends with: functions stay in the cache whatever becomes of the sources of others."""
 GOLDEN = ROOT / "tests" / "record" / "test_golden.py"
+SURVIVES, FOUND, HANGS = "SURVIVES", "found", "hangs"
 LIMIT_S = 900
 """CPU seconds of one mutant's tests, a quarter of the time by the clock: a change that hangs a test is noticed, and
 what else the machine does hardly matters."""
@@ -112,12 +114,24 @@ def drawn(count: int, seed: int) -> list[Mutant]:
 
 
 def nearest_tests(file: Path) -> list[str]:
-    """Return the test files that import a module, those of its folder, small ones first, and the golden records."""
-    module = ".".join(file.with_suffix("").parts)
+    """Return the test files that import a module, those of its folder, the golden records, and who imports its users.
+
+    Small ones first; a user of a module is one that imports it.
+    """
     tests = sorted((ROOT / "tests").rglob("test_*.py"), key=lambda path: path.stat().st_size)
-    direct = [path for path in tests if module in path.read_text(encoding="utf-8")]
+    texts = {path: path.read_text(encoding="utf-8") for path in tests}
     beside = [path for path in tests if path.parent == ROOT / "tests" / file.parent.relative_to("siggen")]
-    return [str(path.relative_to(ROOT)) for path in dict.fromkeys([*direct, *beside, GOLDEN])]
+    direct, *used = ([path for path in tests if module in texts[path]] for module in [_module(file), *_users(file)])
+    found = [*direct, *beside, GOLDEN, *(path for each in used for path in each)]
+    return [str(path.relative_to(ROOT)) for path in dict.fromkeys(found)]
+
+
+def _module(file: Path) -> str:
+    return ".".join(file.with_suffix("").parts)
+
+
+def _users(file: Path) -> list[str]:
+    return [_module(path) for path, names in _imported().items() if _module(file) in names]
 
 
 def copied_tree(folder: Path) -> Path:
@@ -165,8 +179,7 @@ def reached_from(file: Path) -> tuple[Path, ...]:
     """Return a module of siggen and those that import it, at any remove."""
     found = [file]
     for reached in found:
-        name = ".".join(reached.with_suffix("").parts)
-        found += [path for path, names in _imported().items() if name in names and path not in found]
+        found += [path for path, names in _imported().items() if _module(reached) in names and path not in found]
     return tuple(found)
 
 
@@ -181,8 +194,8 @@ def _imported() -> dict[Path, set[str]]:
     return found
 
 
-def survives(mutant: Mutant, copy: Path) -> bool:
-    """Tell whether the nearest tests pass with the change."""
+def verdict(mutant: Mutant, copy: Path) -> str:
+    """Return what the nearest tests say of the change."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *nearest_tests(mutant.file)]
     environment = {**os.environ, "PYTHONPATH": str(copy), "OMP_NUM_THREADS": "1"}
     with changed(mutant, copy):
@@ -192,8 +205,8 @@ def survives(mutant: Mutant, copy: Path) -> bool:
                 limited, cwd=copy, env=environment, capture_output=True, timeout=4 * LIMIT_S, check=False
             )
         except subprocess.TimeoutExpired:
-            return False
-    return run.returncode == 0
+            return HANGS
+    return {0: SURVIVES, 1: FOUND}.get(run.returncode, HANGS)
 
 
 def main() -> int:
@@ -209,10 +222,10 @@ def main() -> int:
         for number, mutant in enumerate(drawn(arguments.count, arguments.seed)):
             if arguments.only is not None and number not in arguments.only:
                 continue
-            alive, tried = survives(mutant, copy), tried + 1
-            survivors += alive
+            said, tried = verdict(mutant, copy), tried + 1
+            survivors += said == SURVIVES
             what = f"{mutant.file}:{mutant.line}: {mutant.before} -> {mutant.after}"
-            print(f"{number:3d} {'SURVIVES' if alive else 'found   '} {what}", flush=True)
+            print(f"{number:3d} {said:8} {what}", flush=True)
     print(f"{survivors} of {tried} survive")
     return 0
 

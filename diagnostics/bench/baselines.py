@@ -8,22 +8,19 @@ is chosen on a test part. Source: stacked generalisation (Wolpert 1992), standar
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-from pyarrow import parquet
 
 from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN
 from diagnostics.base.extras import missing_packages
 from diagnostics.base.progress import Stage
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.base.single_thread import single_thread
 from diagnostics.bench.seen_records import PartRecords, SeenRecords, benchmark_records, only, seen_records
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.scoring.benchmark import BASELINES, Benchmark
+from diagnostics.scoring.benchmark import Benchmark
 from diagnostics.scoring.detect import DAMAGE
-from diagnostics.scoring.prediction_file import CLASSIFIER, IDENTITY_KEY, PREDICTIONS_FILE, RECORD
+from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD
 from diagnostics.statistics.evaluation import column_auc
 from diagnostics.training.detectors import Scorer, boosting_scorer, logistic_scorer
 from diagnostics.training.splits import SpecimenSplit
@@ -137,16 +134,11 @@ def stacked(
     return np.asarray(model.decision_function(np.stack([every[name] for name in known], axis=1)))
 
 
-@single_thread
-def write_baselines(benchmark: Benchmark, seed: int, stage: Stage) -> Path:
-    """Write the predictions of all baselines for all test parts into the benchmark; return the file."""
+def damage_predictions(benchmark: Benchmark, seed: int, stage: Stage) -> Iterator[pa.Table]:
+    """Yield the rows of every baseline, alone and beside a healthy record."""
     parts = benchmark_records(benchmark, stage)
-    rows = [row for referenced in (False, True) for row in _predictions(parts, referenced, seed, stage)]
-    table = pa.concat_tables(rows).replace_schema_metadata({IDENTITY_KEY: benchmark.digest.encode()})
-    folder = benchmark.path / BASELINES
-    folder.mkdir(exist_ok=True)
-    parquet.write_table(table, folder / PREDICTIONS_FILE, compression="zstd")
-    return folder / PREDICTIONS_FILE
+    for referenced in (False, True):
+        yield from _predictions(parts, referenced, seed, stage)
 
 
 def _predictions(parts: tuple[PartRecords, ...], referenced: bool, seed: int, stage: Stage) -> Iterator[pa.Table]:

@@ -1,21 +1,21 @@
 """Rows of a test part without what tells a state, decided by the roles of columns; and the labels that are sealed.
 
 Signals, pulses and conditions stay. Numbers of records and gearboxes are drawn anew. What follows from the damage, what
-was drawn for the record and what can be computed from the signal do not go along. One healthy record of each gearbox is
-told, as a reference: it is the split `train` of the part.
+was drawn for the record and what can be computed from the signal do not go along. Which records are shown, told or
+asked about follows from what the benchmark asks.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 import pyarrow as pa
 
 from diagnostics.bench.derived_secret import shuffled
-from diagnostics.records.state_classes import HEALTHY, SHAM
+from diagnostics.bench.question import Renumbered, Shown
+from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.benchmark import PER_PART
 from siggen.dataset.reading import Dataset, as_record
 from siggen.keys.column import Role
@@ -27,59 +27,33 @@ NUMBERS = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm",
 GIVEN = ("operating_point_id", "speed_hz", "torque_nm")
 """Conditions that every set has."""
 TEETH = "teeth_"
-Key = tuple[int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class Renumbered:
-    """New numbers of the records of a part.
-
-    Attributes
-    ----------
-    record, gearbox : mapping of int to int
-        Number in the simulated set -> number in the part.
-    references : frozenset of int
-        Records, by their number in the simulated set, that are told to be healthy.
-    """
-
-    record: Mapping[int, int]
-    gearbox: Mapping[int, int]
-    references: frozenset[int]
-
-
-def renumbered(dataset: Dataset, secret: bytes, name: str, place: int) -> Renumbered:
-    """Return new numbers in an order that only the secret tells, references first.
+def renumbered(dataset: Dataset, shown: Shown, secret: bytes, name: str, place: int) -> Renumbered:
+    """Return new numbers in an order that only the secret tells, those that are asked about last.
 
     Parameters
     ----------
     dataset : siggen Dataset
         The simulated set.
+    shown : Shown
+        Which of its records are published.
     secret : bytes
     name : str
         Of the part.
     place : int
         Of the part, from 0.
     """
-    rows, first = dataset.labels().to_pylist(), (place + 1) * PER_PART
-    references = frozenset(_references(rows, secret, name))
-    ids = [row["record_id"] for row in rows]
-    ordered = shuffled(secret, f"records/{name}", ids)
-    ordered.sort(key=lambda one: one not in references)  # stable: both kinds stay in their order
-    gearboxes = shuffled(secret, f"gearboxes/{name}", {row["specimen_id"] for row in rows})
+    first = (place + 1) * PER_PART
+    specimens = set(dataset.labels(columns=["specimen_id"]).column("specimen_id").to_pylist())
+    ordered = shuffled(secret, f"records/{name}", shown.state_id)
+    ordered.sort(key=lambda one: one in shown.asked)  # stable: both kinds stay in their order
+    gearboxes = shuffled(secret, f"gearboxes/{name}", specimens)
     return Renumbered(
         {old: first + new for new, old in enumerate(ordered)},
         {old: first + new for new, old in enumerate(gearboxes)},
-        references,
+        shown,
     )
-
-
-def _references(rows: list[dict[str, Any]], secret: bytes, name: str) -> Iterator[int]:
-    """Yield a healthy record of every gearbox and operating point that has two of them, drawn by lot."""
-    healthy: dict[Key, list[int]] = {}
-    for row in rows:
-        if row["fault"] == HEALTHY and not row.get(SHAM, False):
-            healthy.setdefault((row["specimen_id"], row["operating_point_id"]), []).append(row["record_id"])
-    yield from (shuffled(secret, f"references/{name}", own)[0] for own in healthy.values() if len(own) > 1)
 
 
 def condition_fields(dataset: Dataset) -> pa.Schema:
@@ -95,21 +69,22 @@ def blind_rows(dataset: Dataset, numbers: Renumbered) -> list[dict[str, Any]]:
     kept = [*GIVEN, *condition_fields(dataset).names]
     kept += [name for name in dataset.labels().column_names if name.startswith(TEETH)]
     for batch in dataset.records(batch_rows=16):
-        for place in range(batch.num_rows):
-            row = as_record(batch.slice(place, 1))
-            found.append(_blind(row, numbers, kept, [channel.column for channel in dataset.channels]))
+        for place, record in enumerate(batch.column("record_id").to_pylist()):
+            if record in numbers.record:
+                row = as_record(batch.slice(place, 1))
+                found.append(_blind(row, numbers, kept, [channel.column for channel in dataset.channels]))
     return sorted(found, key=lambda row: int(row["record_id"]))
 
 
 def _blind(row: dict[str, Any], numbers: Renumbered, kept: list[str], signals: list[str]) -> dict[str, Any]:
-    told = row["record_id"] in numbers.references
+    told = row["record_id"] in numbers.shown.told
     return {
         **{name: row[name] for name in kept},
         "record_id": numbers.record[row["record_id"]],
         "specimen_id": numbers.gearbox[row["specimen_id"]],
-        "state_id": int(not told),
+        "state_id": numbers.shown.state_id[row["record_id"]],
         "repeat": 0,
-        "split": "train" if told else "test",
+        "split": numbers.split(row["record_id"]),
         **dict.fromkeys(TEXTS, HEALTHY if told else UNKNOWN),
         "faulty_gear": "none" if told else UNKNOWN,
         **dict.fromkeys(NUMBERS, 0.0 if told else math.nan),
@@ -118,20 +93,26 @@ def _blind(row: dict[str, Any], numbers: Renumbered, kept: list[str], signals: l
     }
 
 
-def sealed_part(dataset: Dataset, numbers: Renumbered) -> dict[str, Any]:
-    """Return labels and damaged teeth of a part, columns by name, ascending by new numbers."""
+def sealed_part(dataset: Dataset, numbers: Renumbered, life: Mapping[str, pa.Table]) -> dict[str, Any]:
+    """Return labels, damaged teeth and tables of `life/` of a part, columns by name, ascending by new numbers."""
     table = dataset.labels()
     targets = [
         field.name for field in table.schema if (field.metadata or {}).get(b"role") == Role.TARGET.value.encode()
     ]
     labels = table.select(["record_id", "state_id", *targets]).to_pylist()
-    labels = [
-        {**row, "simulated_record_id": row["record_id"], "record_id": numbers.record[row["record_id"]]}
-        for row in labels
-    ]
-    damage = dataset.damage().select(["record_id", "gear", "tooth"]).to_pylist()
-    damage = [{**row, "record_id": numbers.record[row["record_id"]]} for row in damage]
-    return {"labels": _columns(labels), "damage": _columns(damage) or {"record_id": [], "gear": [], "tooth": []}}
+    labels = _published([{**row, "simulated_record_id": row["record_id"]} for row in labels], numbers)
+    damage = _published(dataset.damage().select(["record_id", "gear", "tooth"]).to_pylist(), numbers)
+    return {
+        "labels": _columns(labels),
+        "damage": _columns(damage) or {"record_id": [], "gear": [], "tooth": []},
+        **({"life": {name: table.to_pydict() for name, table in life.items()}} if life else {}),
+    }
+
+
+def _published(rows: list[dict[str, Any]], numbers: Renumbered) -> list[dict[str, Any]]:
+    """Return the rows of published records by their new numbers."""
+    known = numbers.record
+    return [{**row, "record_id": known[row["record_id"]]} for row in rows if row["record_id"] in known]
 
 
 def _columns(rows: list[dict[str, Any]]) -> dict[str, list[Any]]:

@@ -1,42 +1,24 @@
-"""README.md of a benchmark and of its test parts: what is asked, by which rules, with which commands."""
+"""README.md of a benchmark: what is asked, by which rules, with which commands."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
+from diagnostics.bench.question import Words
 from diagnostics.scoring.benchmark import LEARN, TESTS
-from siggen.errors import counted
 
 CLOSING, LICENCE = "## Licence, authors, citation\n", "license: "
-RULES = """* One number for each record of the split `test`: `damage`, which rises with damage. Columns of other
-  tasks may stand beside it.
-* **Alone**: a record is judged by itself. **Beside**: the gearbox's record of the split `train`, which is healthy, may
-  be used too; the predictions then have a column `reference` that is true. Other records of the part may not be used.
-* Learn and choose on `learn` alone. Nothing is learned from test parts."""
 
 
-def part_card(title: str, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return the card of a test part."""
-    tests = sum(row["split"] == "test" for row in rows)
-    told = len(rows) - tests
-    return f"""# {title}, test part {name}
-
-{counted(tests, "record")} without labels in the split `test`. The split `train` has one healthy record of each gearbox
-({told}), told as a reference. `state` and all that follows from it say `unknown`, or NaN. Numbers of records and
-gearboxes were drawn; order and files tell nothing. `config.yaml` is that of the part to learn from; the seed of this
-part is secret until labels are revealed.
-"""
-
-
-def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str) -> str:
+def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str, words: Words) -> str:
     """Return the card of the whole benchmark; licence, authors and citation are those of the card to learn from."""
     _, closing, said = card.partition(CLOSING)
     licence = next((line for line in card.splitlines() if line.startswith(LICENCE)), "")
     rows = "\n".join(f"| `{TESTS}/{name}` | {facts['records'][name]} |" for name in facts["parts"])
-    return f"""{_front_matter(facts, licence)}# {facts["title"]}, {facts["tier"]}
+    return f"""{_front_matter(facts, licence, words.train)}# {facts["title"]}, {facts["tier"]}
 
-Damage of gears in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
+{words.subject} in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
 synthetic**: they were computed by siggen, simulation version {facts["simulation_version"]}, not measured. Labels of the
 test parts are sealed until their maker reveals them.
 
@@ -47,7 +29,7 @@ test parts are sealed until their maker reveals them.
 
 ## Rules
 
-{RULES}
+{words.rules}
 
 ## Scores
 
@@ -61,14 +43,14 @@ Digest: `{facts["digest"]}`. It is part of every score; a score of another diges
 {closing}{said}"""
 
 
-def _front_matter(facts: Mapping[str, Any], licence: str) -> str:
+def _front_matter(facts: Mapping[str, Any], licence: str, train: str) -> str:
     """Return what Hugging Face reads: every part as a configuration of its own."""
     learn = "\n".join(_files(split, f"{LEARN}/data/{split}-*.parquet") for split in ("train", "validation", "test"))
     tests = "\n".join(
         f"- config_name: {name}\n  data_files:\n"
         + _files("test", f"{TESTS}/{name}/data/test-*.parquet")
         + "\n"
-        + _files("reference", f"{TESTS}/{name}/data/train-*.parquet")
+        + _files(train, f"{TESTS}/{name}/data/train-*.parquet")
         for name in facts["parts"]
     )
     said = f"{licence}\n" if licence else ""

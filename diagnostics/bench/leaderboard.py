@@ -1,8 +1,8 @@
 """A page that says who stands where on a benchmark: every file of predictions in a folder, beside the baselines.
 
-Entries are ordered by the mean over the test parts of the AUC for every damage. Differences are paired on the same
-resampled gearboxes, and stand beside the leader of each table. Gearboxes of different parts are independent, so the
-mean over parts is taken resample by resample.
+Entries are ordered by the mean over the test parts of the score that ranks, the best first. Differences are paired on
+the same resampled gearboxes, and stand beside the leader of each table. Gearboxes of different parts are independent,
+so the mean over parts is taken resample by resample.
 """
 
 from __future__ import annotations
@@ -18,12 +18,14 @@ import pyarrow as pa
 
 from diagnostics.base.extras import missing_packages
 from diagnostics.bench.baselines import REFERENCE
+from diagnostics.bench.question import Ranking
+from diagnostics.bench.questions import question_of
 from diagnostics.page.html import Cell, figure_block, figure_grid, heading, minus, page, paragraph, summary, table
 from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
+from diagnostics.page.wording import capitalised
 from diagnostics.scoring.benchmark import BASELINES, Benchmark
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
-from diagnostics.scoring.detect import DETECT, EVERY, LEAK
 from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
 from diagnostics.scoring.score_figure import score_figure
 from diagnostics.scoring.score_row import ScoreRow
@@ -33,31 +35,33 @@ from diagnostics.statistics.scores import area_interval
 from siggen.errors import UsageError
 
 BOARD, NUMBERS = "leaderboard.html", "leaderboard.json"
-TRACKS = {False: "Alone", True: "Beside a healthy record of the same gearbox"}
 MEAN = "mean"
 SUFFIXES = (".parquet", ".csv")
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """AUC samples of one detector by part: the value itself, then those of resampled gearboxes; and of the sham.
+    """Samples of the score of one entry by part: the value itself, then those of resampled gearboxes; and of the leak.
 
-    `gearboxes` is the number that limits count, by part.
+    By part too, `gearboxes` is the number that limits count, `chance` what an answer without knowledge reaches.
     """
 
     name: str
     referenced: bool
+    ranking: Ranking
     every: Mapping[str, np.ndarray]
-    sham: Mapping[str, np.ndarray]
+    leak: Mapping[str, np.ndarray]
     gearboxes: Mapping[str, int]
+    chance: Mapping[str, float]
 
     def samples(self, part: str) -> np.ndarray:
         """Return the samples of a part; of their mean only where no part is missing."""
         return np.mean([*self.every.values()], axis=0) if part == MEAN else self.every[part]
 
     def score(self, part: str) -> Interval:
-        """Return the AUC of a part with its limits."""
-        return area_interval(self.samples(part), self.count(part))
+        """Return the score of a part with its limits."""
+        limits = area_interval if self.ranking.measure.is_share else interval
+        return limits(self.samples(part), self.count(part))
 
     def count(self, part: str) -> int:
         """Return the gearboxes that limits count; those of all parts for their mean, since no two parts share one."""
@@ -80,7 +84,7 @@ def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | Non
             f"{folder or benchmark.path}: holds no predictions ({', '.join(SUFFIXES)}); `siggen-diagnostics bench "
             "baselines` writes those of the baselines"
         )
-    parts = judged_parts(benchmark, labels)
+    parts, ranking = judged_parts(benchmark, labels), ranking_of(benchmark)
     weights = {part.name: bootstrap_weights(part.truth.specimen, seed, RESAMPLES) for part in parts}
     found: dict[str, Entry] = {}
     for file in files:
@@ -90,8 +94,14 @@ def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | Non
             if name in found:
                 raise UsageError(f"{file}: a second entry {name!r}; give each a name of its own (column {CLASSIFIER})")
             answers = {part: by_name[name] for part, by_name in columns.items() if name in by_name}
-            found[name] = _entry(name, _is_referenced(read, name), answers, parts, weights)
+            referenced = True in ranking.tracks and _is_referenced(read, name)
+            found[name] = _entry(name, ranking, referenced, answers, parts, weights)
     return list(found.values())
+
+
+def ranking_of(benchmark: Benchmark) -> Ranking:
+    """Return by what the entries of a benchmark are ranked."""
+    return question_of(benchmark.learn().config).ranking
 
 
 def _is_referenced(read: pa.Table, name: str) -> bool:
@@ -104,29 +114,31 @@ def _is_referenced(read: pa.Table, name: str) -> bool:
 
 def _entry(
     name: str,
+    ranking: Ranking,
     referenced: bool,
     answers: Mapping[str, Any],
     parts: Sequence[JudgedPart],
     weights: Mapping[str, np.ndarray],
 ) -> Entry:
-    (measure,) = DETECT.measures
-    found: dict[str, dict[str, np.ndarray]] = {EVERY: {}, LEAK: {}}
-    counts = {}
+    task, measure = ranking.task, ranking.measure
+    found: dict[str | None, dict[str, np.ndarray]] = {ranking.records: {}, ranking.leak: {}}
     for part in parts:
-        damage = DETECT.answers(answers[part.name], part.truth) if part.name in answers else None
-        asked = DETECT.parts(part.truth) if damage is not None else {}
+        said = task.answers(answers[part.name], part.truth) if part.name in answers else None
+        asked = task.parts(part.truth) if said is not None else {}
         for what, samples in found.items():
-            if what in asked and damage is not None:
+            if what in asked and said is not None:
                 rows, drawn = part.truth.rows(asked[what]), weights[part.name][:, asked[what]]
-                samples[part.name] = measure.samples(damage[asked[what]], rows, drawn)
-        counts[part.name] = measure.gearboxes(part.truth)
-    return Entry(name, referenced, found[EVERY], found[LEAK], counts)
+                samples[part.name] = measure.samples(said[asked[what]], rows, drawn)
+    counts = {part.name: measure.gearboxes(part.truth) for part in parts}
+    chance = {part.name: measure.chance(part.truth) for part in parts}
+    return Entry(name, referenced, ranking, found[ranking.records], found[ranking.leak], counts, chance)
 
 
 def write_board(benchmark: Benchmark, entries: Sequence[Entry], folder: Path) -> Path:
     """Write the page, and its numbers beside it; return the page."""
     folder.mkdir(parents=True, exist_ok=True)
-    tables = {referenced: _ordered(entries, benchmark.parts, referenced) for referenced in TRACKS}
+    ranking = ranking_of(benchmark)
+    tables = {referenced: _ordered(entries, benchmark.parts, referenced) for referenced in ranking.tracks}
     numbers = [row for ordered in tables.values() for row in _numbers(ordered, benchmark)]
     facts = {"digest": benchmark.digest, "simulation_version": benchmark.simulation_version, "entries": numbers}
     (folder / NUMBERS).write_text(json.dumps(facts, indent=1, allow_nan=False) + "\n", encoding="utf-8")
@@ -134,47 +146,60 @@ def write_board(benchmark: Benchmark, entries: Sequence[Entry], folder: Path) ->
     parts = [heading(title, 1), *summary(_sentences(benchmark, tables))]
     for referenced, ordered in tables.items():
         if ordered:
-            parts += [heading(TRACKS[referenced]), _figure(ordered), *_table(ordered, benchmark.parts)]
+            parts += [heading(ranking.tracks[referenced]), _figure(ordered), *_table(ordered, benchmark.parts)]
     path = folder / BOARD
     path.write_text(page(title, parts), encoding="utf-8")
     return path
 
 
 def _ordered(entries: Sequence[Entry], parts: Sequence[str], referenced: bool) -> list[Entry]:
-    """Return the entries of a track, the largest mean first; those that lack a part last."""
+    """Return the entries of a track, the best mean first; those that lack a part last."""
     own = [entry for entry in entries if entry.referenced == referenced and entry.every]
-    return sorted(own, key=lambda one: (len(one.every) < len(parts), -float(one.samples(MEAN)[0]), one.name))
+    return sorted(own, key=lambda one: (len(one.every) < len(parts), -_goodness(one), one.name))
+
+
+def _goodness(entry: Entry) -> float:
+    """Return the mean score, of a score that falls with its sign turned: more is better."""
+    return float(entry.samples(MEAN)[0]) * (-1.0 if entry.ranking.measure.falls else 1.0)
 
 
 def _sentences(benchmark: Benchmark, tables: Mapping[bool, list[Entry]]) -> list[str]:
-    entries = [entry for ordered in tables.values() for entry in ordered]
-    sham = [(part, entry) for entry in entries for part in entry.sham]
+    entries, ranking = [entry for ordered in tables.values() for entry in ordered], ranking_of(benchmark)
+    return [
+        *(_lead(ranking.tracks[referenced], ordered) for referenced, ordered in tables.items() if ordered),
+        *([_leak_sentence(entries)] if ranking.leak else []),
+        f"Scores are {ranking.said}, with 95 % limits over gearboxes. Digest {benchmark.digest}, simulation version "
+        f"{benchmark.simulation_version}: only scores with the same two are comparable.",
+    ]
+
+
+def _leak_sentence(entries: Sequence[Entry]) -> str:
+    sham = [(part, entry) for entry in entries for part in entry.leak]
     outside = [f"{entry.name} on {part}" for part, entry in sham if not _holds_chance(entry, part)]
     told = f" Outside: {', '.join(outside[:5])}." if outside else ""
-    return [
-        *(_lead(TRACKS[referenced], ordered) for referenced, ordered in tables.items() if ordered),
+    return (
         f"A sham is damage without effect. In {len(sham) - len(outside)} of {len(sham)} cases the limits of its AUC "
-        f"hold 0.5; about one in 20 is outside by chance.{told}",
-        "Scores are AUC of damaged against healthy records of other gearboxes, with 95 % limits over gearboxes. "
-        f"Digest {benchmark.digest}, simulation version {benchmark.simulation_version}: only scores with the same two "
-        "are comparable.",
-    ]
+        f"hold 0.5; about one in 20 is outside by chance.{told}"
+    )
 
 
 def _lead(track: str, ordered: Sequence[Entry]) -> str:
     """Return who leads, and whether the gearboxes tell the second from it."""
     first, score = ordered[0], ordered[0].score(MEAN)
-    said = f"{track}: {first.name} leads with a mean AUC of {score.value:.2f} ({score.low:.2f} to {score.high:.2f})"
+    measure = first.ranking.measure
+    limits = f"{score.value:.2f} ({score.low:.2f} to {score.high:.2f})"
+    said = f"{track}: {first.name} leads with a mean {first.ranking.name} of {limits}"
     if len(ordered) < 2 or len(ordered[1].every) < len(first.every):
         return f"{said}."
     behind = paired(first, ordered[1], MEAN)
-    telling = "" if behind.high < 0.0 else "; these gearboxes cannot tell the two apart"
+    is_worse = behind.low > 0.0 if measure.falls else behind.high < 0.0
+    telling = "" if is_worse else "; these gearboxes cannot tell the two apart"
     apart = minus(f"{behind.value:+.2f} ({behind.low:+.2f} to {behind.high:+.2f})")
     return f"{said}, {ordered[1].name} follows with {apart}{telling}."
 
 
 def _holds_chance(entry: Entry, part: str) -> bool:
-    found = area_interval(entry.sham[part], entry.gearboxes[part])
+    found = area_interval(entry.leak[part], entry.gearboxes[part])
     return not (found.low > 0.5 or found.high < 0.5)
 
 
@@ -183,10 +208,12 @@ def _figure(ordered: Sequence[Entry]) -> str:
     if missing_packages("matplotlib"):
         return ""
     whole = [entry for entry in ordered if len(entry.every) == len(ordered[0].every)]
-    rows = [
-        ScoreRow("detect", "AUC", "mean over the test parts", one.name, one.score(MEAN), 0.5, None) for one in whole
-    ]
-    return figure_grid([figure_block(png_bytes(score_figure(rows)), "Mean AUC with 95 % limits; dotted: chance.")])
+    task, measure = ordered[0].ranking.task.name, ordered[0].ranking.measure
+    chance = float(np.mean(list(ordered[0].chance.values())))
+    mean = "mean of the parts"
+    rows = [ScoreRow(task, measure.name, mean, one.name, one.score(MEAN), chance, None, measure.falls) for one in whole]
+    caption = f"Mean {ordered[0].ranking.name} with 95 % limits; dotted: chance."
+    return figure_grid([figure_block(png_bytes(score_figure(rows)), caption)])
 
 
 def _table(ordered: Sequence[Entry], parts: Sequence[str]) -> list[str]:
@@ -201,10 +228,14 @@ def _table(ordered: Sequence[Entry], parts: Sequence[str]) -> list[str]:
         apart.append([Cell(entry.name), *pairs])
     behind = f"Entry minus the first, {leader.name}, paired on the same resampled gearboxes."
     return [
-        table(["Entry", *columns], rows, caption="AUC of every damage.", sortable=True),
+        table(["Entry", *columns], rows, caption=_caption(leader.ranking), sortable=True),
         table(["Entry", *columns], apart[1:], caption=behind, sortable=True) if apart[1:] else "",
         paragraph("A difference whose limits exclude 0 is one that these gearboxes can tell."),
     ]
+
+
+def _caption(ranking: Ranking) -> str:
+    return f"{capitalised(ranking.measure.name)} of {ranking.records}."
 
 
 def _behind(leader: Entry, entry: Entry, part: str) -> Cell:
@@ -224,8 +255,8 @@ def _numbers(ordered: Sequence[Entry], benchmark: Benchmark) -> list[dict[str, A
         {
             "name": entry.name,
             "beside_a_healthy_record": entry.referenced,
-            "auc": {part: entry.score(part).numbers() for part in _parts(entry, benchmark)},
-            "sham": {part: area_interval(one, entry.gearboxes[part]).numbers() for part, one in entry.sham.items()},
+            entry.ranking.key: {part: entry.score(part).numbers() for part in _parts(entry, benchmark)},
+            "sham": {part: area_interval(one, entry.gearboxes[part]).numbers() for part, one in entry.leak.items()},
             "minus_first": {
                 part: paired(ordered[0], entry, part).numbers()
                 for part in _parts(entry, benchmark)

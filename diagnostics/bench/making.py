@@ -9,24 +9,27 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 
 import siggen
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.bench.blind_rows import Renumbered, blind_rows, condition_fields, renumbered, sealed_part
-from diagnostics.bench.cards import benchmark_card, part_card
-from diagnostics.bench.conditions import CONDITIONS, TIERS, Tier, changed
+from diagnostics.bench.blind_rows import blind_rows, condition_fields, renumbered, sealed_part
+from diagnostics.bench.cards import benchmark_card
+from diagnostics.bench.conditions import TIERS, Tier, changed
 from diagnostics.bench.derived_secret import derived, seed_of
+from diagnostics.bench.question import Question, Renumbered
+from diagnostics.bench.questions import question_of
 from diagnostics.scoring.benchmark import FACTS, LEARN, SEALED, TESTS, Benchmark, benchmark_facts, open_benchmark
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
 
-TITLE, PRESET = "siggen-bench 1.0", "siggen_bench"
+PRESET = "siggen_bench"
 SECRET_FILE, SIMULATED, CARD = "secret", "simulated", "README.md"
 
 
@@ -42,8 +45,8 @@ class Wanted:
         Configuration to learn from: a file, a preset or a mapping.
     overrides : tuple of str
         Such as `duration_s=0.5`, for all parts.
-    conditions : mapping
-        As `CONDITIONS`.
+    conditions : mapping, optional
+        What differs in each test part; those of the question unless told.
     facts : Path or None
         Licence, authors, citation, as `siggen publish` takes them: the part to learn from is then a published set.
     """
@@ -52,7 +55,7 @@ class Wanted:
     size: Tier = TIERS["tiny"]
     config: str | Mapping[str, Any] = PRESET
     overrides: tuple[str, ...] = ()
-    conditions: Mapping[str, Mapping[str, Any]] = field(default_factory=lambda: CONDITIONS)
+    conditions: Mapping[str, Mapping[str, Any]] | None = None
     facts: Path | None = None
 
 
@@ -85,15 +88,18 @@ def make_benchmark(
         raise UsageError(f"{hidden}: what is secret may not lie in {out}, nor that in it; name another folder")
     learn = siggen.load_config(wanted.config, [*wanted.overrides, f"specimens={wanted.size.learn}"])
     secret = derived(secret, wanted.tier, learn.identity)  # what one benchmark reveals tells nothing of another
-    tests = {name: _test_config(learn, name, wanted, secret) for name in wanted.conditions}
+    question = question_of(learn.canonical())
+    conditions = wanted.conditions or question.conditions
+    tests = {name: _test_config(learn, name, conditions[name], wanted.size.test, secret) for name in conditions}
     _write_learn(learn, out / LEARN, hidden, wanted.facts, (workers, stage))
     parts = {}
     for place, (name, config) in enumerate(tests.items()):
         dataset = _simulated(config, hidden / SIMULATED / name, name, workers, stage)
-        numbers = renumbered(dataset, secret, name, place)
-        parts[name] = sealed_part(dataset, numbers)
-        _write_blind(dataset, numbers, (learn, config), out / TESTS / name)
-    facts = benchmark_facts(out, TITLE, wanted.tier, tuple(tests))
+        numbers = renumbered(dataset, question.shown(dataset, secret, name), secret, name, place)
+        seen, kept = question.tables(dataset, numbers)
+        parts[name] = sealed_part(dataset, numbers, kept)
+        _write_blind(dataset, numbers, (learn, config), out / TESTS / name, question, seen)
+    facts = benchmark_facts(out, question.title, wanted.tier, tuple(tests))
     sealed = {
         "salt": derived(secret, "salt").hex(),
         **{name: facts[name] for name in ("title", "tier", "digest", "simulation_version")},
@@ -102,15 +108,15 @@ def make_benchmark(
     }
     (hidden / SEALED).write_text(json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n", encoding="utf-8")
     own = (out / LEARN / CARD).read_text(encoding="utf-8")
-    (out / CARD).write_text(benchmark_card(facts, learn, own), encoding="utf-8")
+    (out / CARD).write_text(benchmark_card(facts, learn, own, question.words), encoding="utf-8")
     (out / FACTS).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
     return open_benchmark(out)
 
 
-def _test_config(learn: Any, name: str, wanted: Wanted, secret: bytes) -> Any:
+def _test_config(learn: Any, name: str, changes: Mapping[str, Any], gearboxes: int, secret: bytes) -> Any:
     """Return the configuration of a test part; its seed follows from the secret."""
-    own = changed(learn.canonical(), wanted.conditions[name])
-    own |= {"name": f"{learn.name}_{name}", "seed": seed_of(secret, name), "specimens": wanted.size.test}
+    own = changed(learn.canonical(), changes)
+    own |= {"name": f"{learn.name}_{name}", "seed": seed_of(secret, name), "specimens": gearboxes}
     return siggen.load_config(own)
 
 
@@ -148,7 +154,14 @@ def _signal(folder: Path, record: int, column: str) -> np.ndarray:
         return np.empty(0)
 
 
-def _write_blind(dataset: Dataset, numbers: Renumbered, configs: tuple[Any, Any], folder: Path) -> None:
+def _write_blind(
+    dataset: Dataset,
+    numbers: Renumbered,
+    configs: tuple[Any, Any],
+    folder: Path,
+    question: Question,
+    life: Mapping[str, pa.Table],
+) -> None:
     """Write a test part, unless it is there; `configs` are that to learn from and that of the part.
 
     Raises
@@ -164,6 +177,6 @@ def _write_blind(dataset: Dataset, numbers: Renumbered, configs: tuple[Any, Any]
         return
     shutil.rmtree(folder, ignore_errors=True)  # what a call that was stopped had half written
     learn, own = configs
-    rows, facts = blind_rows(dataset, numbers), {"benchmark": TITLE, "part": folder.name}
-    card = part_card(TITLE, folder.name, rows)
-    siggen.write_recorded_set(learn, folder, rows, condition_fields(dataset), facts, card, measured=own)
+    rows, facts = blind_rows(dataset, numbers), {"benchmark": question.title, "part": folder.name}
+    card = question.words.part(question.title, folder.name, rows)
+    siggen.write_recorded_set(learn, folder, rows, condition_fields(dataset), facts, card, measured=own, life=life)

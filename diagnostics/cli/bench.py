@@ -58,7 +58,9 @@ def make(
             show_default=False,
         ),
     ] = None,
-    config: Annotated[str, typer.Option(metavar="FILE", help="Configuration to learn from.")] = "siggen_bench",
+    config: Annotated[
+        str, typer.Option(metavar="FILE", help="Configuration to learn from; one of lives asks how long they last.")
+    ] = "siggen_bench",
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE", help="Replace a value in all parts.", show_default=False),
@@ -131,7 +133,7 @@ def baselines(folder: Bench, seed: Seed = 0) -> None:
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
-    from diagnostics.bench.baselines import write_baselines
+    from diagnostics.bench.questions import write_baselines
     from diagnostics.scoring.benchmark import open_benchmark
 
     require_packages("baselines", "sklearn")

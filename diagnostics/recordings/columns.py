@@ -40,6 +40,8 @@ OFF_A_STEP = 0.25
 
 FEWEST_SAMPLES = 3
 MILLI, MICRO = re.compile(r"(^|[^a-z])m(illi)?s(ec)?($|[^a-z])"), re.compile(r"(^|[^a-z])([uµμ]|micro)s(ec)?($|[^a-z])")
+TURNED = re.compile(r"(^|[^a-z])(rad|deg|rev)($|[^a-z])")
+"""A column in one of these units counts turns, however evenly it rises."""
 
 TIMES_ALIKE = 1e-3
 """Rates of two time columns of one file that are the same, rounded differently; an angle that rises evenly is not."""
@@ -72,7 +74,7 @@ def signal_problem(signal: np.ndarray, column: str) -> str:
 
 
 def clocks(values: Mapping[str, np.ndarray], units: Mapping[str, str], leave: str) -> dict[str, float | None]:
-    """Return the columns that are times, with the rate [Hz] they state, or counters, with None.
+    """Return the columns that are times, with the rate [Hz] they state, or counters and angles, with None.
 
     Parameters
     ----------
@@ -88,8 +90,9 @@ def clocks(values: Mapping[str, np.ndarray], units: Mapping[str, str], leave: st
     for name, column in values.items():
         # a time has one value per sample: a record's list of angles or teeth may rise evenly too
         if name != leave and column.size == samples and (step := _step(column)) is not None:
-            counted = step == 1.0 and bool((column == np.rint(column)).all())
-            found[name] = None if counted else _rate(column, step, f"{name} {units.get(name, '')}".lower())
+            said = f"{name} {units.get(name, '')}".lower()
+            counted = TURNED.search(said) or (step == 1.0 and bool((column == np.rint(column)).all()))
+            found[name] = None if counted else _rate(column, step, said)
     return found
 
 

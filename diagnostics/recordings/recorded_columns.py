@@ -37,7 +37,8 @@ class Columns:
     own : mapping of str to str
         Channel -> its column, where the file says so of its columns, as those of siggen do.
     clocks : mapping of str to float or None
-        Columns that are no signals: times, with the rate [Hz] that they state, and counters of samples, with None.
+        Columns that are no signals: times, with the rate [Hz] that they state, and counters of samples or turns, with
+        None.
     """
 
     values: Mapping[str, np.ndarray]

@@ -10,7 +10,7 @@ import numpy as np
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.sideband_marks import mark_handles, order_words
 from diagnostics.page.style import state_colours, styled
-from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, rounded
+from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
 from diagnostics.records.state_classes import HEALTHY, kind_name
 from diagnostics.report.drawing import BEHIND_COLOUR, DECADES_SHOWN, around, draw_spectrum, strongest
 from diagnostics.report.examples import Example, ExampleSet
@@ -85,8 +85,10 @@ def _row_title(example: Example, areas: dict[int, float], best: Detector | None)
     area = areas[example.record_id]
     size = f", {rounded(area)} mm²" if area > 0.0 else ""
     found = best.states.get(example.state) if best else None
-    share = f": found in {percent(found.share.value)} of records" if found and found.share else ""
-    return f"{example.state}{size}{share}"
+    if found is None or found.share is None:
+        return f"{example.state}{size}"
+    spread = f" ({percent_limits(found.share)})" if math.isfinite(found.share.low) else ""
+    return f"{example.state}{size}: found in {percent(found.share.value)} of records{spread}"
 
 
 def first_caption(examples: ExampleSet) -> str:
@@ -95,7 +97,7 @@ def first_caption(examples: ExampleSet) -> str:
         f"Vibration of one gearbox with growing damage (colour), over the same gearbox healthy (grey): specimen "
         f"{examples.specimen_id}, {examples.channel}, {examples.speed_hz:.3g}{SPACE}Hz, "
         f"{examples.torque_nm:.3g}{SPACE}N{SPACE}m. Damage lifts the marked sidebands of the tooth mesh. Sizes are "
-        "damaged areas of this gearbox, shares those of all."
+        f"damaged areas of this gearbox, shares those of all, with 95{SPACE}% limits."
     )
 
 

@@ -21,7 +21,6 @@ from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.named_set import words_of
 from diagnostics.report.life_detection import detection_table, life_block, shown_gearboxes
 from diagnostics.report.life_pictures import lives_of
-from diagnostics.report.life_rows import INDICATORS, inspections
 from diagnostics.report.unit_lives import PICTURES, Detection, detections, unit_lives, watches
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
@@ -36,6 +35,7 @@ from diagnostics.training.life_baselines import (
     Inspections,
     baseline_predictions,
 )
+from diagnostics.training.life_rows import INDICATORS, inspections
 from siggen.dataset.reading import Dataset
 
 PAGE = "report.html"

@@ -28,7 +28,7 @@ NAME = re.compile(r"[a-z0-9_]{1,60}")
 """Of a test part: that of a folder."""
 PER_PART = 1_000_000
 """Numbers of records of a part begin at its place, from 1, times this: one file may hold predictions for all parts."""
-BOUND = ("data/", "metadata/")
+BOUND = ("data/", "metadata/", "life/")
 """Files of a part that the digest holds: rows. Cards may be mended."""
 
 
@@ -80,7 +80,7 @@ def is_benchmark(path: Path) -> bool:
     return (path / FACTS).is_file()
 
 
-def open_benchmark(path: Path) -> Benchmark:
+def open_benchmark(path: Path | str) -> Benchmark:
     """Return a benchmark.
 
     Raises
@@ -90,6 +90,7 @@ def open_benchmark(path: Path) -> Benchmark:
     DatasetError
         If its parts are not those that its digest is of, or of several versions of the simulation.
     """
+    path = Path(path)
     if not is_benchmark(path):
         raise UsageError(f"{path}: holds no {FACTS}; allowed: a folder that `siggen-diagnostics bench make` wrote")
     facts = _json(path / FACTS)

@@ -29,7 +29,7 @@ from diagnostics.scoring.prediction_file import (
 from diagnostics.scoring.score import TEST, YOURS, Answers, Scores, scores_of
 from diagnostics.scoring.sealed_labels import SealedLabels, labelled, labels_of
 from diagnostics.scoring.tasks import truth_of
-from diagnostics.scoring.truth import Truth
+from diagnostics.scoring.truth import Truth, is_lives
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
@@ -84,7 +84,8 @@ class BenchmarkScores:
 
 def judged_parts(benchmark: Benchmark, labels: SealedLabels) -> tuple[JudgedPart, ...]:
     """Return all test parts with their labels."""
-    learned = set_classes(benchmark.learn()).names
+    learn = benchmark.learn()
+    learned = () if is_lives(learn) else set_classes(learn).names
     found = []
     for name in benchmark.parts:
         dataset = labelled(benchmark.part(name), labels, name)

@@ -12,6 +12,7 @@ from siggen.dataset.reading import Dataset
 
 RUL, LOW, HIGH = "rul_h", "rul_q10_h", "rul_q90_h"
 COLUMNS = (LOW, RUL, HIGH)
+EVERY = "all"
 LAST = 1.0 / 3.0
 """Part of the median remaining life at first sight below which the end is near."""
 
@@ -42,7 +43,7 @@ def _parts(truth: Truth) -> dict[str, np.ndarray]:
     first = np.zeros(int(owner.max()) + 1)
     np.maximum.at(first, owner, life)
     near = life < LAST * float(np.median(first))
-    return {"all": np.ones(life.size, dtype=bool), **({"the last third": near} if near.any() else {})}
+    return {EVERY: np.ones(life.size, dtype=bool), **({"the last third": near} if near.any() else {})}
 
 
 def _problems(columns: Columns, truth: Truth) -> Iterator[Problem]:

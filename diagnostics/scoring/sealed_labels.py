@@ -35,7 +35,7 @@ class SealedLabels:
         Of the benchmark that they belong to.
     simulation_version : int
     parts : mapping of str to mapping
-        Of every test part `labels` and `damage`, columns by name.
+        Of every test part `labels` and `damage`, columns by name; of lives tables by name in `life`.
     commitment : str
         SHA-256 of the file.
     file : Path
@@ -102,9 +102,10 @@ class LabelledPart(Dataset):
     """A test part with its labels."""
 
     def with_labels(self, part: Mapping[str, Any]) -> LabelledPart:
-        """Return the part with labels and table of damage."""
+        """Return the part with labels, table of damage and lives."""
         self._told = pa.table(dict(part["labels"]))
         self._rows = pa.table(dict(part["damage"]))
+        self._lives = {name: pa.table(dict(columns)) for name, columns in part.get("life", {}).items()}
         return self
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
@@ -120,8 +121,15 @@ class LabelledPart(Dataset):
 
     def damage(self, split: str | None = None) -> pa.Table:
         """Return the damaged teeth as `Dataset.damage`."""
+        return self._of_split(self._rows, split)
+
+    def life(self, table: str, split: str | None = None) -> pa.Table:
+        """Return a table as `Dataset.life`, one that was sealed in place of what the files say."""
+        return self._of_split(self._lives[table], split) if table in self._lives else super().life(table, split)
+
+    def _of_split(self, rows: pa.Table, split: str | None) -> pa.Table:
         wanted = self.labels(split, [RECORD]).column(RECORD)
-        return self._rows.filter(pc.is_in(self._rows.column(RECORD), value_set=wanted.combine_chunks()))
+        return rows.filter(pc.is_in(rows.column(RECORD), value_set=wanted.combine_chunks()))
 
 
 def labelled(part: Dataset, labels: SealedLabels, name: str) -> Dataset:

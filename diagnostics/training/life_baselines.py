@@ -27,6 +27,8 @@ CONSTANT, AGE, RMS, FIVE, FIVE_AGE = "constant", "age", "RMS", "five indicators"
 HISTORY, DEBRIS = "five indicators with their history, age", "oil debris, age"
 NETWORK = "sequence network on averages, age"
 AREAS, OUTLOOK = "true areas of the three worst teeth, age", "the true state itself"
+Predictor = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Rows to learn from and rows to predict, (n,) bool each; returns the latter's quantiles, (m, 3) in hours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +85,16 @@ def baseline_predictions(found: Inspections, seed: int, *, network: bool) -> dic
 
     The network is left out where it is not wanted or there are no averages.
     """
+    return {
+        **{name: _by_folds(found, seed, predict) for name, predict in predictors(found, seed).items()},
+        **(_by_network(found, found.averages, seed) if network and found.averages else {}),
+        AREAS: tree_predictions(np.concatenate([found.worst_shares, found.age_h[:, None]], axis=1), found, seed),
+        OUTLOOK: found.outlook_h,
+    }
+
+
+def predictors(found: Inspections, seed: int) -> dict[str, Predictor]:
+    """Return the baselines that see what sensors tell, without the network."""
     age, five = found.age_h[:, None], _five(found)
     seen = {
         RMS: found.indicators["rms"],
@@ -92,12 +104,9 @@ def baseline_predictions(found: Inspections, seed: int, *, network: bool) -> dic
         DEBRIS: np.stack([found.debris_mg, found.age_h], axis=1),
     }
     return {
-        CONSTANT: _by_folds(found, seed, partial(_constant, found)),
-        AGE: _by_folds(found, seed, partial(_by_age, found)),
-        **{name: tree_predictions(values, found, seed) for name, values in seen.items()},
-        **(_by_network(found, found.averages, seed) if network and found.averages else {}),
-        AREAS: tree_predictions(np.concatenate([found.worst_shares, age], axis=1), found, seed),
-        OUTLOOK: found.outlook_h,
+        CONSTANT: partial(_constant, found),
+        AGE: partial(_by_age, found),
+        **{name: partial(_trees, (values, found.rul_h), seed, QUANTILES) for name, values in seen.items()},
     }
 
 
@@ -126,7 +135,7 @@ def tree_predictions(
     return _by_folds(found, seed, partial(_trees, (values, found.rul_h), seed, quantiles))
 
 
-def _by_folds(found: Inspections, seed: int, predict: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
+def _by_folds(found: Inspections, seed: int, predict: Predictor) -> np.ndarray:
     folds = unit_folds(found.specimen, generator(seed, Purpose.FOLDS), FOLDS)
     rows = np.concatenate([np.flatnonzero(fold) for fold in folds])
     return np.concatenate([predict(~fold, fold) for fold in folds])[np.argsort(rows)]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from siggen.columns.record import (
     TACHO_COLUMN,
@@ -33,6 +34,7 @@ from siggen.dataset.manifest import (
     CONFIG,
     DAMAGE_FOLDER,
     INJECTED,
+    LIFE_FOLDER,
     MANIFEST,
     METADATA_FOLDER,
     SPLITS,
@@ -70,6 +72,7 @@ def write_recorded_set(
     card: str,
     *,
     measured: Config | None = None,
+    life: Mapping[str, pa.Table] | None = None,
 ) -> Path:
     """Write rows with signals into a new folder that `siggen.open` reads; return the folder.
 
@@ -90,6 +93,8 @@ def write_recorded_set(
         README.md.
     measured : Config, optional
         What blind rows were made of. It gives their channels, and nothing else of it stands in the folder.
+    life : mapping of str to pyarrow.Table, optional
+        Tables of `life/` by name, with the column `split`.
 
     Raises
     ------
@@ -105,6 +110,11 @@ def write_recorded_set(
     shares = {split: [row for row in rows if row["split"] == split] for split in SPLITS}
     sidecars = [_write_rows(storage, schema, split, identity, own) for split, own in shares.items() if own]
     tables = [table for sidecar in sidecars for table in _write_tables(storage, config, schema, sidecar, shares)]
+    tables += [
+        _write_life(storage, config, name, table, sidecar.split)
+        for sidecar in sidecars
+        for name, table in (life or {}).items()
+    ]
     storage.put(CONFIG, config_bytes(config))
     storage.put(CARD, card.encode())
     storage.put(own_facts, json_bytes(facts))
@@ -179,3 +189,11 @@ def _write_tables(
     yield write_table(storage, f"{METADATA_FOLDER}/{sidecar.split}.parquet", names, [batch], GROUP_ROWS)
     name = f"{DAMAGE_FOLDER}/{sidecar.split}.parquet"
     yield write_table(storage, name, damage_schema(config), [], GROUP_ROWS)
+
+
+def _write_life(storage: LocalFolder, config: Config, name: str, table: pa.Table, split: str) -> FileFacts:
+    """Write the rows of a split of a table of `life/`."""
+    own = table.filter(pc.equal(table.column("split"), split))
+    schema = own.schema.with_metadata(schema_metadata(config))
+    batches = own.replace_schema_metadata(schema.metadata).to_batches()
+    return write_table(storage, f"{LIFE_FOLDER}/{name}/{split}.parquet", schema, batches, GROUP_ROWS)

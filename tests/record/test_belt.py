@@ -88,6 +88,13 @@ def test_a_belt_passes_below_the_order_of_its_shaft_and_its_pulley_runs_out_at_i
     assert (labels["belt_pull_n"], labels["belt_force_n"]) == (1000.0, 30.0)
 
 
+def test_the_pull_over_what_a_pulley_transmits_spans_what_grooves_grip() -> None:
+    """By Euler's law of a belt: both strands together over their difference; two digits are kept."""
+    grip = np.exp([0.65 * np.pi, 0.45 * np.radians(120.0)])
+    drawn = BeltNumbers().pull_over_effective
+    assert [drawn.low, drawn.high] == pytest.approx((grip + 1.0) / (grip - 1.0), abs=0.05)
+
+
 def test_what_arrives_is_in_proportion_to_the_pull() -> None:
     once, twice = (added(belted({"pull_n": pull}))[0]["lid_vertical"] for pull in (700.0, 1400.0))
     # one multiplication by two apart: exact in floating point up to the filters' float32

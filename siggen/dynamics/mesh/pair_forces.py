@@ -20,6 +20,7 @@ from siggen.dynamics.mesh.pair_columns import (
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
+from siggen.dynamics.mesh.pair_springs import write_springs
 from siggen.dynamics.mesh.two_springs import EXACT_CHANGE
 
 _PLACE, _WEIGHT = np.zeros(1), np.ones(1)
@@ -57,8 +58,8 @@ def pair_forces(
 
 @entry(cache=True, _nrt=False)
 def static_force(law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray) -> float:
-    """Return ΣN [N] at rest."""
-    pair_forces(law, approach_m, 0.0, pitches, 0.0, 0.0, pairs)
+    """Return ΣN [N] at rest: that of the springs, at the tilts in `pairs` of `pair_table`."""
+    write_springs(law, approach_m, pitches, pairs, 0, 0, pairs.shape[0], EXACT_CHANGE)
     total = 0.0
     for i in range(pairs.shape[0]):
         total += pairs[i, NORMAL]

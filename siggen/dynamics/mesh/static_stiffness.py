@@ -29,7 +29,7 @@ SCANNED, ZOOMS, ZOOMED = 257, 3, 17
 so that the shortest spalls count a dozen; the peaks are kinks, so the zooms leave 1e-4 of a cell."""
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _approach(law: PairLaw, force_n: float, pitches: float, guess_m: float, reach_m: float, pairs: FloatArray) -> float:
     """Return the approach [m] at one angle, near a guess or not; NaN where not even `reach_m` carries the force."""
     low, high = 0.95 * guess_m, min(1.05 * guess_m, reach_m)

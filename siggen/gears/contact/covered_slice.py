@@ -43,7 +43,7 @@ class CoveredSlice(NamedTuple):
     radii: tuple[float, float]
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def covered_sink(one: CoveredSlice, load_m: float) -> GapSink:
     """Return the sink of a slice, its slope, and the part of the gap's load on its left edge.
 
@@ -67,7 +67,7 @@ def covered_sink(one: CoveredSlice, load_m: float) -> GapSink:
     return GapSink(land * on_land.sink_m + covered * on_gap.sink_m, slope, on_gap.left_share)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def load_apart(one: CoveredSlice, load_m: float) -> float:
     """Return u_l - u_g [m] of a slice under `load_m` > 0; parameters as for `covered_sink`."""
     gap, tips, covered, spread, (radius, rounding) = one

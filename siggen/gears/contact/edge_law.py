@@ -57,15 +57,22 @@ class EdgeTerms(NamedTuple):
     centroid_slope_m: float
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def half_length(ahead: float) -> float:
     """Return c, the contact's half length over a, at d̂ = `ahead` (1 at d̂ = 1)."""
+    return _length_and_slope(ahead)[0]
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _length_and_slope(ahead: float) -> tuple[float, float]:
+    """Return c and dc/dd̂."""
     root = sqrt(ahead * ahead + 3.0)
     # the same number; the first form loses all digits deep in the gap
-    return 1.0 / (root - ahead) if ahead < 0.0 else (ahead + root) / 3.0
+    c = 1.0 / (root - ahead) if ahead < 0.0 else (ahead + root) / 3.0
+    return c, c / root
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def half_plane_factor(ahead: float) -> float:
     """Return G at d̂ = `ahead`: sink at an edge of a half plane over κF."""
     if ahead >= 1.0:
@@ -74,7 +81,7 @@ def half_plane_factor(ahead: float) -> float:
     return -log(c) + (3.0 * c * c - 1.0) * (c * c - 1.0) / (4.0 * c * c)
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def notch_factor(ahead: float, depth: float, rounding: float = 0.0) -> float:
     """Return N: what a notch behind the edge adds to G.
 
@@ -84,16 +91,15 @@ def notch_factor(ahead: float, depth: float, rounding: float = 0.0) -> float:
     depth : D/a; 0 for none
     rounding : ε = r/(R + r) of the edge, which keeps the load at least 2/3 √ε a from the corner
     """
-    return _notch_and_slope(ahead, depth, rounding)[0]
+    return _notch_and_slope(ahead, depth, rounding, _length_and_slope(ahead))[0]
 
 
-@njit(cache=True)
-def _notch_and_slope(ahead: float, depth: float, rounding: float) -> tuple[float, float]:
-    """Return N and dN/d(ln u), d̂ and D/a both falling as u^-½."""
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _notch_and_slope(ahead: float, depth: float, rounding: float, length: tuple[float, float]) -> tuple[float, float]:
+    """Return N and dN/d(ln u), d̂ and D/a both falling as u^-½; `length` of `_length_and_slope`."""
     if depth <= 0.0 or ahead > 1e3:
         return 0.0, 0.0
-    c = half_length(ahead)
-    c_slope = c / sqrt(ahead * ahead + 3.0)
+    c, c_slope = length
     if ahead < 1.0:
         distance, distance_slope = (2.0 * c + c**4) / 3.0, (2.0 + 4.0 * c**3) / 3.0 * c_slope
     else:
@@ -121,7 +127,7 @@ def _notch_and_slope(ahead: float, depth: float, rounding: float) -> tuple[float
     return strength * log(1.0 + power), strength * power / (1.0 + power) * power_log
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def edge_terms(ahead_m: float, depth_m: float, radius_m: float, rounding_m: float, load_m: float) -> EdgeTerms:
     """Return the terms of one edge.
 
@@ -135,12 +141,13 @@ def edge_terms(ahead_m: float, depth_m: float, radius_m: float, rounding_m: floa
     width = sqrt(2.0 * radius_m * load_m)
     ahead = ahead_m / width
     share = rounding_m / (radius_m + rounding_m)
-    notch, notch_slope = _notch_and_slope(ahead, depth_m / width, share)
+    if ahead >= 1.0 and depth_m <= 0.0:
+        return EdgeTerms(0.0, 0.0, ahead_m, 0.0)
+    c, c_slope = _length_and_slope(ahead)
+    notch, notch_slope = _notch_and_slope(ahead, depth_m / width, share, (c, c_slope))
     if ahead >= 1.0:
         return EdgeTerms(notch, notch_slope, ahead_m, 0.0)
-    c = half_length(ahead)
     square = c * c
-    c_slope = c / sqrt(ahead * ahead + 3.0)
     factor = -log(c) + (3.0 * square - 1.0) * (square - 1.0) / (4.0 * square)
     by_c = -1.0 / c + 1.5 * c - 0.5 / (square * c)
     slope = by_c * c_slope * (-0.5 * ahead)

@@ -13,8 +13,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import entry, njit
 from siggen.lanes import LANES, Lanes, extract, insert, load, shuffle, splat, store
@@ -27,7 +25,7 @@ INVERSE = TERMS
 _by_four, _by_two, _by_one = (shuffle(*((lane ^ k) for lane in range(LANES))) for k in (4, 2, 1))
 
 
-@entry(cache=True, fastmath={"contract", "reassoc"})
+@entry(cache=True, _nrt=False, error_model="numpy", fastmath={"contract"})
 def products(
     decay: FloatArray,
     strength: FloatArray,
@@ -37,30 +35,52 @@ def products(
     slope_out: FloatArray,
 ) -> None:
     """Write the off-diagonal products of the exponentials with `strength` and with `slope` (m,) as s, (n,) each."""
-    count = vector.size
-    run = np.zeros(EXPONENTIALS)
+    count, decays, strengths, slopes = vector.size, _five(decay), _five(strength), _five(slope)
+    run = (0.0, 0.0, 0.0, 0.0, 0.0)
     out[0] = 0.0
     slope_out[0] = 0.0
     for i in range(1, count):
-        product, rise = 0.0, 0.0
-        for m in range(EXPONENTIALS):
-            run[m] = decay[m] * (run[m] + vector[i - 1])
-            product += strength[m] * run[m]
-            rise += slope[m] * run[m]
-        out[i] = product
-        slope_out[i] = rise
-    run[:] = 0.0
+        run = _passed(decays, run, vector[i - 1])
+        out[i] = _scalar(strengths, run)
+        slope_out[i] = _scalar(slopes, run)
+    run = (0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(count - 2, -1, -1):
-        product, rise = 0.0, 0.0
-        for m in range(EXPONENTIALS):
-            run[m] = decay[m] * (run[m] + vector[i + 1])
-            product += strength[m] * run[m]
-            rise += slope[m] * run[m]
-        out[i] += product
-        slope_out[i] += rise
+        run = _passed(decays, run, vector[i + 1])
+        out[i] += _scalar(strengths, run)
+        slope_out[i] += _scalar(slopes, run)
 
 
-@entry(cache=True, fastmath={"contract", "reassoc"})
+Five = tuple[float, float, float, float, float]
+"""A number of every exponential, in a register each."""
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _five(values: FloatArray) -> Five:
+    return values[0], values[1], values[2], values[3], values[4]
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _passed(decay: Five, run: Five, value: float) -> Five:
+    """Return the sums of all rows before the next one, behind a row with a value."""
+    return (
+        decay[0] * (run[0] + value), decay[1] * (run[1] + value), decay[2] * (run[2] + value),
+        decay[3] * (run[3] + value), decay[4] * (run[4] + value),
+    )  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", fastmath={"contract"}, forceinline=True)
+def _scalar(left: Five, right: Five) -> float:
+    """Return the scalar product, one after the other: the first sum is with 0, so that all are contracted alike."""
+    total = 0.0
+    total += left[0] * right[0]
+    total += left[1] * right[1]
+    total += left[2] * right[2]
+    total += left[3] * right[3]
+    total += left[4] * right[4]
+    return total
+
+
+@entry(cache=True, _nrt=False, error_model="numpy", fastmath={"contract", "reassoc"})
 def add_row_products(row_strength: FloatArray, row_decay: FloatArray, vector: FloatArray, out: FloatArray) -> None:
     """Add the off-diagonal products of the term of the rows, p and q (n,), to `out` (n,)."""
     count = vector.size
@@ -87,7 +107,7 @@ class RowMatrix(NamedTuple):
     diagonal: FloatArray
 
 
-@entry(cache=True, error_model="numpy")
+@entry(cache=True, _nrt=False, error_model="numpy")
 def solve_rows(
     matrix: RowMatrix, rows: IntArray, count: int, right: FloatArray, steps: FloatArray, work: FloatArray
 ) -> bool:
@@ -150,7 +170,7 @@ def solve_rows(
     return True
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, _nrt=False, error_model="numpy", inline="always")
 def _of_terms(values: FloatArray) -> Lanes:
     """Return the numbers (EXPONENTIALS,) of the exponentials in lanes, 0 in the others."""
     lanes = splat(0.0)
@@ -161,7 +181,7 @@ def _of_terms(values: FloatArray) -> Lanes:
     return insert(lanes, 4, values[4])
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, _nrt=False, error_model="numpy", inline="always")
 def _sum(lanes: Lanes) -> float:
     """Return the sum of all lanes."""
     lanes = lanes + _by_four(lanes)
@@ -170,7 +190,7 @@ def _sum(lanes: Lanes) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, _nrt=False, error_model="numpy", inline="always")
 def _substitute(
     strength: FloatArray,
     row_strength: FloatArray,

@@ -71,7 +71,7 @@ class _Laws(NamedTuple):
     damping: float
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def face_force(
     slices: FaceSlices,
     approach_m: float,
@@ -96,14 +96,14 @@ def face_force(
     return solved_force(slices, approach_m, tilt_rad, loads_m, room, tolerance)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def keep_rigid_sinks(slices: FaceSlices, room: SolverRoom) -> None:
     """Put the sinks of slices without load into the room: all solutions of one position need them."""
     for i in range(room.rigid_m.size):
         room.rigid_m[i] = slice_sink(slice_of(slices, i), 0.0).sink_m
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def solved_force(
     slices: FaceSlices, approach_m: float, tilt_rad: float, loads_m: FloatArray, room: SolverRoom, tolerance: float
 ) -> FaceForce:
@@ -136,7 +136,7 @@ def solved_force(
     return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatArray, room: SolverRoom) -> None:
     """Put loads on the slices that the approach reaches if none carries yet."""
     for i in range(loads.size):
@@ -147,7 +147,7 @@ def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatA
         loads[i] = max(approach + tilt * slices.face_m[i] - slices.lead_m[i] - room.rigid_m[i], 0.0) / own
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _prepare(slices: FaceSlices, loads: FloatArray, square: float, room: SolverRoom) -> tuple[float, float]:
     """Fill (K + T) u and (dK/d ln a) u into the room; return u·(dK/d ln a) u and what the bend of a adds."""
     width, growth, bend = contact_half_width(slices, square)
@@ -164,7 +164,7 @@ def _prepare(slices: FaceSlices, loads: FloatArray, square: float, room: SolverR
     return work, work * bend / growth if bend != 0.0 else 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _assemble(
     slices: FaceSlices,
     approach: float,
@@ -210,7 +210,7 @@ def _assemble(
     return chosen, settled
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _move(loads: FloatArray, room: SolverRoom, chosen: int) -> tuple[float, bool]:
     """Take the step; return the largest load, and whether every slice keeps touch."""
     largest, kept = 0.0, True
@@ -227,7 +227,7 @@ def _move(loads: FloatArray, room: SolverRoom, chosen: int) -> tuple[float, bool
     return largest, kept
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _answer(slices: FaceSlices, loads: FloatArray, answers: Answers, passes: int) -> FaceForce:
     total = square = moment = damaged = 0.0
     for i in range(loads.size):

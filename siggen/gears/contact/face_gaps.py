@@ -39,6 +39,11 @@ class FaceGaps(NamedTuple):
     covered: FloatArray
     tips_m: FloatArray
 
+    @property
+    def nearest_tip_m(self) -> FloatArray:
+        """The nearer one of both tips (positions, slices)."""
+        return np.minimum(self.tips_m[..., 0], self.tips_m[..., 1])
+
 
 def face_gaps(pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m: FloatArray) -> FaceGaps:
     """Return the gaps at contact positions s (k,) [m], which may lie beyond the path of contact.

@@ -44,7 +44,7 @@ class FaceSlices(NamedTuple):
     carrying_m: float
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def slice_of(slices: FaceSlices, i: int) -> CoveredSlice:
     """Return slice i on its own."""
     gap = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
@@ -52,7 +52,7 @@ def slice_of(slices: FaceSlices, i: int) -> CoveredSlice:
     return CoveredSlice(gap, tips, slices.covered[i], slices.spread, (slices.radii_m[i], slices.rounding_m))
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def slice_sink(one: CoveredSlice, load: float) -> GapSink:
     """Return the sink of a slice under a load κq [m]."""
     if 0.0 < one.covered < 1.0:
@@ -61,7 +61,7 @@ def slice_sink(one: CoveredSlice, load: float) -> GapSink:
     return gap_sink(gap[0], gap[1], gap[2], gap[3], radius, rounding, load)
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def contact_half_width(slices: FaceSlices, square: float) -> tuple[float, float, float]:
     """Return a [m] of loads with the sum of squares `square`, as `reckoned_width` does."""
     cell = slices.kernel.cell_m

@@ -40,52 +40,75 @@ def force_curve(
     nodes: FloatArray,
     tolerance: float = TOLERANCE,
 ) -> ForceCurve:
-    """Return the answers to ascending approaches (k,) [m] at one tilt; the rest as `curve_along`."""
-    return curve_along(slices, approach_m, np.full(approach_m.size, tilt_rad), loads_m, room, nodes, tolerance)
+    """Return the answers to ascending approaches (k,) [m] at one tilt.
 
-
-@njit(cache=True)
-def curve_along(
-    slices: FaceSlices,
-    approach_m: FloatArray,
-    tilt_rad: FloatArray,
-    loads_m: FloatArray,
-    room: SolverRoom,
-    nodes: FloatArray,
-    tolerance: float = TOLERANCE,
-) -> ForceCurve:
-    """Return the answers to approaches (k,) [m] and tilts (k,) [rad] that lie on a straight way.
-
-    `loads_m` (n,): guess at the first approach (zeros are allowed), the loads there afterwards. Every solution starts
-    from the line through the two before it. `nodes`: of `energy_nodes`; with an empty (2, 0) no energy is computed (it
-    costs up to as much as the rest where gaps carry) and `energy_j` is 0.
+    `loads_m` (n,): guess at the first approach (zeros are allowed), the loads at the last one afterwards. `nodes`: of
+    `energy_nodes`; with an empty (2, 0) no energy is computed (it costs up to as much as the rest where gaps carry) and
+    `energy_j` is 0.
 
     Raises
     ------
     ValueError
         If an approach cannot be solved.
     """
-    count = approach_m.size
-    out = np.zeros((8, count))
+    out = np.zeros((8, 1, approach_m.size))
+    tilts = np.full(approach_m.size, tilt_rad)
+    if not _write_curve(slices, approach_m, tilts, loads_m, room, nodes, tolerance, out[:, 0]):
+        raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
+    return ForceCurve(out[0, 0], out[1, 0], out[2, 0], out[3, 0], out[4, 0], out[5, 0], out[6, 0], out[7, 0])
+
+
+@entry(cache=True, _nrt=False, error_model="numpy")
+def write_curves(
+    slices: FaceSlices,
+    approach_m: FloatArray,
+    tilt_rad: FloatArray,
+    room: SolverRoom,
+    nodes: FloatArray,
+    tolerance: float,
+    out: FloatArray,
+) -> bool:
+    """Write the answers (8, ways, k) along ways to approaches and tilts (ways, k) from no guess; False if one has none.
+
+    Compiled code that allocates nothing need not count references.
+    """
+    for way in range(approach_m.shape[0]):
+        room.loads[:] = 0.0
+        if not _write_curve(
+            slices, approach_m[way], tilt_rad[way], room.loads, room, nodes, tolerance, out[:, way]
+        ):  # fmt: skip
+            return False
+    return True
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
+def _write_curve(
+    slices: FaceSlices,
+    approach_m: FloatArray,
+    tilt_rad: FloatArray,
+    loads: FloatArray,
+    room: SolverRoom,
+    nodes: FloatArray,
+    tolerance: float,
+    out: FloatArray,
+) -> bool:
+    """Write the answers (8, k) to approaches and tilts (k,) on a straight way; False if one cannot be solved.
+
+    Every solution starts from the line through the two before it.
+    """
+    before = room.before
     keep_rigid_sinks(slices, room)
-    before = np.zeros(loads_m.size)
-    last = np.zeros(loads_m.size)
-    loads = loads_m.copy()
-    for j in range(count):
-        if j > 1:
-            ratio = _step_ratio(approach_m, tilt_rad, j)
-            for i in range(loads_m.size):
-                if loads[i] > 0.0 and before[i] > 0.0:
-                    loads[i] = max(loads[i] + ratio * (loads[i] - before[i]), 0.1 * loads[i])
-        if j > 0:
-            before[:] = last
+    for j in range(approach_m.size):
+        ratio = _step_ratio(approach_m, tilt_rad, j) if j > 1 else 0.0
+        for i in range(loads.size):
+            found = loads[i]
+            if j > 1 and found > 0.0 and before[i] > 0.0:
+                loads[i] = max(found + ratio * (found - before[i]), 0.1 * found)
+            before[i] = found
         answer = solved_force(slices, approach_m[j], tilt_rad[j], loads, room, tolerance)
         if answer.passes < 0:
-            raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
-        last[:] = loads
-        if j == 0:
-            loads_m[:] = loads
-        if nodes.shape[1]:
+            return False
+        if nodes.shape[1] > 0:
             out[0, j] = stored_energy(slices, approach_m[j], tilt_rad[j], loads, room, nodes)
         out[1, j] = answer.force_n
         out[2, j] = answer.moment_n_m
@@ -94,34 +117,10 @@ def curve_along(
         out[5, j] = answer.tilting_n_m
         out[6, j] = answer.carrying_m
         out[7, j] = answer.on_damage
-    return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7])
+    return True
 
 
-@entry(cache=True)
-def write_curves(
-    slices: FaceSlices,
-    approach_m: FloatArray,
-    tilt_rad: FloatArray,
-    room: SolverRoom,
-    tolerance: float,
-    out: FloatArray,
-) -> None:
-    """Write the answers (8, ways, k) along ways to approaches and tilts (ways, k), without the energy.
-
-    Source: `curve_along`, from no guess.
-    """
-    nodes = np.zeros((2, 0))
-    for way in range(approach_m.shape[0]):
-        guess = np.zeros(slices.face_m.size)
-        found = curve_along(slices, approach_m[way], tilt_rad[way], guess, room, nodes, tolerance)
-        for j in range(approach_m.shape[1]):
-            out[1, way, j], out[2, way, j] = found.force_n[j], found.moment_n_m[j]
-            out[3, way, j], out[4, way, j] = found.stiffness_n_per_m[j], found.turning_n[j]
-            out[5, way, j], out[6, way, j] = found.tilting_n_m[j], found.carrying_m[j]
-            out[7, way, j] = found.on_damage[j]
-
-
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _step_ratio(approach_m: FloatArray, tilt_rad: FloatArray, j: int) -> float:
     """Return the step to place j over the one before it."""
     before = approach_m[j - 1] - approach_m[j - 2]

@@ -51,6 +51,8 @@ class KindRow(NamedTuple):
         """Return the gaps at fine points (chosen,)."""
         inside = chosen - self.first
         here = (inside >= 0) & (inside < len(self.gaps.left_m))
+        if here.all():
+            return FaceGaps(*(near[inside] for near in self.gaps))
         found = []
         for near, far in zip(self.gaps, self.elsewhere, strict=True):
             values = far[chosen]
@@ -193,6 +195,6 @@ def _least_sink(radii_m: FloatArray, gaps: FaceGaps, lead_m: FloatArray) -> Floa
     near = np.maximum(np.minimum(gaps.left_m, gaps.right_m), 0.0)
     floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
     sunk = np.minimum(near**2 / (2.0 * radii_m), floor)
-    tip = np.maximum(gaps.tips_m.min(axis=2), 0.0) ** 2 / (2.0 * radii_m)
+    tip = np.maximum(gaps.nearest_tip_m, 0.0) ** 2 / (2.0 * radii_m)
     sunk = np.where(gaps.covered < 1.0, np.minimum(sunk, tip), sunk)
     return np.asarray((sunk + lead_m).min(axis=1))

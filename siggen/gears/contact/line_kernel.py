@@ -145,7 +145,7 @@ def _below(t: FloatArray, cell_m: float, depth_m: float | FloatArray, poisson_ra
     return 0.5 * (integral(t + 0.5 * cell_m) - integral(t - 0.5 * cell_m))
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def reckoned_width(half_width_m: float, cell_m: float) -> tuple[float, float, float]:
     """Return the half width that K reckons with, and the first and second derivative of its logarithm to ln a.
 
@@ -161,7 +161,7 @@ def reckoned_width(half_width_m: float, cell_m: float) -> tuple[float, float, fl
     return WIDEST_EXACT * cell_m * exp(over - 0.5 * over * over / span), 1.0 - over / span, -1.0 / span
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def diagonal(kernel: LineKernel, half_width_m: float) -> tuple[float, float]:
     """Return K_ii of the energy and its derivative to ln a."""
     if not kernel.coupled:
@@ -170,7 +170,7 @@ def diagonal(kernel: LineKernel, half_width_m: float) -> tuple[float, float]:
     return asinh(x) - kernel.below_diagonal, -x / sqrt(1.0 + x * x)
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def strengths(kernel: LineKernel, half_width_m: float, strength: FloatArray, slope: FloatArray) -> None:
     """Write the strengths (m,) of the exponentials and their derivatives to ln a."""
     if not kernel.coupled:

@@ -19,7 +19,7 @@ class SolverRoom(NamedTuple):
     `rows` (n,): slices that carry; `losses` (n,): how often a slice lost touch; `product`, `growth` (n,): K u and
     v = (dK/d ln a) u; `diagonal` (n,); `right` (n, LANES): right sides residual, 1, u, v, y, then the solutions;
     `rigid_m` (n,): sinks without load; `steps`, `factors`: of `solve_rows`; `strength`, `strength_slope` (m,): of the
-    kernel.
+    kernel; `matrix`, `sides` (3, 3): of the three vectors; `loads`, `before` (n,): of a curve, at two places of it.
     """
 
     rows: IntArray
@@ -33,6 +33,10 @@ class SolverRoom(NamedTuple):
     factors: FloatArray
     strength: FloatArray
     strength_slope: FloatArray
+    matrix: FloatArray
+    sides: FloatArray
+    loads: FloatArray
+    before: FloatArray
 
 
 def solver_room(slices: int) -> SolverRoom:
@@ -49,10 +53,14 @@ def solver_room(slices: int) -> SolverRoom:
         factors=np.zeros((slices, LANES)),
         strength=np.zeros(EXPONENTIALS),
         strength_slope=np.zeros(EXPONENTIALS),
+        matrix=np.zeros((3, 3)),
+        sides=np.zeros((3, 3)),
+        loads=np.zeros(slices),
+        before=np.zeros(slices),
     )
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def solve_local(slices: FaceSlices, room: SolverRoom, chosen: int) -> bool:
     """Solve for the five right sides with the matrix but for its three vectors; False if not positive definite."""
     teeth = slices.teeth
@@ -69,7 +77,7 @@ class Answers(NamedTuple):
     tilting_n_m: float
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def add_low_rank(
     slices: FaceSlices, room: SolverRoom, chosen: int, loads: FloatArray, square: float, slope: float, bend: float
 ) -> Answers:
@@ -91,7 +99,7 @@ def add_low_rank(
         by_growth = by_growth + growth[i] * sides
         along = along + face[i] * sides
     # x = z_b - z_1 c (1·x) - z_u (p (v·x) - p s (u·x)) - z_v p (u·x); unknown are 1·x, u·x, v·x
-    matrix, sides = np.zeros((3, 3)), np.zeros((3, 3))
+    matrix, sides = room.matrix, room.sides
     for j, sums in enumerate((ones, by_load, by_growth)):
         matrix[j, 0] = c * extract(sums, 1)
         matrix[j, 1] = p * (extract(sums, 3) - (slope - 0.25 * bend) * extract(sums, 2))
@@ -100,7 +108,7 @@ def add_low_rank(
         # first the step, then the answers to a unit approach and to a unit tilt
         sides[j, 0], sides[j, 1], sides[j, 2] = extract(sums, 0), extract(sums, 1), extract(sums, 4)
     _solve_three(matrix, sides)
-    weights = np.zeros((3, 3))
+    weights = matrix  # of no use any more
     for k in range(3):
         weights[0, k] = c * sides[0, k]
         weights[1, k] = p * (sides[2, k] - (slope - 0.25 * bend) * sides[1, k])
@@ -116,7 +124,7 @@ def add_low_rank(
     return Answers(largest, per_load * sides[0, 1], per_load * turning, per_load * tilting)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _solve_three(matrix: FloatArray, sides: FloatArray) -> None:
     """Solve three equations for three right sides in place, by elimination with pivots (LAPACK would cost more)."""
     for j in range(3):

@@ -44,7 +44,7 @@ class MeanWidth(NamedTuple):
     mean: OwnWidth
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def own_width(load_m: float, scale_per_m: float, coupled: bool) -> OwnWidth:
     """Return λ of a load κq > 0 [m]."""
     over = 0.5 * log(scale_per_m * load_m)
@@ -56,7 +56,7 @@ def own_width(load_m: float, scale_per_m: float, coupled: bool) -> OwnWidth:
     return OwnWidth(over * (1.0 - x * x * (1.0 - 0.5 * x)), 1.0 - x * x * (3.0 - 2.0 * x), 6.0 * x * (x - 1.0) / SPAN)
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def mean_width(slices: FaceSlices, square: float) -> MeanWidth:
     """Return what slices share under loads with the sum of squares `square` > 0."""
     cell = slices.kernel.cell_m
@@ -64,7 +64,7 @@ def mean_width(slices: FaceSlices, square: float) -> MeanWidth:
     return MeanWidth(scale, coupled, own_width(sqrt(cell * square / slices.carrying_m), scale, coupled))
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def own_law(load_m: float, radius_share: float, shared: MeanWidth) -> tuple[float, float]:
     """Return what the own width of a slice under κq > 0 [m] adds to its approach over the load, and to the slope.
 

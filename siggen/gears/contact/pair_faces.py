@@ -155,7 +155,7 @@ def carrying_length(
     floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
     sunk = np.minimum(near**2 / round_m, floor) + lead_m
     partly = (gaps.covered > 0.0) & (gaps.covered < 1.0)
-    land = np.where(partly, lead_m + np.maximum(gaps.tips_m.min(axis=-1), 0.0) ** 2 / round_m, np.inf)
+    land = np.where(partly, lead_m + np.maximum(gaps.nearest_tip_m, 0.0) ** 2 / round_m, np.inf)
     least = np.minimum(sunk, land).min(axis=-1, keepdims=True)
     weight, beside = (1.0 / (1.0 + ((depth - least) / (4.0 * load_m)) ** 2) for depth in (sunk, land))
     whole = np.where(partly, gaps.covered, 1.0)

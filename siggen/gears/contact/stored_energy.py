@@ -25,7 +25,7 @@ def energy_nodes(count: int = ENERGY_NODES) -> FloatArray:
     return np.array([0.5 * (node + 1.0), 0.5 * weight])
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def stored_energy(
     slices: FaceSlices,
     approach_m: float,
@@ -69,7 +69,7 @@ def stored_energy(
     return per_load * work - 0.5 * slices.compliance_m_per_n * force * force
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _sink_energy(slices: FaceSlices, i: int, load: float, nodes: FloatArray) -> float:
     """Return ∫ e du of slice i: of gap and land one by one, since a gap comes to carry with a bend of the sink."""
     one = slice_of(slices, i)
@@ -85,7 +85,7 @@ def _sink_energy(slices: FaceSlices, i: int, load: float, nodes: FloatArray) -> 
     return passing
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _gap_energy(
     gap: tuple[float, float, float, float], radii: tuple[float, float], load: float, nodes: FloatArray
 ) -> float:

@@ -110,7 +110,8 @@ def ray_curves(solver: TableSolver, row: KindRow, chosen: IntArray, rays: FloatA
     way = ray_way(rays, node, half_face)
     found = np.zeros((chosen.size, len(ForceCurve._fields), rays.size, node.size))
     for i, slices in enumerate(row_faces(solver, row, chosen)):
-        write_curves(slices, touch[i] + way.approach_m, way.tilt_rad, room, TOLERANCE, found[i])
+        if not write_curves(slices, touch[i] + way.approach_m, way.tilt_rad, room, NO_ENERGY, TOLERANCE, found[i]):
+            raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
     found = np.moveaxis(found, 0, 1)
     values = along_rays(rays, node, half_face, found)
     parts = [values[0], values[1], found[tilt_rays.CARRYING] / solver.pair.face_width_m, found[tilt_rays.ON_DAMAGE]]

@@ -37,7 +37,7 @@ class GapSink(NamedTuple):
     left_share: float
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy")
 def gap_sink(
     left_m: float, right_m: float, notch_m: float, floor_m: float, radius_m: float, rounding_m: float, load_m: float
 ) -> GapSink:
@@ -66,7 +66,7 @@ def gap_sink(
     return GapSink(sink, slope, edges.left_share)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _rigid(left_m: float, right_m: float, floor_m: float, radius_m: float) -> GapSink:
     near = max(min(left_m, right_m), 0.0)
     sink = near * near / (2.0 * radius_m)
@@ -76,7 +76,7 @@ def _rigid(left_m: float, right_m: float, floor_m: float, radius_m: float) -> Ga
     return GapSink(sink, 0.0, share)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _edges(left_m: float, right_m: float, notch_m: float, radius_m: float, rounding_m: float, load_m: float) -> GapSink:
     """Return the sink on the edges alone."""
     swapped = right_m < left_m
@@ -94,7 +94,7 @@ def _edges(left_m: float, right_m: float, notch_m: float, radius_m: float, round
     return GapSink(load_m * one.factor, one.factor + one.factor_slope, 0.0 if swapped else 1.0)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _shared(
     near: float, far: float, depth: float, radius: float, rounding: float, load: float
 ) -> tuple[float, float, float]:

@@ -176,26 +176,21 @@ def _trapezoid_row(sides: tuple[float, ...], middle: float, half: float, depth: 
 @lru_cache(maxsize=4096)
 def trapezoids(polygon: Polygon) -> tuple[tuple[float, ...], ...]:
     """Return a polygon without problems as trapezoids (low, high, left and right at low, left and right at high)."""
-    corners = np.array(polygon.vertices_m, dtype=np.float64)
-    after = np.roll(corners, -1, axis=0)
-    rising = after[:, 0] > corners[:, 0]
-    start, stop = np.where(rising[:, np.newaxis], corners, after), np.where(rising[:, np.newaxis], after, corners)
-    levels = np.unique(corners[:, 0])
-    out = []
+    corners = [(float(height), float(face)) for height, face in polygon.vertices_m]
+    edges = [(a, b) if b[0] > a[0] else (b, a) for a, b in pairwise((*corners, corners[0]))]
+    levels, out = sorted({height for height, _ in corners}), []
     for low, high in pairwise(levels):
-        crossing = (start[:, 0] <= low) & (stop[:, 0] >= high)
-        lower, upper = (_faces_at(start[crossing], stop[crossing], level) for level in (low, high))
-        order = np.argsort(lower + upper, kind="stable")
-        for left, right in zip(order[::2], order[1::2], strict=True):
-            out.append(tuple(float(v) for v in (low, high, lower[left], lower[right], upper[left], upper[right])))
+        crossing = (edge for edge in edges if edge[0][0] <= low and edge[1][0] >= high)
+        sides = sorted(((_face_at(*edge, low), _face_at(*edge, high)) for edge in crossing), key=sum)
+        for left, right in zip(sides[::2], sides[1::2], strict=True):
+            out.append((low, high, left[0], right[0], left[1], right[1]))
     return tuple(out)
 
 
-def _faces_at(start: FloatArray, stop: FloatArray, level: float) -> FloatArray:
-    """Return where edges (n, 2) pass a height (n,) [m]; their ends exactly."""
-    share = (level - start[:, 0]) / (stop[:, 0] - start[:, 0])
-    inside = start[:, 1] + share * (stop[:, 1] - start[:, 1])
-    return np.where(share == 1.0, stop[:, 1], inside)
+def _face_at(start: tuple[float, float], stop: tuple[float, float], level: float) -> float:
+    """Return where an edge from one corner to a higher one passes a height [m]; its ends exactly."""
+    share = (level - start[0]) / (stop[0] - start[0])
+    return stop[1] if share == 1.0 else start[1] + share * (stop[1] - start[1])
 
 
 def _meeting_edges(corners: FloatArray) -> tuple[int, int] | None:

@@ -69,6 +69,14 @@ def test_a_signal_that_rises_now_and_then_and_pulses_of_a_tacho_are_no_times(tmp
     assert read_columns(tmp_path / "run.npz").clocks == {}
 
 
+def test_an_angle_in_radians_states_no_rate_however_evenly_it_rises(tmp_path: Path) -> None:
+    rng = np.random.default_rng(2)
+    angle = 0.7 * np.arange(SAMPLES)
+    np.savez(tmp_path / "run.npz", time=TIMES_S, angle_rad=angle, lid=rng.standard_normal(SAMPLES))
+    assert read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts(unit="g")).fs_hz == FS_HZ
+    assert file_channels(tmp_path / "run.npz") == ("lid",)
+
+
 def test_an_angle_that_rises_evenly_beside_the_time_leaves_the_rate_to_the_user(tmp_path: Path) -> None:
     rng = np.random.default_rng(2)
     np.savez(tmp_path / "run.npz", time=TIMES_S, angle=0.7 * np.arange(SAMPLES), lid=rng.standard_normal(SAMPLES))

@@ -134,3 +134,15 @@ def test_two_pits_change_places_where_they_are_equally_deep(depths_mm, floors, h
     assert found
     for at in found:
         assert depth(first, at) == pytest.approx(depth(second, at), rel=1e-9)
+
+
+@pytest.mark.parametrize("which", ["pinion", "gear"])
+def test_two_thousand_pits_beside_each_other_take_the_sum_of_their_lengths(which: str) -> None:
+    count, half_mm = 2_000, 0.002
+    middle_mm = float(height_mm("pinion", PAIR.pitch_point_m))
+    at = np.linspace(0.5, WIDTH_MM - 0.5, count)
+    many = pit_rows([pit(middle_mm, float(face), half_mm, 0.3, 0.2) for face in at])
+    heights = np.array([middle_mm / 1e3])
+    sides = (many, NONE) if which == "pinion" else (NONE, many)
+    found = lengths_covered(heights, sides[0], heights, sides[1], WIDTH_MM / 1e3)
+    assert found == pytest.approx(2e-3 * half_mm * count, rel=1e-9)

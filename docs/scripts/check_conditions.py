@@ -1,9 +1,12 @@
-"""Verdicts of `check` on machines whose load differs: `python docs/scripts/check_loads.py FOLDER --machines 10`.
+"""Verdicts of `check` where load or speed differs: `check_conditions.py FOLDER --machines 10 [--over speed]`.
 
-A machine is that of `hidden_machine.py`, driven by an induction motor: its speed falls by 0.5 % from no load to full.
-It is recorded twice healthy at each of ten loads from 0 to 100 %, once with a spall through the face and once with a
-broken tooth. Three to five references reach over the loads; the other healthy recordings and the damaged ones are
-judged with the load unknown, given, and read from slip. What is in FOLDER is not made again.
+A machine is that of `hidden_machine.py`, recorded twice healthy under each of ten conditions, once with a spall through
+the face and once with a broken tooth. References reach over the conditions; the other healthy recordings and the
+damaged ones are judged. What is in FOLDER is not made again.
+
+* load: 0 to 100 % behind an induction motor, whose speed falls by 0.5 % from no load to full; unknown, given, and read
+  from slip;
+* speed: 15 to 40 Hz at one torque.
 """
 
 from __future__ import annotations
@@ -24,24 +27,34 @@ from diagnostics.statistics.change_score import change_score
 
 FULL_NM, NO_LOAD_HZ, SLIP = 45.0, 35.0, 0.005
 LOADS = (0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0, 100.0)
+SPEEDS_HZ, LOAD_OF_SPEEDS = (15.0, 17.0, 19.0, 21.5, 24.0, 26.5, 29.5, 33.0, 36.5, 40.0), 75.0
+LEAST_LOAD = 9.0
+"""Below a tenth of the load gears rattle: no references are taken there [%]."""
 BROKEN = {"name": "broken", "severity": "severe", "damage": {"kind": "chip", "gear": "pinion", "height_mm": 6.0}}
 DAMAGED = ("through", "broken")
 DRAWS = 8
-WAYS = ("unknown", "given", "slip")
+LOAD, SPEED = "load", "speed"
+WAYS = {LOAD: ("unknown", "given", "slip"), SPEED: ("known",)}
+COUNTS = {LOAD: (3, 4, 5), SPEED: (5, 7, 10)}
 
 
-def recorded(number: int, folder: Path) -> dict[str, np.ndarray]:
+def points(over: str) -> list[dict[str, float]]:
+    """Return the operating points of a study."""
+    if over == SPEED:
+        return [{"speed_hz": speed, "torque_nm": FULL_NM * LOAD_OF_SPEEDS / 100.0} for speed in SPEEDS_HZ]
+    return [
+        {"speed_hz": NO_LOAD_HZ * (1.0 - SLIP * load / 100.0), "torque_nm": FULL_NM * load / 100.0} for load in LOADS
+    ]
+
+
+def recorded(number: int, folder: Path, over: str) -> dict[str, np.ndarray]:
     """Return features, states, loads [%] and speeds [Hz] of all records of a machine."""
-    kept = folder / f"loads_{number}.npz"
+    kept = folder / f"{over}s_{number}.npz"
     if not kept.exists():
-        raw = machine(number, folder)
-        points = [
-            {"speed_hz": NO_LOAD_HZ * (1.0 - SLIP * load / 100.0), "torque_nm": FULL_NM * load / 100.0}
-            for load in LOADS
-        ]
+        raw, conditions = machine(number, folder), points(over)
         states = [{"name": HEALTHY}, {"name": "again"}, STATES[3], BROKEN]
-        config = siggen.load_config({**raw, "operating_points": points, "states": states, "specimens": 1})
-        count = len(states) * len(LOADS)
+        config = siggen.load_config({**raw, "operating_points": conditions, "states": states, "specimens": 1})
+        count = len(states) * len(conditions)
         records = [one for one in siggen.simulate(config, range(count)) if hasattr(one, "channels")]
         np.savez(
             kept,
@@ -53,20 +66,22 @@ def recorded(number: int, folder: Path) -> dict[str, np.ndarray]:
     return dict(np.load(kept))
 
 
-def references(loads: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
-    """Return rows of the healthy recordings: at 10 or 20 % of the load, at 90 or 100 %, and others between."""
-    first = int(rng.choice(np.flatnonzero((loads > 9.0) & (loads < 21.0))))
-    last = int(rng.choice(np.flatnonzero(loads > 89.0)))
-    others = np.setdiff1d(np.flatnonzero(loads > 9.0), [first, last])
+def references(condition: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Return rows of the healthy recordings: one of the two lowest, one of the two highest, others between."""
+    levels = np.unique(condition)
+    first = int(rng.choice(np.flatnonzero(condition <= levels[1])))
+    last = int(rng.choice(np.flatnonzero(condition >= levels[-2])))
+    others = np.setdiff1d(np.arange(condition.size), [first, last])
     return np.append(rng.choice(others, count - 2, replace=False), [first, last])
 
 
 def as_machine(held: dict[str, np.ndarray], rows: np.ndarray, way: str) -> Machine:
     """Return the machine that these references give."""
     speed, load = held["speed"][rows], held["load"][rows]
-    load = {"unknown": np.full(rows.size, np.nan), "given": load, "slip": slip_loads(speed, speed.max(), speed.min())}[
-        way
-    ]
+    if way == "slip":
+        load = slip_loads(speed, speed.max(), speed.min())
+    elif way != "given":
+        load = np.full(rows.size, np.nan)
     names = tuple(str(k) for k in range(held["rows"].shape[1]))
     facts = RecordingFacts(fs_hz=FS_HZ)
     called = tuple(str(row) for row in rows)
@@ -81,11 +96,13 @@ def rates(held: dict[str, np.ndarray], count: int, way: str) -> list[float]:
     rng = np.random.default_rng(0)
     healthy = np.flatnonzero(np.isin(held["state"], (HEALTHY, "again")))
     verdicts: dict[str, list[float]] = {"healthy": [], **{name: [] for name in DAMAGED}, "other": []}
+    condition = held["speed" if way == "known" else "load"]
+    healthy = healthy[held["load"][healthy] > LEAST_LOAD]
     for _ in range(DRAWS):
-        chosen = healthy[references(held["load"][healthy], count, rng)]
+        chosen = healthy[references(condition[healthy], count, rng)]
         known = as_machine(held, chosen, way)
         for row in np.setdiff1d(np.arange(len(held["rows"])), chosen):
-            load = None if way == "unknown" else float(held["load"][row])
+            load = float(held["load"][row]) if way in ("given", "slip") else None
             beside = comparable(known, float(held["speed"][row]), load)
             state = str(held["state"][row])
             verdicts["other"].append(float(beside is None))
@@ -100,17 +117,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--machines", type=int, default=10)
+    parser.add_argument("--over", choices=(LOAD, SPEED), default=LOAD)
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     held = []
     for number in range(1, arguments.machines + 1):  # the one of number 0 served to choose the rule
         own = arguments.folder / f"machine_{number}"
         own.mkdir(exist_ok=True)
-        held.append(recorded(number, own))
-    print("| references | load | false alarms, % | through, % | broken, % | not compared, % |")
+        held.append(recorded(number, own, arguments.over))
+    print(f"| references | {arguments.over} | false alarms, % | through, % | broken, % | not compared, % |")
     print("|---|---|---|---|---|---|")
-    for count in (3, 4, 5):
-        for way in WAYS:
+    for count in COUNTS[arguments.over]:
+        for way in WAYS[arguments.over]:
             found = np.array([rates(one, count, way) for one in held])
             shown = " | ".join(interval(column) for column in found.T)
             print(f"| {count} | {way} | {shown} |", flush=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pyarrow as pa
 
@@ -30,6 +32,11 @@ def inspections(dataset: Dataset, stage: Stage) -> Inspections:
 
 
 def _check_failed(dataset: Dataset) -> None:
+    if not any(name.startswith("life/units/") for name in dataset.inventory.files):
+        raise DatasetError(
+            f"{dataset.path}: does not tell when its gearboxes fail, as a test part of a benchmark; allowed: the part "
+            "to learn from, or any other set of lives"
+        )
     events = dataset.life("units").column("event").to_pylist()
     if (failed := events.count("failed")) < FEWEST_FAILED:
         raise DatasetError(
@@ -44,39 +51,53 @@ def inspections_of(dataset: Dataset, table: RecordTable) -> Inspections:
     Raises
     ------
     DatasetError
-        If fewer than four gearboxes failed: nothing could be judged on gearboxes that were not trained on.
+        If fewer than four gearboxes failed: nothing could be judged on gearboxes that were not trained on. If the set
+        does not tell.
     """
     _check_failed(dataset)
+    found, keys = blind_inspections(dataset, table), _in_order(dataset, table)
     units = {row["specimen_id"]: row for row in dataset.life("units").to_pylist()}
-    means = _means(table)
-    debris_mg = {key: row["debris_mg"] for key, row in _by_inspection(dataset, "debris").items()}
-    keys, rows = _in_order(dataset.life("inspections"), means), _by_inspection(dataset, "inspections")
-    outlook = _by_inspection(dataset, "outlook")
+    rows, outlook = _by_inspection(dataset, "inspections"), _by_inspection(dataset, "outlook")
     shares = _worst_shares(dataset.life("teeth"))
-    return Inspections(
-        record_id=np.array([rows[key]["record_id"] for key in keys]),
-        specimen=np.array([specimen for specimen, _ in keys]),
-        split=np.array([rows[key]["split"] for key in keys]),
-        age_h=np.array([rows[key]["age_h"] for key in keys]),
+    return replace(
+        found,
         rul_h=np.array([rows[key]["rul_h"] for key in keys], dtype=np.float64),
         observed_h=np.array([units[specimen]["observed_h"] for specimen, _ in keys]),
-        indicators={name: np.stack([means[key][name] for key in keys]) for name in INDICATORS},
-        history=np.stack([means[key][HISTORY] for key in keys]),
-        sample_bytes=np.stack([means[key][SAMPLES] for key in keys]),
-        debris_mg=np.array([debris_mg[key] for key in keys]),
         worst_shares=np.array([shares.get(key, [0.0] * WORST_TEETH) for key in keys]),
         outlook_h=np.array([[outlook[key][name] for name in OUTLOOK_COLUMNS] for key in keys]),
         averages=_averages(table, keys),
     )
 
 
+def blind_inspections(dataset: Dataset, table: RecordTable) -> Inspections:
+    """Return the inspections as `inspections_of`, without truth (NaN) and averages: a test part need have no more."""
+    means, keys = _means(table), _in_order(dataset, table)
+    debris_mg = {key: row["debris_mg"] for key, row in _by_inspection(dataset, "debris").items()}
+    rows, unknown = _by_inspection(dataset, "inspections"), np.full(len(keys), np.nan)
+    return Inspections(
+        record_id=np.array([rows[key]["record_id"] for key in keys]),
+        specimen=np.array([specimen for specimen, _ in keys]),
+        split=np.array([rows[key]["split"] for key in keys]),
+        age_h=np.array([rows[key]["age_h"] for key in keys]),
+        rul_h=unknown,
+        observed_h=unknown,
+        indicators={name: np.stack([means[key][name] for key in keys]) for name in INDICATORS},
+        history=np.stack([means[key][HISTORY] for key in keys]),
+        sample_bytes=np.stack([means[key][SAMPLES] for key in keys]),
+        debris_mg=np.array([debris_mg[key] for key in keys]),
+        worst_shares=np.tile(unknown[:, None], WORST_TEETH),
+        outlook_h=np.tile(unknown[:, None], len(OUTLOOK_COLUMNS)),
+    )
+
+
 Key = tuple[int, int]
 
 
-def _in_order(table: pa.Table, means: dict[Key, dict[str, np.ndarray]]) -> list[Key]:
+def _in_order(dataset: Dataset, table: RecordTable) -> list[Key]:
     """Return gearbox and number of every inspection of which there is a record."""
-    keys = zip(*(table.column(name).to_pylist() for name in ("specimen_id", "inspection")), strict=True)
-    return sorted(key for key in keys if key in means)
+    labels = table.labels()
+    known = set(zip(labels["specimen_id"].tolist(), labels["state_id"].tolist(), strict=True))
+    return sorted(known & _by_inspection(dataset, "inspections").keys())
 
 
 def _by_inspection(dataset: Dataset, name: str) -> dict[Key, dict[str, object]]:

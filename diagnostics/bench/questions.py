@@ -1,0 +1,34 @@
+"""The questions that a benchmark can ask, told apart by its configuration; and the predictions of its baselines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+from pyarrow import parquet
+
+from diagnostics.base.progress import Stage
+from diagnostics.base.single_thread import single_thread
+from diagnostics.bench.damage_question import DAMAGE_QUESTION
+from diagnostics.bench.life_question import LIFE_QUESTION
+from diagnostics.bench.question import Question
+from diagnostics.scoring.benchmark import BASELINES, Benchmark
+from diagnostics.scoring.prediction_file import IDENTITY_KEY, PREDICTIONS_FILE
+
+
+def question_of(config: Mapping[str, Any]) -> Question:
+    """Return what a benchmark with this configuration to learn from asks: of lives how long they last."""
+    return DAMAGE_QUESTION if config.get("life") is None else LIFE_QUESTION
+
+
+@single_thread
+def write_baselines(benchmark: Benchmark, seed: int, stage: Stage) -> Path:
+    """Write the predictions of all baselines for all test parts into the benchmark; return the file."""
+    rows = list(question_of(benchmark.learn().config).predictions(benchmark, seed, stage))
+    table = pa.concat_tables(rows).replace_schema_metadata({IDENTITY_KEY: benchmark.digest.encode()})
+    folder = benchmark.path / BASELINES
+    folder.mkdir(exist_ok=True)
+    parquet.write_table(table, folder / PREDICTIONS_FILE, compression="zstd")
+    return folder / PREDICTIONS_FILE
