@@ -82,7 +82,7 @@ def unlike(areas: Areas) -> Iterator[tuple[str, str, float]]:
         stacked = STACK in pair and not set(pair).isdisjoint(STACKED)
         if not stacked and not any(group.issuperset(pair) for group in LIKE):
             worse, better = sorted(pair, key=lambda name: areas[name][0])
-            yield better, worse, float(areas[better][0] - areas[worse][0])
+            yield better, worse, float((areas[better] - areas[worse])[0])
 
 
 def row(judged: Judged, whole: Areas, size: int) -> str:
