@@ -1,14 +1,19 @@
-"""What the baselines of remaining life say of the inspections asked about; they learn on the part to learn from."""
+"""What the baselines of remaining life say of the inspections asked about; they learn on the part to learn from.
+
+They count hours by what wears as much there: the load of every part and the exponent of torque are published.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from diagnostics.base.progress import Stage
+from diagnostics.bench.conditions import LIFE_CONDITIONS
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.scoring.benchmark import LEARN, Benchmark
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD
@@ -30,12 +35,15 @@ def life_predictions(benchmark: Benchmark, seed: int, stage: Stage) -> Iterator[
     learn = inspections_of(benchmark.learn(), _table(LEARN, benchmark.learn(), stage))
     tests = [blind_inspections(part, _table(name, part, stage)) for name, part in parts.items()]
     found = joined([learn, *tests])
+    paces = [pace(benchmark.learn().config, LIFE_CONDITIONS.get(name, {})) for name in parts]
+    hour = np.repeat([1.0, *paces], [one.specimen.size for one in (learn, *tests)])
+    found = replace(found, age_h=found.age_h * hour)
     known = np.arange(found.specimen.size) < learn.specimen.size
     asked = ~known & (found.split == "test")
     every = predictors(found, seed)
     with stage("baselines", len(every)) as advance:
         for name, predict in every.items():
-            hours = np.maximum(predict(known, asked), 0.0)  # lives are never below 0
+            hours = np.maximum(predict(known, asked) / hour[asked, None], 0.0)  # lives are never below 0
             record = pa.array(found.record_id[asked], pa.int64())
             yield pa.table(
                 {CLASSIFIER: [name] * len(record), RECORD: record, **dict(zip(COLUMNS, hours.T, strict=True))}
@@ -46,6 +54,20 @@ def life_predictions(benchmark: Benchmark, seed: int, stage: Stage) -> Iterator[
 def _table(name: str, dataset: Dataset, stage: Stage) -> RecordTable:
     with stage(f"indicators, {name}", dataset.inventory.rows) as advance:
         return record_table(dataset, advance=advance)
+
+
+def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:
+    """Return how many hours of a configuration of lives wear as much as one with some changes; speeds are alike.
+
+    It is 1 where the configuration gives its load in N m: that of the test part is relative.
+    """
+    life = config["life"]
+    histories = [own or [[1.0, 1.0]] for own in ({**life, **changes.get("life", {})}["history"], life["history"])]
+    if any(len(block) > 2 for own in histories for block in own):
+        return 1.0
+    exponent = life["damage"]["torque_exponent"]
+    wear, usual = (sum(h * ratio**exponent for h, ratio in own) / sum(h for h, _ in own) for own in histories)
+    return float(wear / usual)
 
 
 def joined(parts: Sequence[Inspections]) -> Inspections:

@@ -13,6 +13,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from diagnostics.bench.conditions import LIFE_CONDITIONS
 from diagnostics.bench.derived_secret import derived
 from diagnostics.bench.life_predictions import life_predictions
 from diagnostics.bench.question import Question, Ranking, Renumbered, Shown, Words
@@ -20,8 +21,6 @@ from diagnostics.scoring.remaining_life import EVERY, REMAINING_LIFE
 from siggen.dataset.reading import Dataset
 from siggen.errors import counted
 
-CONDITIONS: Mapping[str, Mapping[str, Any]] = {"same": {}, "other_load": {"life": {"history": [[1.0, 1.05]]}}}
-"""Name -> top-level keys that differ; 5 % more torque wears 1.05^10 = 1.6 times as fast."""
 KEYS = ("record_id", "specimen_id", "split", "inspection")
 SEEN = {"inspections": ("age_h", "age_rev"), "debris": ("debris_mg",), "pictures": ("gear", "tooth", "png")}
 """Tables of `life/` and their columns that a model may see; all else is truth."""
@@ -31,7 +30,7 @@ RULES = """* One number for each record of the split `test`, the last inspection
 * Everything that the part shows of the gearbox may be used: signals, `life/inspections` (age), `life/debris`,
   `life/pictures`. Other gearboxes of the part may not be used.
 * Learn and choose on `learn` alone. Nothing is learned from test parts.
-* In `other_load` gearboxes run with 5 % more torque between inspections. Records are taken as in all parts.
+* In `other_load` gearboxes run between inspections at 1.05 times the torque of their records, and not as in `learn`.
 * Gearboxes that were taken out before they failed are in no error. Nobody can tell them before labels are revealed."""
 
 
@@ -100,7 +99,7 @@ def _renumbered_rows(
 
 LIFE_QUESTION = Question(
     title="siggen-bench 1.0, lives",
-    conditions=CONDITIONS,
+    conditions=LIFE_CONDITIONS,
     words=Words("Remaining life of gears", RULES, "history", part_card),
     ranking=Ranking(
         REMAINING_LIFE,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -34,11 +34,15 @@ SETTINGS_KEY = b"diagnostics.indicators"
 NOTES_KEY = b"diagnostics.notes"
 OWN_NAMES = AS_PAIR | {"revolutions_pinion": "turns_sun", "revolutions_gear": "turns_carrier"}
 """Column of a pair -> what it holds of a planetary set; turns of the sun are those against the carrier."""
+LIFE_LABELS = {"age_h": Role.CONDITION, "rul_h": Role.TARGET}
+"""Age and remaining life of an inspection [h]."""
 WRITERS = (".parquet", ".csv")
 
 
 def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1, classes: str = STATE) -> FeatureMatrix:
     """Return one row per record: indicators of every channel, labels with their roles, gearbox and split.
+
+    Sets of lives have the labels `age_h` and `rul_h` in place of `class`.
 
     The indicators are those that the classifiers of `siggen-diagnostics report` take. They are kept beside the set, so
     that only the first call computes them.
@@ -65,13 +69,25 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1,
     UsageError
         If the classes are of an unknown kind.
     """
-    told = set_classes(dataset, classes)
+    lives = dataset.config.get("life") is not None
+    told = None if lives else set_classes(dataset, classes)
     found = record_table(dataset, own=load_indicators(list(indicators)), workers=workers)
     notes = check_table(found, dataset)
     for note in notes:
         warnings.warn(f"{dataset.path}: {note}", stacklevel=2)
-    matrix = feature_matrix(classifier_table(found, notes), told)
-    return replace(matrix, label_roles={**{name: dataset.role(name) for name in LABEL_NAMES}, CLASS: Role.TARGET})
+    roles, own = {name: dataset.role(name) for name in LABEL_NAMES}, classifier_table(found, notes)
+    if not lives:
+        return replace(feature_matrix(own, told), label_roles={**roles, CLASS: Role.TARGET})
+    matrix = _arrays(own)
+    labels = {**matrix.labels, **_life_labels(dataset, matrix.labels)}
+    return replace(matrix, labels=labels, label_roles={**roles, **LIFE_LABELS})
+
+
+def _life_labels(dataset: Dataset, labels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return age and remaining life of records; NaN where a gearbox was taken out, or a benchmark does not tell."""
+    rows = {(row["specimen_id"], row["inspection"]): row for row in dataset.life("inspections").to_pylist()}
+    own = [rows[key] for key in zip(labels["specimen_id"].tolist(), labels["state_id"].tolist(), strict=True)]
+    return {name: np.array([row.get(name) for row in own], dtype=np.float64) for name in LIFE_LABELS}
 
 
 def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
@@ -158,10 +174,16 @@ def feature_matrix(table: pa.Table, classes: RecordClasses | None = None) -> Fea
     classes : RecordClasses, optional
         Of the set; default its states, the healthy ones as one.
     """
+    found = _arrays(table)
+    found.labels[CLASS] = (classes or record_classes(found.labels)).of(found.labels["state"])
+    return found
+
+
+def _arrays(table: pa.Table) -> FeatureMatrix:
+    """Return a classifier table as arrays, without classes."""
     names = indicator_names(table)
     columns = [table.column(name).to_numpy(zero_copy_only=False).astype(np.float64) for name in names]
     labels = {name: np.asarray(table.column(name).to_pylist()) for name in LABEL_NAMES}
-    labels[CLASS] = (classes or record_classes(labels)).of(labels["state"])
     return FeatureMatrix(np.stack(columns, axis=1), names, labels)
 
 

@@ -26,7 +26,7 @@ class FeatureMatrix:
     names : tuple of str
         Column names, `<indicator>__<channel>`.
     labels : dict of str to (records,)
-        Label columns, and `class`: what classifiers tell apart.
+        Label columns, and `class`: what classifiers tell apart; of lives `age_h` and `rul_h` in its place.
     label_roles : mapping of str to Role
         Of labels, as the set says them; others are conditions.
     """

@@ -31,11 +31,11 @@ def lives_of(dataset: Dataset, table: RecordTable) -> Lives:
 
 
 def of_records(dataset: Dataset, record_ids: Sequence[int]) -> list[dict[str, float | None]]:
-    """Return age and remaining life of records; None where a gearbox was taken out."""
+    """Return age and remaining life of records; None where a gearbox was taken out, or a benchmark does not tell."""
     rows = sorted(dataset.life("inspections").to_pylist(), key=lambda row: row["record_id"])
     first = np.array([row["record_id"] for row in rows])  # of an inspection's records
     places = np.searchsorted(first, np.asarray(record_ids), side="right") - 1
-    return [{name: rows[place][name] for name, _ in LIFE_COLUMNS} for place in places.tolist()]
+    return [{name: rows[place].get(name) for name, _ in LIFE_COLUMNS} for place in places.tolist()]
 
 
 def figure_of(dataset: Dataset, table: RecordTable) -> Callable[[int], dict[str, str]] | None:

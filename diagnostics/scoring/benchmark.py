@@ -80,7 +80,7 @@ def is_benchmark(path: Path) -> bool:
     return (path / FACTS).is_file()
 
 
-def open_benchmark(path: Path) -> Benchmark:
+def open_benchmark(path: Path | str) -> Benchmark:
     """Return a benchmark.
 
     Raises
@@ -90,6 +90,7 @@ def open_benchmark(path: Path) -> Benchmark:
     DatasetError
         If its parts are not those that its digest is of, or of several versions of the simulation.
     """
+    path = Path(path)
     if not is_benchmark(path):
         raise UsageError(f"{path}: holds no {FACTS}; allowed: a folder that `siggen-diagnostics bench make` wrote")
     facts = _json(path / FACTS)

@@ -32,6 +32,11 @@ def inspections(dataset: Dataset, stage: Stage) -> Inspections:
 
 
 def _check_failed(dataset: Dataset) -> None:
+    if not any(name.startswith("life/units/") for name in dataset.inventory.files):
+        raise DatasetError(
+            f"{dataset.path}: does not tell when its gearboxes fail, as a test part of a benchmark; allowed: the part "
+            "to learn from, or any other set of lives"
+        )
     events = dataset.life("units").column("event").to_pylist()
     if (failed := events.count("failed")) < FEWEST_FAILED:
         raise DatasetError(
@@ -46,7 +51,8 @@ def inspections_of(dataset: Dataset, table: RecordTable) -> Inspections:
     Raises
     ------
     DatasetError
-        If fewer than four gearboxes failed: nothing could be judged on gearboxes that were not trained on.
+        If fewer than four gearboxes failed: nothing could be judged on gearboxes that were not trained on. If the set
+        does not tell.
     """
     _check_failed(dataset)
     found, keys = blind_inspections(dataset, table), _in_order(dataset, table)

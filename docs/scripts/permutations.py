@@ -28,9 +28,10 @@ from diagnostics.audit.separability_findings import separability_findings
 from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
 from diagnostics.base.single_thread import single_thread
 from diagnostics.statistics.scores import clopper_pearson
+from siggen.keys.column import Role
 
-DAMAGE = ("state", "fault", "severity", "damage", "faulty", "mesh_stiffness", "land", "sink", "snr", "contact_loss")
-"""Beginnings of the names of labels that follow from the state."""
+OF_STATE = (Role.TARGET, Role.CONSEQUENCE)
+"""Roles of the labels that follow from the state."""
 
 LEVEL = 0.05
 MOST_TRAP_TURNS = 200
@@ -61,7 +62,7 @@ def with_permuted_states(found: MeasuredSet, turn: int) -> MeasuredSet:
     for owner in np.unique(specimen):
         rows = np.flatnonzero(specimen == owner)
         place[rows] = rng.permutation(rows)
-    moved = {name: values[place] for name, values in found.labels.items() if name.startswith(DAMAGE)}
+    moved = {name: values[place] for name, values in found.labels.items() if found.roles.get(name) in OF_STATE}
     return replace(found, labels={**found.labels, **moved})
 
 

@@ -1,51 +1,37 @@
-"""What the audit says of clean sets: `python docs/scripts/shams.py SET ...`.
+"""What audits say of clean sets: `python docs/scripts/shams.py SET_audit ...`, of folders that `audit` wrote.
 
-Prints Markdown, a row for each set: the traps that are found, and, where the set has shams, the largest AUC of all
-attackers on them, alone and beside a healthy record, with what the largest of them stays below in 95 % of 499
-permutations, and the p-value. The networks count, though they are not permuted.
+Prints Markdown, a row for each set: the traps that were found, and the largest AUC of all attackers on its sham, alone
+and beside a healthy record, with what the largest stays below in 95 % of 499 permutations. Networks count, though they
+are not permuted.
 """
 
 from __future__ import annotations
 
+import json
 import sys
-import time
+from pathlib import Path
+from typing import Any
 
-import siggen
-from diagnostics.audit.audit_report import sham_sides
-from diagnostics.audit.measured_set import measured_set
-from diagnostics.audit.separability_findings import separability_findings
-from diagnostics.audit.sham import ShamFound, sham_traps, shams_found
-from diagnostics.audit.signal_attackers import signal_attackers
-from diagnostics.base.single_thread import single_thread
+SIDES = ("alone", "beside a healthy record")
 
 
-def cell(found: ShamFound) -> str:
+def cell(found: dict[str, Any]) -> str:
     """Return what one sham gave."""
-    law = found.chance
-    beside = f", chance {law.auc:.2f}, p {law.p_value:.2f}" if law else ""
-    return f"{found.state}, {found.side}: {found.auc.value:.2f} by {found.attacker}{beside}"
+    chance = found["chance"]
+    beside = f" (chance {chance['auc']:.2f}, p {chance['p_value']:.2f})" if chance else ""
+    return f"{found['auc']['value']:.2f}{beside}"
 
 
-def row(path: str) -> str:
+def row(folder: Path) -> str:
     """Return the row of a set."""
-    dataset = siggen.open(path)
-    measured = measured_set(dataset)
-    shams = shams_found(measured, sham_sides(measured, signal_attackers(measured, 0, lambda: None)), 0)
-    traps = [finding.trap for finding in [*separability_findings(measured), *sham_traps(shams)]]
-    gearboxes = len(set(measured.labels["specimen_id"].tolist()))
-    said = "; ".join(map(cell, shams)) or "no sham"
-    return f"| {dataset.path.name} | {gearboxes} | {len(measured.healthy)} | {', '.join(traps) or 'none'} | {said} |"
-
-
-@single_thread
-def main(paths: list[str]) -> None:
-    """Print the table."""
-    begin = time.process_time()
-    print("| set | gearboxes | records | traps | largest AUC on shams |\n|---|---|---|---|---|")
-    for path in paths:
-        print(row(path), flush=True)
-    print(f"\n{time.process_time() - begin:.0f} s of CPU")
+    audit = json.loads((folder / "audit.json").read_text(encoding="utf-8"))
+    traps = ", ".join(finding["trap"] for finding in audit["findings"]) or "none"
+    cells = [", ".join(cell(one) for one in audit["shams"] if one["side"] == side) or "-" for side in SIDES]
+    return f"| `{audit['set']}` | {audit['specimens']} | {audit['records']} | {traps} | {' | '.join(cells)} |"
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    print(f"| set | gearboxes | records | traps | {' | '.join(f'sham, {side}' for side in SIDES)} |")
+    print("|---" * 6 + "|")
+    for name in sys.argv[1:]:
+        print(row(Path(name)))
