@@ -18,9 +18,10 @@ import numpy as np
 from scipy.stats import kendalltau
 
 from diagnostics.base.progress import terminal_stage
-from diagnostics.bench.baselines import BESIDE, CHANCE, STACK, STACKED, write_baselines
+from diagnostics.bench.baselines import BESIDE, CHANCE, STACK, STACKED
 from diagnostics.bench.conditions import CONDITIONS, Tier
 from diagnostics.bench.making import Wanted, make_benchmark
+from diagnostics.bench.questions import write_baselines
 from diagnostics.scoring.benchmark import BASELINES, Benchmark
 from diagnostics.scoring.benchmark_scores import judged_parts, part_columns
 from diagnostics.scoring.detect import DETECT, EVERY
