@@ -38,7 +38,14 @@ def check(
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
-    from diagnostics.machine.check import CANNOT_TELL, CHANGED, add_checks, check_recording, rate_sentence
+    from diagnostics.machine.check import (
+        CANNOT_TELL,
+        CHANGED,
+        add_checks,
+        check_recording,
+        load_sentence,
+        rate_sentence,
+    )
     from diagnostics.machine.machine import load_machine
     from diagnostics.machine.machine_page import write_machine_page
     from diagnostics.recordings.measured_recording import read_recording
@@ -46,6 +53,7 @@ def check(
 
     require_packages("the page of a machine", "matplotlib")
     known = load_machine(machine)
+    load_note = load_sentence(known, load)
     sources = [source for said in new for source in file_rows(said)]
     found, unread = [], {}
     with terminal_stage("recordings", len(sources)) as advance:
@@ -71,6 +79,8 @@ def check(
     used = [one.used for one in found if one.score is not None]
     if used:
         typer.echo(rate_sentence(min(used), known.false_alarms), err=True)
+    if load_note:
+        typer.echo(load_note, err=True)
     typer.echo(str(write_machine_page(known, machine, found)), err=as_json)
     if any(one.verdict == CHANGED for one in found):
         raise typer.Exit(EXIT_MISMATCH)

@@ -27,6 +27,10 @@ from siggen.errors import UsageError
 
 UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "other load or speed", "cannot tell"
 LISTED = 8
+ALIKE_DB, DOUBTFUL_DB = 10.0, 15.0
+"""Spread of channels that are off alike, and from where on that is said beside a change (assumed)."""
+G_DB, G_NEAR_DB = 19.8, 2.0
+"""20 log10(9.81), and how far a recording without other changes may lie from it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,13 +146,29 @@ def check_recording(machine: Machine, recording: MeasuredRecording, name: str, l
         score = change_score(healthy, logs, machine.false_alarms, beside.conditions)
     except UsageError as error:
         return Check(name, CANNOT_TELL, str(error), pulses.speed_hz)
-    if (level := _level_db(machine, score.mean, logs)) is not None:
-        reason = f"all channels are {level:+.0f} dB off; is the unit, sensitivity or gain that of the references?"
-        return Check(name, CANNOT_TELL, reason, pulses.speed_hz)
+    level = _level_db(machine, score.mean, logs)
+    if abs(level) > MOST_DB:
+        return Check(name, CANNOT_TELL, _other_level(level), pulses.speed_hz)
     moved = _moved(machine, logs, score)
     verdict = CHANGED if score.changed else UNCHANGED
     used = int(np.count_nonzero(beside.used))
-    return Check(name, verdict, _reason(score, moved), pulses.speed_hz, score, moved, used)
+    doubt = f"; {_other_level(level)}" if score.changed and abs(level) > DOUBTFUL_DB else ""
+    return Check(name, verdict, _reason(score, moved) + doubt, pulses.speed_hz, score, moved, used)
+
+
+def load_sentence(machine: Machine, load: float | None) -> str:
+    """Return what is missing where the references have loads and the recordings none.
+
+    Raises
+    ------
+    UsageError
+        If a load is given and nothing can be compared with it.
+    """
+    known = bool(np.isfinite(machine.load).all()) and not machine.load_from_slip
+    if load is not None and not known:
+        why = "slip tells the loads" if machine.load_from_slip else "its references have none"
+        raise UsageError(f"--load: received {load:g}, but {why}; leave it out, or give loads to `baseline`")
+    return "" if load is not None or not known else "Loads are known of the references: give --load as well."
 
 
 def rate_sentence(references: int, wanted: float) -> str:
@@ -189,14 +209,18 @@ def _conditions(machine: Machine, speed_hz: float, load: float | None) -> str:
     )
 
 
-def _level_db(machine: Machine, mean: np.ndarray, logs: np.ndarray) -> float | None:
-    """Return by how much all channels are off in level [dB] where that is more than damage does."""
+def _level_db(machine: Machine, mean: np.ndarray, logs: np.ndarray) -> float:
+    """Return by how much all channels are off in level alike [dB], of the nearest one; 0 where they differ."""
     levels = [k for k, name in enumerate(machine.names) if name.startswith("rms__")]
-    if not levels:
-        return None
     off = 20.0 / np.log(10.0) * (logs[levels] - mean[levels])
-    alike = np.isfinite(off).all() and np.ptp(off) < 10.0
-    return float(off.mean()) if alike and np.abs(off).min() > MOST_DB else None
+    if not levels or not np.isfinite(off).all() or np.ptp(off) >= ALIKE_DB:
+        return 0.0
+    return float(off[np.abs(off).argmin()])
+
+
+def _other_level(level_db: float) -> str:
+    unit = " (g and m/s2 lie 20 dB apart)" if abs(abs(level_db) - G_DB) < G_NEAR_DB else ""
+    return f"all channels are {level_db:+.0f} dB off; is the unit, sensitivity or gain that of the references{unit}?"
 
 
 def _moved(machine: Machine, logs: np.ndarray, score: ChangeScore) -> tuple[Moved, ...]:

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from diagnostics.cli.app import app
 from diagnostics.machine.check import past_checks
-from siggen.errors import SiggenError
+from siggen.errors import SiggenError, UsageError
 
 FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0
 
@@ -162,3 +162,21 @@ def test_speeds_that_do_not_differ_tell_no_load(tmp_path: Path) -> None:
     facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,35", "--load", "slip", "--out", tmp_path / "rig")
     with pytest.raises(SiggenError, match="--load slip: speeds of the references differ by 14 %"):
         run("baseline", *files, *facts)
+
+
+def test_a_recording_in_g_is_called_changed_with_a_word_about_its_unit(machine: Path, tmp_path: Path) -> None:
+    code, said = run("check", machine, write_recording(tmp_path / "in_g.npz", seed=52, gain=1.0 / 9.81), "--load", "40")
+    assert code == 4
+    assert "all channels are -20 dB off" in said
+    assert "(g and m/s2 lie 20 dB apart)" in said
+
+
+def test_a_load_is_asked_for_where_references_have_one_and_refused_where_they_have_none(
+    machine: Path, tmp_path: Path
+) -> None:
+    new = write_recording(tmp_path / "new.npz", seed=53)
+    assert "give --load as well" in run("check", machine, new)[1]
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=60 + k) for k in range(3)]
+    run("baseline", *files, "--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
+    with pytest.raises(UsageError, match="--load: received 40, but its references have none"):
+        run("check", tmp_path / "rig", new, "--load", "40")
