@@ -17,6 +17,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -210,23 +211,23 @@ def verdict(mutant: Mutant, copy: Path) -> str:
 
 
 def main() -> int:
-    """Print a line per mutant and the number of survivors; return 0."""
+    """Print a line per mutant and how many of them nobody found; return 0."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description=__doc__)
     parser.add_argument("--count", type=int, default=100, help="mutants that are drawn")
     parser.add_argument("--seed", type=int, default=1, help="of the draw")
     parser.add_argument("--only", type=int, nargs="*", help="numbers of mutants to try, of those that are drawn")
     arguments = parser.parse_args()
-    survivors, tried = 0, 0
+    found: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         copy = copied_tree(Path(folder))
         for number, mutant in enumerate(drawn(arguments.count, arguments.seed)):
             if arguments.only is not None and number not in arguments.only:
                 continue
-            said, tried = verdict(mutant, copy), tried + 1
-            survivors += said == SURVIVES
+            said = verdict(mutant, copy)
+            found[said] += 1
             what = f"{mutant.file}:{mutant.line}: {mutant.before} -> {mutant.after}"
             print(f"{number:3d} {said:8} {what}", flush=True)
-    print(f"{survivors} of {tried} survive")
+    print(f"{found[SURVIVES]} of {found.total()} survive, {found[HANGS]} hang or were killed: look at those too")
     return 0
 
 
