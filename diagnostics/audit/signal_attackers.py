@@ -1,8 +1,8 @@
 """Attackers that look at averaged waveforms: each alone, and as differences from the gearbox's own healthy record.
 
 All of them start from the lines of the pinion's averaged revolution in the one table of the set, without shaft and mesh
-orders. Nothing of a record's level is used alone, but by the network, which is that of `report`; with a reference the
-change is measured against the reference's size.
+orders; alone behind the inverse of their path (`innovations`). Nothing of a record's level is used alone, but by the
+network, which is that of `report`; with a reference the change is measured against the reference's size.
 
 The attacker that learns its own features: the circular network of `report`, on the averages of the audit.
 
@@ -29,8 +29,10 @@ import numpy as np
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.column_attackers import all_columns, best_column
 from diagnostics.audit.held_out import Attacker, Trial, Verdicts
+from diagnostics.audit.innovations import innovations
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.audit.residual_lines import Bank, band_bank, kurtogram_maximum, line_array, residual_lines, whitened
+from diagnostics.audit.tooth_attacker import tooth_attacker
 from diagnostics.base.extras import missing_packages
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.splits import SpecimenSplit
@@ -182,6 +184,8 @@ def attackers_on(
         As of `signal_attackers`.
     """
     suffix = REFERENCED if reference is not None else ""
+    flat = innovations(residual, measured.labels["teeth_pinion"])
+    residual = flat if reference is None else residual  # a change is measured against the size of the reference
     bank, highest = band_bank(residual, reference), kurtogram_maximum(residual)
     values, names = over_channels(bank)
     advance()
@@ -190,12 +194,13 @@ def attackers_on(
     advance()
     places = reference_records(measured) if reference is not None else None
     network = network_attacker(NETWORK + suffix, measured, places, seed)
+    teeth = tooth_attacker(f"teeth{suffix}", measured, flat)
     return [
         best_column(f"best band{suffix}", values, names),
         all_columns(f"all bands{suffix}", values),
         best_column(f"kurtogram{suffix}", _mean(highest)[:, None], ("",)),
         all_columns(f"random convolutions{suffix}", features),
-        *([network] if network else []),
+        *(attacker for attacker in (teeth, network) if attacker),
     ]
 
 
