@@ -83,7 +83,7 @@ def _candidates(record: Recording) -> dict[str, Candidate]:
         "resampling to angle": lambda: resample_to_angle(signal, FS_HZ, grid),
         "averages and indicators of both shafts": lambda: [_shaft_values(steps, s, settings) for s in shafts],
         "log spectrum over orders": lambda: shaft_log_spectrum(
-            hann_amplitude(steps), grid.revolutions, TEETH[0], highest
+            hann_amplitude(steps.reshape(grid.revolutions, -1)), grid.revolutions, TEETH[0], highest
         ),
         "spectral kurtosis": lambda: spectral_kurtosis(signal, settings.frame_samples),
     }

@@ -22,6 +22,7 @@ import numpy as np
 
 from diagnostics.signal.spectrum import power
 from diagnostics.signal.synchronous_average import asynchronous_part, band_signal
+from diagnostics.signal.turn_spectrum import TurnLines, turn_lines
 
 NOISE_BANDS = 10
 LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE = 100.0, 0.4
@@ -64,33 +65,27 @@ CYCLIC = (
 BACKGROUND_LEVELS = (*SPECTRAL, *CYCLIC, *NOISE_LEVELS)
 
 
-def noise_levels(
-    rest: np.ndarray, spectrum: np.ndarray, revolutions: int, bin_hz: float, fs_hz: float
-) -> dict[str, float]:
+def noise_levels(rest: TurnLines, spectrum: np.ndarray, bin_hz: float, fs_hz: float) -> dict[str, float]:
     """Return the median power per Hz in bands of equal ratio, in dB; NaN where the record does not reach.
 
     Parameters
     ----------
-    rest : (n,) float64
-        What the averages of both shafts leave, in equal steps of angle.
+    rest : TurnLines
+        What the averages of both shafts leave, in turns of the pinion.
     spectrum : (n // 2 + 1,) complex128
-        Its transform.
-    revolutions : int
-        Of the pinion.
+        Its spectrum.
     bin_hz : float
         Mean frequency step of its spectrum [Hz].
     fs_hz : float
         Sampling frequency of the record [Hz], which the bands reach up to.
     """
-    from scipy import fft
-
     edges = (np.geomspace(LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE * fs_hz, NOISE_BANDS + 1) / bin_hz).astype(int).tolist()
     every = dict(zip(NOISE_LEVELS, pairwise(edges), strict=True))
     bands = {name: (low, high) for name, (low, high) in every.items() if low < high <= spectrum.size}
-    gate = quiet_gate(spectrum, list(bands.values()), revolutions, rest.size // revolutions)
-    gated = (rest.reshape(revolutions, -1) * gate).ravel()
-    density = power(fft.rfft(gated)[: edges[-1]])
-    density /= rest.size**2 * float(np.square(gate).mean()) * bin_hz
+    steps = len(rest.lines)
+    gate = quiet_gate(spectrum, list(bands.values()), rest.turns, steps)
+    density = power(rest.spectrum(gate)[: edges[-1]])
+    density /= (rest.turns * steps) ** 2 * float(np.square(gate).mean()) * bin_hz
     found = dict.fromkeys(NOISE_LEVELS, math.nan)
     for name, (low, high) in bands.items():
         level = float(np.median(density[low:high]))
@@ -206,10 +201,8 @@ def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> 
 
 def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
     """Return what returns every turn, how the rest is modulated, and its level by band; as of `background_levels`."""
-    from scipy import fft
-
-    rest = asynchronous_part(turns, teeth)
-    spectrum = fft.rfft(rest)
+    rest = turn_lines(asynchronous_part(turns, teeth).reshape(turns.shape))
+    spectrum = rest.spectrum()
     bin_hz = shaft_hz / turns.shape[0]
     found: dict[str, float] = {}
     for name, (low, high) in ENVELOPES.items():
@@ -218,7 +211,7 @@ def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs
     energy = _band_energy(spectrum, *DEPTH_BAND_HZ, bin_hz)
     depths = [_depth(energy, turns.shape[0] * order) for order in (1.0, teeth[0] / teeth[1])]
     found["shaft_depth"] = max(depths) if all(map(math.isfinite, depths)) else math.nan
-    return found | _repeated(turns) | noise_levels(rest, spectrum, turns.shape[0], bin_hz, fs_hz)
+    return found | _repeated(turns) | noise_levels(rest, spectrum, bin_hz, fs_hz)
 
 
 def _band_energy(spectrum: np.ndarray, low_hz: float, high_hz: float, bin_hz: float) -> np.ndarray:

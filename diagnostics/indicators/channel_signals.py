@@ -103,7 +103,8 @@ class ChannelSignals:
     @cached_property
     def amplitude(self) -> np.ndarray:
         """(steps // 2 + 1,) float64: Hann amplitudes over whole pinion revolutions."""
-        return hann_amplitude(self.steps)
+        turns = 1 if self.grid is None else self.grid.revolutions
+        return hann_amplitude(self.steps.reshape(turns, -1))
 
     @cached_property
     def spectral_kurtosis(self) -> np.ndarray:

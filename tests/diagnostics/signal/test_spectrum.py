@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diagnostics.signal.spectrum import hann_amplitude, line_amplitudes, resolved_lines, revolutions_needed
+from diagnostics.signal.turn_spectrum import turn_lines
 
 
 @given(order=st.integers(1, 30), amplitude=st.floats(1e-3, 1e3), phase=st.floats(0, 6.28))
@@ -49,3 +50,11 @@ def test_hann_amplitudes_are_those_of_the_weighted_signal(samples: int) -> None:
     weights = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(samples) / samples)
     direct = 4.0 / samples * np.abs(np.fft.rfft(signal * weights))
     np.testing.assert_allclose(hann_amplitude(signal), direct, atol=1e-13)
+
+
+@pytest.mark.parametrize(("turns", "steps"), [(1, 8), (2, 7), (5, 6), (6, 5), (7, 9), (31, 96)])
+def test_turns_have_the_spectrum_of_the_whole_record_with_and_without_a_gate(turns: int, steps: int) -> None:
+    record, gate = np.random.default_rng(7).standard_normal((turns, steps)), np.hanning(steps)
+    found = turn_lines(record)
+    np.testing.assert_allclose(found.spectrum(), np.fft.rfft(record.ravel()), atol=1e-12)
+    np.testing.assert_allclose(found.spectrum(gate), np.fft.rfft((record * gate).ravel()), atol=1e-12)
