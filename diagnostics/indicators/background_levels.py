@@ -150,15 +150,15 @@ def spectral_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int]) 
     floors = {name: _decibels(_floor(windows, hz, *band), mesh) for name, band in FLOORS.items()}
     lines = line_orders(density, hz, width, teeth[0])
     gear_order = teeth[0] / teeth[1]
-    foreign = [order for order in lines if not any(_is_multiple(order, step) for step in (1.0, gear_order))]
+    foreign = np.count_nonzero(~(_is_multiple(lines, 1.0) | _is_multiple(lines, gear_order)))
     span_khz = 1e-3 * (min(HIGHEST_HZ, float(hz[-1])) - 5.5 * teeth[0] * shaft_hz)
     return {
         **{f"shaft_{k}x_db": _decibels(line(float(k)), mesh) for k in (1, 2, 3, 4)},
         **floors,
         **{name: _tonality(windows, hz, *band) for name, band in TONALITIES.items()},
         "floor_slope_db": floors["floor_5_10khz_db"] - floors["floor_40_160hz_db"],
-        "lines_above_mesh5_per_khz": len(lines) / span_khz if span_khz > 0.0 else math.nan,
-        "foreign_line_share": len(foreign) / len(lines) if lines else math.nan,
+        "lines_above_mesh5_per_khz": lines.size / span_khz if span_khz > 0.0 else math.nan,
+        "foreign_line_share": foreign / lines.size if lines.size else math.nan,
         "strongest_mesh_rms_m_s2": math.sqrt(mesh),
     }
 
@@ -183,20 +183,20 @@ def _hann(samples: int) -> np.ndarray:
     return np.hanning(samples)
 
 
-def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> list[float]:
-    """Return the orders of lines more than 10 dB over the floor around them, above mesh 5 and below 10 kHz."""
+def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> np.ndarray:
+    """Return the orders of lines more than 10 dB over the floor around them, above mesh 5 and below 10 kHz (lines,)."""
     from scipy.ndimage import maximum_filter1d
 
     first = round(5.5 * teeth * width)
     last = min(int(np.searchsorted(hz, HIGHEST_HZ)), density.size - LINE_REACH)
     peaks = first + np.flatnonzero((density == maximum_filter1d(density, 9))[first:last])
     if not peaks.size:
-        return []
+        return np.empty(0)
     around = np.lib.stride_tricks.sliding_window_view(density, 2 * LINE_REACH)[peaks - LINE_REACH]
     most = density[peaks] * (EXPONENTIAL_MEDIAN / LINE_OVER_FLOOR)
     # the median lies below a number only if half of all values do: few peaks are left to take it of
     low = np.count_nonzero(around < most[:, None], axis=1) >= LINE_REACH
-    return [float(k / width) for k in peaks[low][np.median(around[low], axis=1) < most[low]].tolist()]
+    return np.asarray(peaks[low][np.median(around[low], axis=1) < most[low]] / width)
 
 
 def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
@@ -279,8 +279,8 @@ def _tonality(windows: np.ndarray, hz: np.ndarray, low: float, high: float) -> f
     return _decibels(float(np.mean(inside.mean(axis=1) / np.median(inside, axis=1))), 1.0)
 
 
-def _is_multiple(order: float, step: float) -> bool:
-    return abs(order / step - round(order / step)) * step < NEAR_ORDER
+def _is_multiple(orders: np.ndarray, step: float) -> np.ndarray:
+    return np.asarray(np.abs(orders / step - np.round(orders / step)) * step < NEAR_ORDER)
 
 
 def _decibels(value: float, reference: float) -> float:
