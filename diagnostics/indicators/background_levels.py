@@ -103,9 +103,10 @@ def quiet_gate(spectrum: np.ndarray, bands: list[tuple[int, int]], revolutions: 
         if high - low < FEWEST_ORDERS * revolutions:
             continue
         energy = power(band_signal(spectrum, low, high))
-        turn = np.arange(energy.size) * (revolutions / energy.size)
-        sector = ((turn - np.floor(turn)) * SECTORS).astype(int)
-        by_angle = np.bincount(sector, energy, SECTORS) / np.bincount(sector, minlength=SECTORS)
+        # the first sample of every sector of every turn; each has at least one
+        first = -(-np.arange(SECTORS * revolutions) * energy.size // (SECTORS * revolutions))
+        total = np.add.reduceat(energy, first).reshape(revolutions, SECTORS).sum(axis=0)
+        by_angle = total / np.diff(first, append=energy.size).reshape(revolutions, SECTORS).sum(axis=0)
         profile += by_angle / (by_angle.mean() or 1.0)
     width = round(OPEN_SHARE * SECTORS)
     running = np.convolve(np.r_[profile, profile[: width - 1]], np.ones(width), "valid")

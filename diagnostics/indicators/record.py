@@ -248,10 +248,11 @@ def _float64(values: np.ndarray) -> np.ndarray:
 
 def channel_conditions(signal: np.ndarray) -> dict[str, float]:
     """Return checksum of the samples, their bytes, and number of samples before the last ones that repeat."""
-    last = np.flatnonzero(signal != signal[-1]) if signal.size else np.empty(0)
+    differ = signal[::-1] != signal[-1] if signal.size else np.zeros(1, dtype=np.bool_)
+    repeated = int(differ.argmax())  # samples at the end; 0 also where all are equal
     return {
-        "checksum": zlib.crc32(np.ascontiguousarray(signal).tobytes()),
-        "samples": float(last[-1] + 2 if last.size else 0),
+        "checksum": zlib.crc32(np.ascontiguousarray(signal).data),
+        "samples": float(signal.size - repeated + 1 if differ[repeated] else 0),
         **sample_bytes(signal),
     }
 

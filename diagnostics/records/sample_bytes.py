@@ -30,13 +30,17 @@ def sample_bytes(signal: np.ndarray) -> dict[str, float]:
     stored = np.ascontiguousarray(signal, dtype="<f4")
     if stored.size < 2:
         return dict.fromkeys(BYTES, math.nan)
-    changes = np.flatnonzero(stored[1:] != stored[:-1])
-    runs = np.diff(np.concatenate([[-1], changes, [stored.size - 1]]))
     return {
         "converter_step_log2": _step_log2(stored),
         "odd_share": float(np.mean(stored.view("<u4") & 1)),
-        "longest_run": float(runs.max()),
+        "longest_run": _longest_run(stored),
     }
+
+
+def _longest_run(stored: np.ndarray) -> float:
+    held = np.flatnonzero(stored[1:] == stored[:-1])
+    ends = np.flatnonzero(np.diff(held, append=stored.size + 1) > 1)
+    return 1.0 + float(np.diff(ends, prepend=-1).max(initial=0))
 
 
 def _step_log2(stored: np.ndarray) -> float:
