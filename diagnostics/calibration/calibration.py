@@ -238,7 +238,7 @@ def _channel(
         seen.name,
         _levels(seen.records, groups),
         seen.lines,
-        noise_fit(seen.records, blocks.blocks, seen.name, drive.gear_order),
+        noise_fit(seen.records, blocks.blocks, seen.name, drive.teeth),
         _strongest((*own_lines(seen.records, drive), *seen.foreign.waves), MOST_LINES - len(seen.foreign.stage)),
         seen.foreign.stage,
         sensor_fit(blocks.blocks, seen.name),

@@ -99,14 +99,16 @@ class NoiseFit:
         return self.pinion_depth, self.gear_depth
 
 
-def noise_fit(records: Sequence[OrderRecord], blocks: Sequence[Block], channel: str, gear_order: float) -> NoiseFit:
+def noise_fit(
+    records: Sequence[OrderRecord], blocks: Sequence[Block], channel: str, teeth: tuple[int, int]
+) -> NoiseFit:
     """Return the noise of a channel from its spectra and recordings, one of each per block."""
     fs_hz = blocks[0].fs_hz
     knots = np.geomspace(LOWEST_HZ, 0.5 * fs_hz, int(KNOTS_PER_OCTAVE * math.log2(0.5 * fs_hz / LOWEST_HZ)))
     densities = np.array([_at_knots(record, knots) for record in records])
     levels = np.array([10.0 * math.log10(float(record.floor.sum())) for record in records])
     pairs = zip(blocks, records, strict=True)
-    cyclic = np.array([_modulation(block, record, channel, gear_order) for block, record in pairs])
+    cyclic = np.array([_modulation(block, record, channel, teeth) for block, record in pairs])
     spread = 1.65 * float(levels.std(ddof=1)) * math.sqrt(1.0 + 1.0 / levels.size) if levels.size > 1 else 0.0
     least = LEAST_SPREAD_DB if levels.size >= FEWEST_RECORDINGS else UNKNOWN_SPREAD_DB
     return NoiseFit(
@@ -123,7 +125,7 @@ def _at_knots(record: OrderRecord, knots: np.ndarray) -> np.ndarray:
     return np.asarray(np.exp(np.interp(np.log(knots), np.log(hz), np.log(record.density[1:]))))
 
 
-def _modulation(block: Block, record: OrderRecord, channel: str, gear_order: float) -> tuple[float, float, float]:
+def _modulation(block: Block, record: OrderRecord, channel: str, teeth: tuple[int, int]) -> tuple[float, float, float]:
     """Return depth of pinion and gear, and s of the random level, of what averages and lines leave.
 
     Lines a shaft order apart beat, which would pass for modulated noise.
@@ -131,7 +133,7 @@ def _modulation(block: Block, record: OrderRecord, channel: str, gear_order: flo
     from scipy import fft
 
     turns = turns_of(block.channels[channel], block.fs_hz, block.pulses_s)
-    rest = asynchronous_part(turns - turns.mean(), gear_order)
+    rest = asynchronous_part(turns - turns.mean(), teeth)
     bin_hz = block.speed_hz / turns.shape[0]
     low, high = (int(share * block.fs_hz / bin_hz) for share in MODULATION_BAND)
     spectrum = fft.rfft(rest)[: record.power.size]
@@ -141,7 +143,8 @@ def _modulation(block: Block, record: OrderRecord, channel: str, gear_order: flo
         return 0.0, 0.0, 0.0
     error = np.median([_depth(power, turns.shape[0] * order) for order in NEIGHBOURS])
     pinion, gear = (
-        math.sqrt(max(_depth(power, turns.shape[0] * order) ** 2 - error**2, 0.0)) for order in (1.0, gear_order)
+        math.sqrt(max(_depth(power, turns.shape[0] * order) ** 2 - error**2, 0.0))
+        for order in (1.0, teeth[0] / teeth[1])
     )
     kurtosis = 1.5 * float(np.square(power).mean() / power.mean() ** 2)
     of_shafts = 3.0 * (1.0 + SHAFT_LINES_POWER * (pinion**2 + gear**2))

@@ -9,6 +9,7 @@ from importlib.metadata import version
 
 import typer
 
+from diagnostics.base.kept_memory import keep_memory
 from diagnostics.cli.audit import audit
 from diagnostics.cli.baseline import baseline
 from diagnostics.cli.bench import bench
@@ -61,6 +62,7 @@ def _options(
 
 def main() -> None:
     """Run the command line; known errors become a message and their exit code (0, 1, 2, 4 or 130), no traceback."""
+    keep_memory()
     try:
         app()
     except SiggenError as error:

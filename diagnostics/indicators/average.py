@@ -9,6 +9,9 @@ import numpy as np
 from diagnostics.indicators.indicator import BOOK, CONDITION_METRICS, OF_CHANNEL, STILL, indicator
 from diagnostics.indicators.level import UNDEFINED_BELOW, crest_factor, kurtosis, moment_ratio, rms
 
+AT_ONCE = 16
+"""Revolutions whose differences from the average stay in the second cache."""
+
 NO_DIFFERENCE = "the difference signal is below 1e-9 of the average (perfect gears)"
 
 
@@ -96,7 +99,8 @@ def noise_share(revolutions: np.ndarray, average: np.ndarray) -> float:
     if count < 2:
         return math.nan
     variance = float(average.var())
-    left = float(np.square(revolutions - average).sum()) / (revolutions.size - average.size) / count
+    squares = (float(np.square(some - average).sum()) for some in np.array_split(revolutions, -(-count // AT_ONCE)))
+    left = sum(squares) / (revolutions.size - average.size) / count
     return min(left / variance, 1.0) if variance > 0.0 else math.nan
 
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from diagnostics.signal.spectrum import power
 from diagnostics.signal.synchronous_average import asynchronous_part, band_signal
+from diagnostics.signal.turn_spectrum import TurnLines, turn_lines
 
 NOISE_BANDS = 10
 LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE = 100.0, 0.4
@@ -35,6 +36,9 @@ FEWEST_ORDERS = SECTORS
 NOISE_LEVELS = tuple(f"noise_band{k}_db" for k in range(NOISE_BANDS))
 
 WINDOW_TURNS, AVERAGED_TURNS, FEWEST_TURNS = 40, 44, 16
+WINDOWS_AT_ONCE = 4
+"""Transforms side by side take half the time; more of them hold more memory, not less time."""
+
 MESH_LINES = 10
 EXPONENTIAL_MEDIAN = 0.693
 HIGHEST_HZ = 10_000.0
@@ -61,31 +65,27 @@ CYCLIC = (
 BACKGROUND_LEVELS = (*SPECTRAL, *CYCLIC, *NOISE_LEVELS)
 
 
-def noise_levels(
-    rest: np.ndarray, spectrum: np.ndarray, revolutions: int, bin_hz: float, fs_hz: float
-) -> dict[str, float]:
+def noise_levels(rest: TurnLines, spectrum: np.ndarray, bin_hz: float, fs_hz: float) -> dict[str, float]:
     """Return the median power per Hz in bands of equal ratio, in dB; NaN where the record does not reach.
 
     Parameters
     ----------
-    rest : (n,) float64
-        What the averages of both shafts leave, in equal steps of angle.
+    rest : TurnLines
+        What the averages of both shafts leave, in turns of the pinion.
     spectrum : (n // 2 + 1,) complex128
-        Its transform.
-    revolutions : int
-        Of the pinion.
+        Its spectrum.
     bin_hz : float
         Mean frequency step of its spectrum [Hz].
     fs_hz : float
         Sampling frequency of the record [Hz], which the bands reach up to.
     """
-    from scipy import fft
-
     edges = (np.geomspace(LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE * fs_hz, NOISE_BANDS + 1) / bin_hz).astype(int).tolist()
     every = dict(zip(NOISE_LEVELS, pairwise(edges), strict=True))
     bands = {name: (low, high) for name, (low, high) in every.items() if low < high <= spectrum.size}
-    gate = np.tile(quiet_gate(spectrum, list(bands.values()), revolutions, rest.size // revolutions), revolutions)
-    density = power(fft.rfft(rest * gate)[: edges[-1]]) / (rest.size**2 * float(np.square(gate).mean()) * bin_hz)
+    steps = len(rest.lines)
+    gate = quiet_gate(spectrum, list(bands.values()), rest.turns, steps)
+    density = power(rest.spectrum(gate)[: edges[-1]])
+    density /= (rest.turns * steps) ** 2 * float(np.square(gate).mean()) * bin_hz
     found = dict.fromkeys(NOISE_LEVELS, math.nan)
     for name, (low, high) in bands.items():
         level = float(np.median(density[low:high]))
@@ -103,9 +103,10 @@ def quiet_gate(spectrum: np.ndarray, bands: list[tuple[int, int]], revolutions: 
         if high - low < FEWEST_ORDERS * revolutions:
             continue
         energy = power(band_signal(spectrum, low, high))
-        turn = np.arange(energy.size) * (revolutions / energy.size)
-        sector = ((turn - np.floor(turn)) * SECTORS).astype(int)
-        by_angle = np.bincount(sector, energy, SECTORS) / np.bincount(sector, minlength=SECTORS)
+        # the first sample of every sector of every turn; each has at least one
+        first = -(-np.arange(SECTORS * revolutions) * energy.size // (SECTORS * revolutions))
+        total = np.add.reduceat(energy, first).reshape(revolutions, SECTORS).sum(axis=0)
+        by_angle = total / np.diff(first, append=energy.size).reshape(revolutions, SECTORS).sum(axis=0)
         profile += by_angle / (by_angle.mean() or 1.0)
     width = round(OPEN_SHARE * SECTORS)
     running = np.convolve(np.r_[profile, profile[: width - 1]], np.ones(width), "valid")
@@ -150,15 +151,15 @@ def spectral_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int]) 
     floors = {name: _decibels(_floor(windows, hz, *band), mesh) for name, band in FLOORS.items()}
     lines = line_orders(density, hz, width, teeth[0])
     gear_order = teeth[0] / teeth[1]
-    foreign = [order for order in lines if not any(_is_multiple(order, step) for step in (1.0, gear_order))]
+    foreign = np.count_nonzero(~(_is_multiple(lines, 1.0) | _is_multiple(lines, gear_order)))
     span_khz = 1e-3 * (min(HIGHEST_HZ, float(hz[-1])) - 5.5 * teeth[0] * shaft_hz)
     return {
         **{f"shaft_{k}x_db": _decibels(line(float(k)), mesh) for k in (1, 2, 3, 4)},
         **floors,
         **{name: _tonality(windows, hz, *band) for name, band in TONALITIES.items()},
         "floor_slope_db": floors["floor_5_10khz_db"] - floors["floor_40_160hz_db"],
-        "lines_above_mesh5_per_khz": len(lines) / span_khz if span_khz > 0.0 else math.nan,
-        "foreign_line_share": len(foreign) / len(lines) if lines else math.nan,
+        "lines_above_mesh5_per_khz": lines.size / span_khz if span_khz > 0.0 else math.nan,
+        "foreign_line_share": foreign / lines.size if lines.size else math.nan,
         "strongest_mesh_rms_m_s2": math.sqrt(mesh),
     }
 
@@ -169,11 +170,13 @@ def window_densities(turns: np.ndarray, width: int, shaft_hz: float) -> np.ndarr
 
     size = width * turns.shape[1]
     hann = _hann(size)
-    starts = range(0, turns.size - size + 1, size // 2)
-    flat = turns.ravel()
-    found = [power(fft.rfft(flat[start : start + size] * hann)) for start in starts]
-    scale = 2.0 / (float(np.square(hann).sum()) * turns.shape[1] * shaft_hz)
-    return np.asarray(np.asarray(found) * scale)
+    windows = np.lib.stride_tricks.sliding_window_view(turns.ravel(), size)[:: size // 2]
+    found = np.empty((len(windows), size // 2 + 1))
+    for first in range(0, len(windows), WINDOWS_AT_ONCE):
+        some = slice(first, first + WINDOWS_AT_ONCE)
+        found[some] = power(fft.rfft(windows[some] * hann, axis=1))
+    found *= 2.0 / (float(np.square(hann).sum()) * turns.shape[1] * shaft_hz)
+    return found
 
 
 @lru_cache(maxsize=4)
@@ -181,65 +184,66 @@ def _hann(samples: int) -> np.ndarray:
     return np.hanning(samples)
 
 
-def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> list[float]:
-    """Return the orders of lines more than 10 dB over the floor around them, above mesh 5 and below 10 kHz."""
+def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> np.ndarray:
+    """Return the orders of lines more than 10 dB over the floor around them, above mesh 5 and below 10 kHz (lines,)."""
     from scipy.ndimage import maximum_filter1d
 
     first = round(5.5 * teeth * width)
     last = min(int(np.searchsorted(hz, HIGHEST_HZ)), density.size - LINE_REACH)
     peaks = first + np.flatnonzero((density == maximum_filter1d(density, 9))[first:last])
     if not peaks.size:
-        return []
+        return np.empty(0)
     around = np.lib.stride_tricks.sliding_window_view(density, 2 * LINE_REACH)[peaks - LINE_REACH]
     most = density[peaks] * (EXPONENTIAL_MEDIAN / LINE_OVER_FLOOR)
     # the median lies below a number only if half of all values do: few peaks are left to take it of
     low = np.count_nonzero(around < most[:, None], axis=1) >= LINE_REACH
-    return [float(k / width) for k in peaks[low][np.median(around[low], axis=1) < most[low]].tolist()]
+    return np.asarray(peaks[low][np.median(around[low], axis=1) < most[low]] / width)
 
 
 def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
     """Return what returns every turn, how the rest is modulated, and its level by band; as of `background_levels`."""
-    from scipy import fft
-
-    gear_order = teeth[0] / teeth[1]
-    rest = asynchronous_part(turns, gear_order)
-    spectrum = fft.rfft(rest)
+    rest = turn_lines(asynchronous_part(turns, teeth).reshape(turns.shape))
+    spectrum = rest.spectrum()
     bin_hz = shaft_hz / turns.shape[0]
     found: dict[str, float] = {}
     for name, (low, high) in ENVELOPES.items():
-        wave = _band(spectrum, low, high, bin_hz)
-        found |= {f"noise_kurtosis_{name}": _kurtosis(wave), f"noise_envelope_cv_{name}": _variation(wave)}
-    depths = [_depth(_band(spectrum, *DEPTH_BAND_HZ, bin_hz), turns.shape[0] * order) for order in (1.0, gear_order)]
+        energy = _band_energy(spectrum, low, high, bin_hz)
+        found |= {f"noise_kurtosis_{name}": _kurtosis(energy), f"noise_envelope_cv_{name}": _variation(energy)}
+    energy = _band_energy(spectrum, *DEPTH_BAND_HZ, bin_hz)
+    depths = [_depth(energy, turns.shape[0] * order) for order in (1.0, teeth[0] / teeth[1])]
     found["shaft_depth"] = max(depths) if all(map(math.isfinite, depths)) else math.nan
-    return found | _repeated(turns) | noise_levels(rest, spectrum, turns.shape[0], bin_hz, fs_hz)
+    return found | _repeated(turns) | noise_levels(rest, spectrum, bin_hz, fs_hz)
 
 
-def _band(spectrum: np.ndarray, low_hz: float, high_hz: float, bin_hz: float) -> np.ndarray:
-    """Return the complex envelope of a band; empty where the record does not reach its upper end."""
+def _band_energy(spectrum: np.ndarray, low_hz: float, high_hz: float, bin_hz: float) -> np.ndarray:
+    """Return the squared envelope of a band; empty where the record does not reach its upper end."""
     if high_hz / bin_hz > spectrum.size:
-        return np.empty(0, np.complex128)
-    return band_signal(spectrum, math.ceil(low_hz / bin_hz), math.ceil(high_hz / bin_hz))
+        return np.empty(0)
+    return power(band_signal(spectrum, math.ceil(low_hz / bin_hz), math.ceil(high_hz / bin_hz)))
 
 
-def _kurtosis(wave: np.ndarray) -> float:
+def _kurtosis(energy: np.ndarray) -> float:
     """Return the kurtosis of the real band signal: 3/2 <|a|^4>/<|a|^2>^2, since its phase takes all values."""
-    energy = power(wave)
-    return float(1.5 * np.square(energy).mean() / energy.mean() ** 2) if wave.size and energy.any() else math.nan
+    return float(1.5 * np.square(energy).mean() / energy.mean() ** 2) if energy.any() else math.nan
 
 
-def _variation(wave: np.ndarray) -> float:
-    envelope = np.sqrt(power(wave))
-    return float(envelope.std() / envelope.mean()) if wave.size and envelope.any() else math.nan
+def _variation(energy: np.ndarray) -> float:
+    envelope = np.sqrt(energy)
+    return float(envelope.std() / envelope.mean()) if envelope.any() else math.nan
 
 
-def _depth(wave: np.ndarray, cycles: float) -> float:
+def _depth(energy: np.ndarray, cycles: float) -> float:
     """Return the depth of a line of so many cycles over the record in the squared envelope."""
-    energy = power(wave)
     if not energy.any():
         return math.nan
-    angle = 2.0 * np.pi * cycles / energy.size * np.arange(energy.size)
-    line = complex(np.mean(energy * np.cos(angle)), np.mean(energy * np.sin(angle)))
-    return float(2.0 * abs(line) / energy.mean())
+    # sample a * block + b: the phases of a and b add up, so that 2 sqrt(n) phases do
+    block = math.isqrt(energy.size) + 1
+    rows = np.zeros(block * block)
+    rows[: energy.size] = energy
+    turn = 2j * np.pi * cycles / energy.size * np.arange(block)
+    columns = np.einsum("ab,bc->ac", rows.reshape(block, block), np.exp(turn).view(np.float64).reshape(block, 2))
+    line = complex(np.sum(columns.view(np.complex128)[:, 0] * np.exp(block * turn)))
+    return 2.0 * abs(line) / (energy.size * float(energy.mean()))
 
 
 def _repeated(turns: np.ndarray) -> dict[str, float]:
@@ -276,8 +280,8 @@ def _tonality(windows: np.ndarray, hz: np.ndarray, low: float, high: float) -> f
     return _decibels(float(np.mean(inside.mean(axis=1) / np.median(inside, axis=1))), 1.0)
 
 
-def _is_multiple(order: float, step: float) -> bool:
-    return abs(order / step - round(order / step)) * step < NEAR_ORDER
+def _is_multiple(orders: np.ndarray, step: float) -> np.ndarray:
+    return np.asarray(np.abs(orders / step - np.round(orders / step)) * step < NEAR_ORDER)
 
 
 def _decibels(value: float, reference: float) -> float:

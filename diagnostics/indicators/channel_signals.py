@@ -88,7 +88,7 @@ class ChannelSignals:
         carrier: Carrier | None = None,
     ) -> None:
         self.signal, self.fs_hz, self.grid, self.shafts, self.settings = signal, fs_hz, grid, shafts, settings
-        self._carrier = carrier
+        self._carrier, self._named_shafts = carrier, {shaft.name: shaft for shaft in shafts}
         self._of_shaft: dict[str, ShaftSignals] = {}
         self._without_front = np.empty(0)
         self._known: dict[tuple[str, str], Any] = {}
@@ -103,7 +103,8 @@ class ChannelSignals:
     @cached_property
     def amplitude(self) -> np.ndarray:
         """(steps // 2 + 1,) float64: Hann amplitudes over whole pinion revolutions."""
-        return hann_amplitude(self.steps)
+        turns = 1 if self.grid is None else self.grid.revolutions
+        return hann_amplitude(self.steps.reshape(turns, -1))
 
     @cached_property
     def spectral_kurtosis(self) -> np.ndarray:
@@ -162,7 +163,7 @@ class ChannelSignals:
         return self._without_front
 
     def _shaft(self, name: str) -> Shaft:
-        return next(shaft for shaft in self.shafts if shaft.name == name)
+        return self._named_shafts[name]
 
     def values(self, indicators: tuple[Indicator, ...]) -> dict[str, float]:
         """Return the columns of all indicators that need this record alone, NaN where undefined."""

@@ -185,7 +185,7 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
             pulses = mesh_pulses(good or usable, record.fs_hz, _teeth(record), chosen.speed_range_hz).times_s
         except UsageError as error:
             problems, usable = [*problems, RecordProblem(int(record.labels["record_id"]), "", str(error))], {}
-    channels = {name: ChannelResult({}, conditions=_channel_conditions(s)) for name, s in record.channels.items()}
+    channels = {name: ChannelResult({}, conditions=channel_conditions(s)) for name, s in record.channels.items()}
     turns, notes = (0, 0), ""
     if usable:
         meshes = mesh_signals(usable, pulses, record.fs_hz, gear_train(record.labels), chosen)
@@ -246,12 +246,13 @@ def _float64(values: np.ndarray) -> np.ndarray:
     return np.asarray(values, dtype=np.float64)
 
 
-def _channel_conditions(signal: np.ndarray) -> dict[str, float]:
+def channel_conditions(signal: np.ndarray) -> dict[str, float]:
     """Return checksum of the samples, their bytes, and number of samples before the last ones that repeat."""
-    last = np.flatnonzero(signal != signal[-1]) if signal.size else np.empty(0)
+    differ = signal[::-1] != signal[-1] if signal.size else np.zeros(1, dtype=np.bool_)
+    repeated = int(differ.argmax())  # samples at the end; 0 also where all are equal
     return {
-        "checksum": zlib.crc32(np.ascontiguousarray(signal).tobytes()),
-        "samples": float(last[-1] + 2 if last.size else 0),
+        "checksum": zlib.crc32(np.ascontiguousarray(signal).data),
+        "samples": float(signal.size - repeated + 1 if differ[repeated] else 0),
         **sample_bytes(signal),
     }
 

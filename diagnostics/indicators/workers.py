@@ -9,6 +9,7 @@ from itertools import islice
 from multiprocessing import get_context
 from typing import TypeVar
 
+from diagnostics.base.kept_memory import keep_memory
 from diagnostics.records.recording import Recording
 
 CHUNK_RECORDS = 8
@@ -31,7 +32,7 @@ def mapped(records: Iterable[Recording], function: Callable[[Recording], Result]
         yield from map(function, records)
         return
     chunks = _chunks(records)
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=keep_memory) as pool:
         waiting: deque[Future[list[Result]]] = deque()
         try:
             for chunk in chunks:

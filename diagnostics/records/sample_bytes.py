@@ -11,6 +11,8 @@ import numpy as np
 
 BYTES = ("converter_step_log2", "odd_share", "longest_run")
 MOST_CODES, NEAREST = 2.0**26, 0.01
+FIRST = 16384
+"""Samples of a signal without steps, of which some differ by less than the largest over 2^26."""
 
 
 def sample_bytes(signal: np.ndarray) -> dict[str, float]:
@@ -28,21 +30,45 @@ def sample_bytes(signal: np.ndarray) -> dict[str, float]:
     stored = np.ascontiguousarray(signal, dtype="<f4")
     if stored.size < 2:
         return dict.fromkeys(BYTES, math.nan)
-    changes = np.flatnonzero(stored[1:] != stored[:-1])
-    runs = np.diff(np.concatenate([[-1], changes, [stored.size - 1]]))
     return {
         "converter_step_log2": _step_log2(stored),
         "odd_share": float(np.mean(stored.view("<u4") & 1)),
-        "longest_run": float(runs.max()),
+        "longest_run": _longest_run(stored),
     }
 
 
+def _longest_run(stored: np.ndarray) -> float:
+    held = np.flatnonzero(stored[1:] == stored[:-1])
+    ends = np.flatnonzero(np.diff(held, append=stored.size + 1) > 1)
+    return 1.0 + float(np.diff(ends, prepend=-1).max(initial=0))
+
+
 def _step_log2(stored: np.ndarray) -> float:
+    # sorting is dear: the first samples bound the step from above, and show it where all are multiples of their step
+    step = _finest_difference(stored[:FIRST])
+    if not _reaches(stored, step):
+        return math.nan
+    if math.frexp(step)[0] != 0.5 or _off_codes(stored, step).any():
+        step = _finest_difference(stored)
+    if math.isinf(step) or not _reaches(stored, step):
+        return math.nan
+    return math.log2(step) if float(_off_codes(stored, step).mean()) < NEAREST else math.nan
+
+
+def _finest_difference(stored: np.ndarray) -> float:
+    """Return the smallest difference of two samples that differ; infinite without such."""
     distinct = np.unique(stored).astype(np.float64)  # float32 sorts in half the time
-    if distinct.size < 2:
-        return math.nan
-    step = float(np.diff(distinct).min())
-    if not float(np.abs(distinct).max()) < MOST_CODES * step:
-        return math.nan
-    codes = stored.astype(np.float64) / step
-    return math.log2(step) if float(np.abs(codes - np.round(codes)).mean()) < NEAREST else math.nan
+    return float(np.diff(distinct).min(initial=math.inf))
+
+
+def _reaches(stored: np.ndarray, step: float) -> bool:
+    """Return whether a float32 could hold these samples as multiples of the step."""
+    return max(float(stored.max()), -float(stored.min())) < MOST_CODES * step
+
+
+def _off_codes(stored: np.ndarray, step: float) -> np.ndarray:
+    """Return how far samples lie from multiples of the step, in steps; of powers of two without rounding."""
+    codes = stored.astype(np.float64)
+    codes /= step
+    codes -= np.round(codes)
+    return np.abs(codes, out=codes)

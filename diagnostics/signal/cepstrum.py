@@ -68,9 +68,14 @@ def without_lines(log_spectrum: np.ndarray, spacing: int, half_width: int = 2) -
     half_width : int
         Bins replaced on each side of a line.
     """
-    index = np.arange(log_spectrum.size)
-    distance = np.abs((index + spacing // 2) % spacing - spacing // 2)
-    line = (distance <= half_width) & (index > spacing // 2)
     replaced = log_spectrum.copy()
-    replaced[line] = np.interp(index[line], index[~line], log_spectrum[~line])
+    first = np.arange(spacing - half_width, log_spectrum.size, spacing)
+    before = log_spectrum[first - 1]
+    behind = first + 2 * half_width + 1
+    # beyond the last bin the line is level
+    rise = np.where(behind < log_spectrum.size, log_spectrum[np.minimum(behind, log_spectrum.size - 1)] - before, 0.0)
+    for step in range(2 * half_width + 1):
+        inside = first + step < log_spectrum.size
+        share = (step + 1.0) / (2 * half_width + 2.0)
+        replaced[first[inside] + step] = (before + share * rise)[inside]
     return replaced

@@ -215,8 +215,7 @@ def _ring_signals(steps: np.ndarray, shaft: Shaft, carrier: Carrier, shaft_order
     from scipy import fft
 
     size = carrier.ring * carrier.samples_per_tooth
-    weights = hann_weights(shaft.revolutions * size)
-    spectrum = fft.rfft(synchronous_average(steps, carrier.ring, carrier.samples_per_tooth, weights).signal)
+    spectrum = fft.rfft(synchronous_average(steps, carrier.ring, carrier.samples_per_tooth, hann=True).signal)
     order, step = np.arange(spectrum.size), carrier.passing
     spectrum[order % step != 0] = 0.0
     last = spectrum.size // carrier.ring + 1

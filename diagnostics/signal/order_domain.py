@@ -1,9 +1,8 @@
 """A record resampled to equal steps of shaft angle, with the angle taken from the once-per-revolution pulses.
 
 The angle is a cubic spline through the exact pulse times (never the nominal speed: a droop of 0.2 % already destroys an
-average over many revolutions). Amplitudes at the angle steps come from a quintic B-spline on the twice oversampled
-record; oversampling, spline prefilter and band limit are one multiplication in the frequency domain. Source: order
-tracking by interpolation is standard literature; the B-spline prefilter follows Unser 1999, the rest derived.
+average over many revolutions). Amplitudes at the angle steps come from a quintic B-spline. Source: order tracking by
+interpolation is standard literature.
 
 Slow speed variation of a record, from its shaft pulses.
 """
@@ -13,9 +12,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 
 import numpy as np
+
+from diagnostics.signal.quintic_spline import spline_coefficients, spline_values
 
 SLOW_BELOW_HZ = 2.5
 HALF_POWER = 0.443
@@ -25,10 +25,7 @@ SAMPLES_PER_TOOTH = 128
 """Angle steps per mesh period: 128 keeps the band of a 51.2 kHz record above a mesh frequency of 400 Hz and one
 definition of every indicator below it."""
 
-OVERSAMPLING = 2
 EDGE_SAMPLES = 1024
-BAND_TAPER = 0.1
-"""Share of the output band over which the anti-alias limit falls from one to zero."""
 
 
 def speed_variation_percent(tacho_s: np.ndarray) -> float:
@@ -95,8 +92,9 @@ def angle_grid(tacho_s: np.ndarray, samples_per_revolution: int) -> AngleGrid:
     coefficients = _polynomials(pulses)
     time_s = coefficients[0][:, None] * fraction
     for row in coefficients[1:-1]:
-        time_s = (time_s + row[:, None]) * fraction
-    time_s = time_s + coefficients[-1][:, None]
+        time_s += row[:, None]
+        time_s *= fraction
+    time_s += coefficients[-1][:, None]
     return AngleGrid(time_s.ravel(), pulses.size - 1, samples_per_revolution, float(1.0 / np.diff(pulses).max()))
 
 
@@ -186,13 +184,9 @@ def resample_to_angle(signal: np.ndarray, fs_hz: float, grid: AngleGrid) -> np.n
     -------
     (revolutions * samples_per_revolution,) float64
     """
-    from scipy.ndimage import map_coordinates
-
     limit = min(grid.samples_per_revolution * grid.slowest_hz / fs_hz, 1.0) / 2.0
-    padded = _extended(np.asarray(signal, dtype=np.float64))
-    coefficients = _spline_coefficients(padded, limit)
-    position = (grid.time_s * fs_hz + EDGE_SAMPLES) * OVERSAMPLING
-    return np.asarray(map_coordinates(coefficients, position[None, :], order=5, prefilter=False, mode="nearest"))
+    spline = spline_coefficients(_extended(np.asarray(signal, dtype=np.float64)), limit)
+    return spline_values(spline, grid.time_s * fs_hz + EDGE_SAMPLES)
 
 
 def _extended(signal: np.ndarray) -> np.ndarray:
@@ -208,25 +202,3 @@ def _extended(signal: np.ndarray) -> np.ndarray:
     padded[EDGE_SAMPLES - edge : EDGE_SAMPLES] = ((2 * signal[0] - signal[1 : edge + 1]) * fade)[::-1]
     padded[end : end + edge] = (2 * signal[-1] - signal[-2 : -edge - 2 : -1]) * fade
     return padded
-
-
-def _spline_coefficients(padded: np.ndarray, limit: float) -> np.ndarray:
-    """Oversample, limit the band to `limit` cycles per sample and divide by the quintic B-spline's response."""
-    from scipy import fft
-
-    spectrum = fft.rfft(padded)
-    spectrum *= _spline_gain(padded.size)
-    if limit < 0.5:
-        start = limit * (1.0 - BAND_TAPER)
-        cycles = np.arange(spectrum.size) / padded.size
-        spectrum *= 0.5 + 0.5 * np.cos(np.pi * np.clip((cycles - start) / (limit - start), 0.0, 1.0))
-    return np.asarray(fft.irfft(spectrum, n=padded.size * OVERSAMPLING))
-
-
-@lru_cache(maxsize=2)
-def _spline_gain(samples: int) -> np.ndarray:
-    """Return what oversampling and spline prefilter multiply a spectrum by; kept, since records of a set are alike."""
-    angle = 2.0 * np.pi * np.arange(samples // 2 + 1) / samples / OVERSAMPLING
-    gain = OVERSAMPLING / ((66.0 + 52.0 * np.cos(angle) + 2.0 * np.cos(2.0 * angle)) / 120.0)
-    gain.flags.writeable = False
-    return gain

@@ -34,8 +34,8 @@ def shaft_lines(steps: np.ndarray, teeth: int, other_teeth: int, samples_per_too
     Where both shafts have a line at one order, no record resolves it.
     """
     turns = whole_revolutions(steps, teeth, samples_per_tooth)
-    weights = hann_weights(turns * teeth * samples_per_tooth)
-    found = line_amplitudes(synchronous_average(steps, teeth, samples_per_tooth, weights).signal)[: LINE_ORDERS[-1] + 1]
+    average = synchronous_average(steps, teeth, samples_per_tooth, hann=True).signal
+    found = line_amplitudes(average)[: LINE_ORDERS[-1] + 1]
     others = np.array([0, *LINE_ORDERS]) * (teeth / other_teeth)
     for order in LINE_ORDERS:
         if turns * np.abs(order - others).min() < HANN_HALF_WIDTH_BINS:

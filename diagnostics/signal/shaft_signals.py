@@ -22,7 +22,7 @@ import numpy as np
 
 from diagnostics.signal.order_domain import AngleGrid
 from diagnostics.signal.spectrum import line_amplitudes, resolved_lines, revolutions_needed
-from diagnostics.signal.synchronous_average import hann_weights, synchronous_average
+from diagnostics.signal.synchronous_average import synchronous_average
 
 SHAFT_ORDERS = 2
 SIDEBANDS = 1
@@ -195,8 +195,7 @@ def shaft_signals(
     parts = separated_average(average, shaft.teeth, shaft_orders, difference_sidebands, beside=shaft.beside)
     if shaft.name != "gear":
         return ShaftSignals(shaft, average, lines, own_band(average, shaft), own_lines(lines, shaft), parts)
-    weights = hann_weights(shaft.revolutions * average.size)
-    weighted = synchronous_average(steps, shaft.teeth, samples_per_tooth, weights).signal
+    weighted = synchronous_average(steps, shaft.teeth, samples_per_tooth, hann=True).signal
     resolved = resolved_lines(line_amplitudes(weighted), shaft.resolved, shaft.teeth)
     return ShaftSignals(shaft, average, lines, own_band(weighted, shaft), own_lines(resolved, shaft), parts)
 

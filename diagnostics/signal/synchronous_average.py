@@ -17,25 +17,35 @@ import numpy as np
 GEAR_BINS = 2048
 
 
-def asynchronous_part(turns: np.ndarray, gear_order: float) -> np.ndarray:
+def asynchronous_part(turns: np.ndarray, teeth: tuple[int, int]) -> np.ndarray:
     """Return the record less the averages of pinion and gear, (revolutions * steps,) float64.
 
     Parameters
     ----------
     turns : (revolutions, steps) float64
         One row per pinion revolution.
-    gear_order : float
-        Revolutions of the gear per pinion revolution. Its average is taken in 2048 bins of its angle.
+    teeth : (int, int)
+        Teeth of pinion and gear. The average of the gear is taken in 2048 bins of its angle.
 
     Notes
     -----
     Of noise a share of one over the revolutions goes with each average. Source: standard literature.
     """
     rest = (turns - turns.mean(axis=0)).ravel()
-    place = np.arange(rest.size) * (gear_order / turns.shape[1])
-    bins = ((place - np.floor(place)) * GEAR_BINS).astype(np.int64)
-    mean = np.bincount(bins, rest, GEAR_BINS) / np.maximum(np.bincount(bins, minlength=GEAR_BINS), 1)
-    return np.asarray(rest - mean[bins])
+    # in whole numbers: which bin a step on a border belongs to is then no matter of rounding, and bins come back
+    steps = turns.shape[1] * teeth[1]
+    period = min(steps // math.gcd(steps, teeth[0]), rest.size)
+    bins = np.arange(period) * (teeth[0] * GEAR_BINS) // steps % GEAR_BINS
+    whole = rest.size // period
+    periods, left = rest[: whole * period].reshape(whole, period), rest[whole * period :]
+    total, count = periods.sum(axis=0), np.full(period, float(whole))
+    total[: left.size] += left
+    count[: left.size] += 1.0
+    mean = np.bincount(bins, total, GEAR_BINS) / np.maximum(np.bincount(bins, count, GEAR_BINS), 1.0)
+    locked = mean[bins]
+    periods -= locked
+    left -= locked[: left.size]
+    return np.asarray(rest)
 
 
 def band_signal(spectrum: np.ndarray, low: int, high: int) -> np.ndarray:
@@ -80,7 +90,7 @@ def whole_revolutions(angle_signal: np.ndarray, teeth: int, samples_per_tooth: i
 
 
 def synchronous_average(
-    angle_signal: np.ndarray, teeth: int, samples_per_tooth: int, weights: np.ndarray | None = None
+    angle_signal: np.ndarray, teeth: int, samples_per_tooth: int, *, hann: bool = False
 ) -> SynchronousAverage:
     """Average an angle signal over all whole revolutions of the shaft with the given number of teeth.
 
@@ -92,8 +102,8 @@ def synchronous_average(
         Teeth on the shaft.
     samples_per_tooth : int
         Angle steps per mesh period.
-    weights : (revolutions * teeth * samples_per_tooth,) float64, optional
-        Window over the averaged stretch, divided by its mean; with a Hann window the spectrum of the result is the Hann
+    hann : bool
+        Average under a Hann window over all revolutions, divided by its mean: the spectrum of the result is the Hann
         spectrum of the stretch at whole shaft orders.
 
     Raises
@@ -104,10 +114,20 @@ def synchronous_average(
     revolutions = whole_revolutions(angle_signal, teeth, samples_per_tooth)
     if revolutions < 1:
         raise ValueError(f"received {angle_signal.size} angle steps; one revolution needs {teeth * samples_per_tooth}")
-    stretch = angle_signal[: revolutions * teeth * samples_per_tooth]
-    if weights is not None:
-        stretch = stretch * (weights / weights.mean())
-    return SynchronousAverage(stretch.reshape(revolutions, -1).mean(axis=0), teeth, revolutions)
+    turns = angle_signal[: revolutions * teeth * samples_per_tooth].reshape(revolutions, -1)
+    average = turns.mean(axis=0)
+    return SynchronousAverage(average - _cosine_average(turns) if hann else average, teeth, revolutions)
+
+
+def _cosine_average(turns: np.ndarray) -> np.ndarray:
+    """Return the average of turns (m, n) times one period of a cosine over all of them, (n,) float64."""
+    # cos(a + b) of turn and step: sums over turns alone, and m + n cosines
+    turn = 2.0 * np.pi * np.arange(len(turns)) / len(turns)
+    step = 2.0 * np.pi * np.arange(turns.shape[1]) / turns.size
+    found = np.cos(step) * np.einsum("ij,i->j", turns, np.cos(turn))
+    found -= np.sin(step) * np.einsum("ij,i->j", turns, np.sin(turn))
+    found /= len(turns)
+    return np.asarray(found)
 
 
 def hann_weights(samples: int) -> np.ndarray:

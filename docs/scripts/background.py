@@ -95,7 +95,7 @@ def channels(changes: list[str], gearboxes: int) -> dict[str, list[float]]:
         for turns in seen:
             for name, value in numbers(turns, shaft_hz, teeth, config.fs_hz).items():
                 found[name].append(value)
-        rest = [asynchronous_part(turns, teeth[0] / teeth[1]) for turns in seen]
+        rest = [asynchronous_part(turns, teeth) for turns in seen]
         rate_hz = STEPS * shaft_hz
         hz, together = coherence(*rest, fs=rate_hz, nperseg=round(0.02 * rate_hz))
         found["coherence of channels > 2.5 kHz"].append(float(np.median(together[(hz > 2500.0) & (hz < 10_000.0)])))

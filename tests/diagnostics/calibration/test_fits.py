@@ -69,7 +69,7 @@ def test_noise_gives_back_its_density_depth_and_level() -> None:
         signal = rng.standard_normal(SAMPLES) * np.sqrt(strength)
         blocks.append(block(signal, speed))
         records.append(order_record(signal, FS_HZ, blocks[-1].pulses_s, PAIR))
-    fit = noise_fit(records, blocks, "c", TEETH[0] / TEETH[1])
+    fit = noise_fit(records, blocks, "c", TEETH)
     inside = (fit.frequency_hz > 100.0) & (fit.frequency_hz < 11_000.0)
     decibels = 20.0 * np.log10(fit.density[inside] / np.sqrt(2.0 / FS_HZ))
     assert abs(np.median(decibels)) < 0.3
@@ -165,7 +165,7 @@ def test_one_recording_stays_whole_and_what_it_cannot_tell_is_drawn_wide(tmp_pat
     assert one.channels["c"].size == SAMPLES
     assert one.speed_hz == pytest.approx(30.0, rel=1e-3)
     record = order_record(one.channels["c"], FS_HZ, one.pulses_s, PAIR)
-    noise = noise_fit([record], found.blocks, "c", TEETH[0] / TEETH[1])
+    noise = noise_fit([record], found.blocks, "c", TEETH)
     assert not np.isfinite(noise.level_db.low)
     # half to twice the power, and half to twice the amplitude of a line: stated, not fitted
     assert noise.spread_db == pytest.approx(10.0 * np.log10(2.0), abs=0.02)

@@ -89,3 +89,9 @@ def test_bytes_tell_the_converter_whatever_the_level() -> None:
     assert free["odd_share"] == pytest.approx(0.5, abs=0.03)
     held = np.concatenate([signal[:100], np.full(40, signal[99])]).astype(np.float32)
     assert sample_bytes(held)["longest_run"] == 41
+    # a step that the first samples do not show, and a converter whose step is no power of two
+    late = np.concatenate([np.round(signal * 2**8) * 2**-8, np.zeros(20_000), np.round(signal * 2**9) * 2**-9])
+    assert sample_bytes(np.resize(late, 50_000).astype(np.float32))["converter_step_log2"] == -9.0
+    third = np.round(np.resize(signal, 40_000) * 300.0).astype(np.float32) / np.float32(300.0)
+    assert sample_bytes(third)["converter_step_log2"] == pytest.approx(-math.log2(300.0), abs=1e-3)
+    assert math.isnan(sample_bytes(np.ones(100, np.float32))["converter_step_log2"])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from diagnostics.indicators.background_levels import NOISE_LEVELS, noise_levels, quiet_gate
+from diagnostics.signal.turn_spectrum import turn_lines
 
 TURNS, STEPS, FS_HZ, SHAFT_HZ = 48, 720, 25_600.0, 35.0
 NOISE = np.random.default_rng(1).standard_normal((TURNS, STEPS))
@@ -14,7 +15,7 @@ HIGH = range(5, 10)
 
 
 def levels(turns: np.ndarray) -> np.ndarray:
-    found = noise_levels(turns.ravel(), np.fft.rfft(turns.ravel()), TURNS, SHAFT_HZ / TURNS, FS_HZ)
+    found = noise_levels(turn_lines(turns), np.fft.rfft(turns.ravel()), SHAFT_HZ / TURNS, FS_HZ)
     assert tuple(found) == NOISE_LEVELS
     return np.array([found[NOISE_LEVELS[k]] for k in HIGH])
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.interpolate import BSpline
 
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.signal.quintic_spline import spline_values
 
 FS_HZ = 51_200.0
 TIME_S = np.arange(25_600) / FS_HZ
@@ -112,3 +114,13 @@ def test_chirp_of_known_order_is_a_steady_tone_over_angle(change: float, order: 
     inner = slice(3 * STEPS, -3 * STEPS)
     expected = np.cos(2 * np.pi * order * (1 + np.arange(steps.size) / STEPS) + 0.5)
     assert np.abs(steps - expected)[inner].max() < 1e-4
+
+
+def test_the_spline_between_coefficients_is_scipys_and_held_beyond_its_ends() -> None:
+    rng = np.random.default_rng(5)
+    coefficients, place = rng.standard_normal(200), rng.uniform(1.0, 98.0, 40_000)  # more than one block
+    spline = BSpline(np.arange(-3.0, 203.0), coefficients, 5)
+    # weights are sums of some ten terms of order one
+    np.testing.assert_allclose(spline_values(coefficients, place), spline(2.0 * place), atol=1e-14)
+    ends = spline_values(coefficients, np.array([-50.0, 1.0, 98.0, 500.0]))
+    np.testing.assert_allclose(ends, spline(np.array([2.0, 2.0, 196.0, 196.0])), atol=1e-14)

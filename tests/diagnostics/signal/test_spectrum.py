@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diagnostics.signal.spectrum import line_amplitudes, resolved_lines, revolutions_needed
+from diagnostics.signal.spectrum import hann_amplitude, line_amplitudes, resolved_lines, revolutions_needed
+from diagnostics.signal.turn_spectrum import turn_lines
 
 
 @given(order=st.integers(1, 30), amplitude=st.floats(1e-3, 1e3), phase=st.floats(0, 6.28))
@@ -41,3 +42,19 @@ def test_far_from_the_other_shafts_sidebands_the_next_one_of_its_own_shaft_decid
     # 47/18 teeth: sideband 4 of the gear is 1.2 orders from the pinion's nearest, but one order from 3 and 5
     assert revolutions_needed(4, 47, 18) == 2.0
     assert revolutions_needed(5, 47, 18) == pytest.approx(2.0 / (2 * 47 / 18 - 5))
+
+
+@pytest.mark.parametrize("samples", [7, 8, 2305, 6 * 2304])
+def test_hann_amplitudes_are_those_of_the_weighted_signal(samples: int) -> None:
+    signal = 3.0 + np.random.default_rng(6).standard_normal(samples)
+    weights = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(samples) / samples)
+    direct = 4.0 / samples * np.abs(np.fft.rfft(signal * weights))
+    np.testing.assert_allclose(hann_amplitude(signal), direct, atol=1e-13)
+
+
+@pytest.mark.parametrize(("turns", "steps"), [(1, 8), (2, 7), (5, 6), (6, 5), (7, 9), (31, 96)])
+def test_turns_have_the_spectrum_of_the_whole_record_with_and_without_a_gate(turns: int, steps: int) -> None:
+    record, gate = np.random.default_rng(7).standard_normal((turns, steps)), np.hanning(steps)
+    found = turn_lines(record)
+    np.testing.assert_allclose(found.spectrum(), np.fft.rfft(record.ravel()), atol=1e-12)
+    np.testing.assert_allclose(found.spectrum(gate), np.fft.rfft((record * gate).ravel()), atol=1e-12)

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
-from diagnostics.signal.synchronous_average import hann_weights, synchronous_average, whole_revolutions
+from diagnostics.signal.synchronous_average import (
+    asynchronous_part,
+    hann_weights,
+    synchronous_average,
+    whole_revolutions,
+)
 
 STEPS = 16
 PINION, GEAR = 18, 47
@@ -48,7 +53,7 @@ def test_droop_of_speed_destroys_an_average_by_nominal_speed_but_not_by_pulses()
 
 def test_hann_weights_keep_the_lines_of_the_shaft() -> None:
     phase = np.arange(11 * GEAR * STEPS) / STEPS
-    weighted = synchronous_average(np.cos(2 * np.pi * 48 * phase / GEAR), GEAR, STEPS, hann_weights(phase.size))
+    weighted = synchronous_average(np.cos(2 * np.pi * 48 * phase / GEAR), GEAR, STEPS, hann=True)
     np.testing.assert_allclose(weighted.signal, np.cos(2 * np.pi * 48 * phase[: GEAR * STEPS] / GEAR), atol=1e-12)
 
 
@@ -65,3 +70,13 @@ def test_hann_weights_are_those_of_one_cosine_per_sample(samples: int) -> None:
     assert found.shape == (samples,)
     assert found.min() >= 0.0
     np.testing.assert_allclose(found, direct, rtol=0.0, atol=1e-15)  # a few roundings of values up to one
+
+
+@pytest.mark.parametrize("teeth", [(18, 47), (29, 91), (20, 48)])
+def test_what_is_locked_to_the_gear_leaves_the_same_in_every_turn_of_it(teeth: tuple[int, int]) -> None:
+    # also where steps lie on borders of the 2048 bins, as every third one of 48 teeth does: it has one bin in all turns
+    period = teeth[1] * 128
+    gear = np.cos(2.0 * np.pi * 5.0 * np.arange(teeth[0] * period) / period)
+    rest = asynchronous_part(gear.reshape(teeth[1], -1), teeth).reshape(teeth[0], -1)
+    np.testing.assert_allclose(rest, np.broadcast_to(rest[0], rest.shape), atol=1e-12)
+    assert 0.0 < np.abs(rest).max() <= 2.0 * np.pi * 5.0 / 2048  # what is left changes within a bin alone
