@@ -25,7 +25,8 @@ from siggen.keys.wording import AllowedText
 GearName: TypeAlias = Literal["pinion", "gear"]
 GEAR_TEXT = AllowedText(
     "one of pinion, gear, either; of a further stage NAME.pinion, NAME.gear, NAME.either; of planetary sets sun, "
-    "planet, ring"
+    "planet, ring",
+    ("pinion", "gear", "either", "sun", "planet", "ring"),
 )
 AnyGear: TypeAlias = Annotated[
     str, Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)|sun|planet|ring)$"), GEAR_TEXT
