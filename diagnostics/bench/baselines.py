@@ -8,14 +8,18 @@ is chosen on a test part. Source: stacked generalisation (Wolpert 1992), standar
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
 
 import numpy as np
 import pyarrow as pa
 
 from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN
 from diagnostics.base.extras import missing_packages
-from diagnostics.base.progress import Stage
+from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.seeding import Purpose, generator
+from diagnostics.base.single_thread import single_thread
 from diagnostics.bench.seen_records import PartRecords, SeenRecords, benchmark_records, only, seen_records
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.scoring.benchmark import Benchmark
@@ -27,6 +31,8 @@ from diagnostics.training.splits import SpecimenSplit
 
 REFERENCE = "reference"
 BESIDE = ", beside a healthy record"
+TRACKS = (False, True)
+"""Alone, and beside a reference."""
 FOLDS, LEFT_OUT = 4, 5
 CHANCE_OWNER = 4242
 """Owner of the generator of the baseline without knowledge: permutations have others."""
@@ -134,14 +140,29 @@ def stacked(
     return np.asarray(model.decision_function(np.stack([every[name] for name in known], axis=1)))
 
 
-def damage_predictions(benchmark: Benchmark, seed: int, stage: Stage) -> Iterator[pa.Table]:
-    """Yield the rows of every baseline, alone and beside a healthy record."""
-    parts = benchmark_records(benchmark, stage)
-    for referenced in (False, True):
-        yield from _predictions(parts, referenced, seed, stage)
+def damage_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Iterator[pa.Table]:
+    """Yield the rows of every baseline, alone and beside a healthy record; with two processes both at once."""
+    parts = benchmark_records(benchmark, workers, stage)
+    if workers == 1:
+        for referenced in TRACKS:
+            yield from _predictions(parts, seed, stage, referenced)
+        return
+    at_once = partial(_track, parts, seed)
+    with (
+        stage("baselines, tracks", len(TRACKS)) as advance,
+        ProcessPoolExecutor(len(TRACKS), mp_context=get_context("spawn")) as pool,
+    ):
+        for tables in pool.map(at_once, TRACKS):
+            yield from tables
+            advance()
 
 
-def _predictions(parts: tuple[PartRecords, ...], referenced: bool, seed: int, stage: Stage) -> Iterator[pa.Table]:
+@single_thread
+def _track(parts: tuple[PartRecords, ...], seed: int, referenced: bool) -> list[pa.Table]:
+    return list(_predictions(parts, seed, silent_stage, referenced))
+
+
+def _predictions(parts: tuple[PartRecords, ...], seed: int, stage: Stage, referenced: bool) -> Iterator[pa.Table]:
     seen = seen_records(parts, referenced=referenced)
     if not seen.tests().size or np.unique(seen.damaged).size < 2:
         return

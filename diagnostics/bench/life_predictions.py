@@ -23,7 +23,7 @@ from diagnostics.training.life_rows import blind_inspections, inspections_of
 from siggen.dataset.reading import Dataset
 
 
-def life_predictions(benchmark: Benchmark, seed: int, stage: Stage) -> Iterator[pa.Table]:
+def life_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Iterator[pa.Table]:
     """Yield the rows of every baseline.
 
     Raises
@@ -32,8 +32,8 @@ def life_predictions(benchmark: Benchmark, seed: int, stage: Stage) -> Iterator[
         If fewer than four gearboxes of the part to learn from failed.
     """
     parts = {name: benchmark.part(name) for name in benchmark.parts}
-    learn = inspections_of(benchmark.learn(), _table(LEARN, benchmark.learn(), stage))
-    tests = [blind_inspections(part, _table(name, part, stage)) for name, part in parts.items()]
+    learn = inspections_of(benchmark.learn(), _table(LEARN, benchmark.learn(), workers, stage))
+    tests = [blind_inspections(part, _table(name, part, workers, stage)) for name, part in parts.items()]
     found = joined([learn, *tests])
     paces = [pace(benchmark.learn().config, LIFE_CONDITIONS.get(name, {})) for name in parts]
     hour = np.repeat([1.0, *paces], [one.specimen.size for one in (learn, *tests)])
@@ -51,9 +51,9 @@ def life_predictions(benchmark: Benchmark, seed: int, stage: Stage) -> Iterator[
             advance()
 
 
-def _table(name: str, dataset: Dataset, stage: Stage) -> RecordTable:
+def _table(name: str, dataset: Dataset, workers: int, stage: Stage) -> RecordTable:
     with stage(f"indicators, {name}", dataset.inventory.rows) as advance:
-        return record_table(dataset, advance=advance)
+        return record_table(dataset, workers=workers, advance=advance)
 
 
 def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:

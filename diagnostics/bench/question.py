@@ -115,7 +115,7 @@ class Question:
     tables : callable
         Simulated set and new numbers; returns the tables of `life/` to publish, and those to seal.
     predictions : callable
-        Benchmark, seed, stage; yields what the baselines say of the records asked about.
+        Benchmark, seed, processes, stage; yields what the baselines say of the records asked about.
     """
 
     title: str
@@ -124,4 +124,4 @@ class Question:
     ranking: Ranking
     shown: Callable[[Dataset, bytes, str], Shown]
     tables: Callable[[Dataset, Renumbered], tuple[dict[str, pa.Table], dict[str, pa.Table]]]
-    predictions: Callable[[Benchmark, int, Stage], Iterator[pa.Table]]
+    predictions: Callable[[Benchmark, int, int, Stage], Iterator[pa.Table]]

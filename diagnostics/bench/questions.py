@@ -24,9 +24,9 @@ def question_of(config: Mapping[str, Any]) -> Question:
 
 
 @single_thread
-def write_baselines(benchmark: Benchmark, seed: int, stage: Stage) -> Path:
-    """Write the predictions of all baselines for all test parts into the benchmark; return the file."""
-    rows = list(question_of(benchmark.learn().config).predictions(benchmark, seed, stage))
+def write_baselines(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Path:
+    """Write what all baselines say of all test parts into the benchmark, from some processes; return the file."""
+    rows = list(question_of(benchmark.learn().config).predictions(benchmark, seed, workers, stage))
     table = pa.concat_tables(rows).replace_schema_metadata({IDENTITY_KEY: benchmark.digest.encode()})
     folder = benchmark.path / BASELINES
     folder.mkdir(exist_ok=True)

@@ -74,15 +74,15 @@ class SeenRecords:
         return np.asarray(self.matrix.labels["record_id"][self.learn :])
 
 
-def benchmark_records(benchmark: Benchmark, stage: Stage) -> tuple[PartRecords, ...]:
-    """Return the records of all sets, those to learn from first."""
+def benchmark_records(benchmark: Benchmark, workers: int, stage: Stage) -> tuple[PartRecords, ...]:
+    """Return the records of all sets, those to learn from first; indicators from some processes."""
     sets = [(LEARN, benchmark.learn()), *((name, benchmark.part(name)) for name in benchmark.parts)]
-    return tuple(_part(name, dataset, stage) for name, dataset in sets)
+    return tuple(_part(name, dataset, workers, stage) for name, dataset in sets)
 
 
-def _part(name: str, dataset: Dataset, stage: Stage) -> PartRecords:
+def _part(name: str, dataset: Dataset, workers: int, stage: Stage) -> PartRecords:
     with stage(f"indicators, {name}", dataset.inventory.rows) as advance:
-        table = record_table(dataset, advance=advance)
+        table = record_table(dataset, workers=workers, advance=advance)
     if name == LEARN:
         check_table(table, dataset)  # test records are answered whatever they are
     matrix = feature_matrix(classifier_table(table))

@@ -124,7 +124,11 @@ def reveal(folder: Bench, labels: Sealed = None) -> None:
 
 
 @bench.command()
-def baselines(folder: Bench, seed: Seed = 0) -> None:
+def baselines(
+    folder: Bench,
+    seed: Seed = 0,
+    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
+) -> None:
     """Learn the baselines on the part to learn from, and write what they say of all test parts.
 
     `score` and `board` then show them too.
@@ -137,7 +141,7 @@ def baselines(folder: Bench, seed: Seed = 0) -> None:
     from diagnostics.scoring.benchmark import open_benchmark
 
     require_packages("baselines", "sklearn")
-    typer.echo(str(write_baselines(open_benchmark(folder), seed, terminal_stage)))
+    typer.echo(str(write_baselines(open_benchmark(folder), seed, workers, terminal_stage)))
 
 
 @bench.command()

@@ -1,4 +1,4 @@
-"""Which part of bench weakens mesh lines 2 to 5: `python docs/scripts/mesh_lines.py [GEARBOXES] [WORD ...]`.
+"""What sets mesh lines 2 to 5 of bench: `python docs/scripts/mesh_lines.py [GEARBOXES] [WORD ...]`.
 
 Simulates one healthy record of 1 s of every gearbox with one thing changed at a time, and prints mesh lines 2 to 5 over
 line 1 of the pinion's average: the median, and the share of channels within -30 to 12 dB. With words, only the changes
@@ -27,9 +27,9 @@ BOTH = ("pinion", "gear")
 Changes = dict[str, Any]
 
 
-def uniform(low: float, high: float) -> dict[str, Any]:
+def between(kind: str, low: float, high: float) -> dict[str, Any]:
     """Return a distribution."""
-    return {"kind": "uniform", "low": low, "high": high}
+    return {"kind": kind, "low": low, "high": high}
 
 
 def shafts(diameter: Any, span: Any) -> Changes:
@@ -38,20 +38,37 @@ def shafts(diameter: Any, span: Any) -> Changes:
     return {f"{SHAFTS}.{which}.{name}": value for which in BOTH for name, value in sizes.items()}
 
 
-NARROW = {RELIEF: uniform(6, 10)}
-SLENDER = {**shafts(30, uniform(110, 140)), f"{SHAFTS}.gear.diameter_mm": 35}
+def bearings(stiffer: float, more_damped: float) -> Changes:
+    """Return the bearings of bench with their stiffness and damping times a factor."""
+    found: Changes = {}
+    for axis in ("x", "y"):
+        for which, damping in (("pinion", (560, 1130)), ("gear", (980, 1960))):
+            words = f"dynamics.{which}.bearing_"
+            found[f"{words}stiffness_{axis}_n_per_m"] = between("loguniform", 1.4e8 * stiffer, 2.6e8 * stiffer)
+            low, high = (more_damped * value for value in damping)
+            found[f"{words}damping_{axis}_n_s_per_m"] = between("loguniform", low, high)
+    return found
+
+
+def speed(speed_hz: float) -> Changes:
+    """Return one speed of the pinion."""
+    return {"operating_points": [{"speed_hz": speed_hz, "torque_nm": between("uniform", 15, 60)}]}
+
+
+NARROW = {RELIEF: between("uniform", 6, 10)}
+SLENDER = {**shafts(30, between("uniform", 110, 140)), f"{SHAFTS}.gear.diameter_mm": 35}
 CHANGES: dict[str, Changes] = {
-    "bench as it is: relief 2 to 10 um, shafts of 30 to 45 mm on 70 to 140 mm": {},
+    "bench as it is": {},
+    "no friction": {"dynamics.friction.model": "off"},
+    "bearings four times as stiff": bearings(4, 2),
+    "bearings with four times the damping": bearings(1, 4),
+    "25 Hz": speed(25),
+    "45 Hz": speed(45),
+    "walls of 20 mm": {"housing": {"wall_mm": 20}},
     "relief 6 to 10 um": NARROW,
     "shafts of 30 and 35 mm on 110 to 140 mm": SLENDER,
     "both, as bench was before": {**NARROW, **SLENDER},
-    "rigid shafts": {SHAFTS: None},
-    "no relief": {RELIEF: 0},
-    "no helix, crowning and misalignment": {
-        "manufacture.helix": "off", "manufacture.lead_misalignment_um": 0, "manufacture.crowning_um": 0
-    },
-    "no background": {"background": None},
-}  # fmt: skip
+}
 
 
 def changed(raw: dict[str, Any], changes: Changes) -> dict[str, Any]:

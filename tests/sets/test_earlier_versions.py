@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import siggen
 from siggen.cli.app import app
-from siggen.columns.record import signal_matrix
+from siggen.columns.record import Record, signal_matrix
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
@@ -24,6 +24,10 @@ NEW_LABEL = "mesh_stiffness_loss_as_simulated"
 
 SECOND = Path(__file__).parent / "earlier_set"
 """Two gearboxes in two states, generated as one and extended by one by the first simulation; indexed since."""
+RELEASED = Path(__file__).parent / "set_of_0_2"
+"""Two gearboxes of `quickstart` in four states, one of them an extension, by siggen 0.2.0; without run.json."""
+ROUNDING = 1e-6
+"""Of the rms: how far processors of different kinds may lie apart, as in `benchmarks.golden`."""
 
 
 def say(folder: Path, **facts: object) -> None:
@@ -104,3 +108,22 @@ def test_a_new_set_says_which_simulation_made_it(tmp_path: Path) -> None:
     manifest = siggen.open(tmp_path).manifest
     assert (manifest["schema_version"], manifest["simulation_version"]) == (SCHEMA_VERSION, SIMULATION_VERSION)
     assert np.isfinite(siggen.open(tmp_path).labels(columns=[NEW_LABEL])[NEW_LABEL].to_numpy()).all()
+
+
+def test_records_of_the_released_version_are_read_verified_and_simulated_again_as_they_were() -> None:
+    found = verify(RELEASED, 0)
+    assert found.mismatches == ()
+    dataset, config = siggen.open(RELEASED), siggen.load_config(RELEASED / "config.yaml")
+    assert config.identity == dataset.manifest["identity"]
+    for number in (2, 5):  # a spall, and a healthy record of the extension
+        (made,) = siggen.simulate(config, [number])
+        assert isinstance(made, Record)
+        kept, internals = dataset.record(number), dataset.record_internals(number)
+        for name, signal in made.channels.items():
+            step = np.unique(np.diff(np.unique(signal))).min()  # a rounding may cross a step of the converter
+            assert np.abs(signal - kept[f"accel_{name}_m_s2"]).max() <= 1.01 * step
+            assert (signal == kept[f"accel_{name}_m_s2"]).mean() > 0.99
+        force = internals["mesh_force_n"]
+        assert np.abs(made.internals["mesh_force_n"] - force).max() <= ROUNDING * np.abs(force).max()
+        assert kept["state"] == made.labels["state"]
+        assert kept["housing_first_mode_hz"] == pytest.approx(made.labels["housing_first_mode_hz"], rel=ROUNDING)

@@ -105,10 +105,22 @@ def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_
     assert bench.digest[:12] in shown
 
 
+@pytest.mark.slow  # learns everything twice
+def test_baselines_say_the_same_from_any_number_of_processes(made: Made, tmp_path: Path) -> None:
+    files = []
+    for workers in ("1", "2"):
+        bench = Path(shutil.copytree(made.benchmark.path, tmp_path / workers / "bench"))
+        ended = command("diagnostics", "bench", "baselines", str(bench), "--workers", workers)
+        assert ended.returncode == 0, ended.stderr
+        files.append(pq.read_table(bench / "baselines" / "predictions.parquet"))
+    assert files[0].num_rows > 0
+    assert files[1].equals(files[0])
+
+
 @pytest.mark.slow  # trains the network once
 def test_the_network_learns_from_the_records_that_it_may_see_alone(learned: Path) -> None:
     pytest.importorskip("torch")
-    seen = seen_records(benchmark_records(open_benchmark(learned), silent_stage), referenced=True)
+    seen = seen_records(benchmark_records(open_benchmark(learned), 1, silent_stage), referenced=True)
     network = detectors(0)[NETWORK]
     unique = np.unique(seen.gearbox)
     half = np.isin(seen.gearbox, unique[: unique.size // 2])
