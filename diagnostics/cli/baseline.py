@@ -62,6 +62,8 @@ def baseline(
     shaft = names_of(train).shafts[0]
     speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
     typer.echo(f"{len(sources)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
+    for doubt in machine.doubts:
+        typer.echo(f"doubtful: {doubt}", err=True)
     typer.echo(rate_sentence(len(sources), false_alarms), err=True)
     typer.echo(str(out))
 

@@ -79,8 +79,8 @@ def check(
     used = [one.used for one in found if one.score is not None]
     if used:
         typer.echo(rate_sentence(min(used), known.false_alarms), err=True)
-    if load_note:
-        typer.echo(load_note, err=True)
+    for note in [*(f"doubtful: {doubt}" for doubt in known.doubts), *([load_note] if load_note else [])]:
+        typer.echo(note, err=True)
     typer.echo(str(write_machine_page(known, machine, found)), err=as_json)
     if any(one.verdict == CHANGED for one in found):
         raise typer.Exit(EXIT_MISMATCH)

@@ -138,7 +138,7 @@ def _models(
     """Train, and write the models and what they reach; return their folder."""
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.classifier_table import feature_matrix
-    from diagnostics.prediction.saved_models import save_models
+    from diagnostics.prediction.saved_models import class_text, save_models
     from diagnostics.records.record_classes import set_classes
     from diagnostics.training.studies import run_studies, studies_metrics
     from diagnostics.training.training import train_models, training_metrics
@@ -160,6 +160,7 @@ def _models(
         found = run_studies(dataset, matrix, trained.split, seed, second, terminal_stage)
         metrics["studies"] = studies_metrics(found)
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    typer.echo(class_text(trained.split, dataset), err=True)
     for note in (*trained.notes, *notes):
         typer.echo(f"note: {note}", err=True)
     return folder

@@ -12,6 +12,7 @@ from diagnostics.base.progress import Advance
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.comparable import slip_loads
 from diagnostics.machine.machine import Machine
+from diagnostics.machine.odd_references import USED_BAND, odd_references, odd_sentences, third_octave_levels
 from diagnostics.machine.recording_indicators import check_mesh_lines
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.recordings.level_alike import check_levels_alike
@@ -81,9 +82,11 @@ def healthy_state(
     if loads is None:
         load = _slips(np.array(speeds))
     called = tuple(f"{path.name}:{row}" if row is not None else path.name for path, row in sources)
+    levels = np.stack([third_octave_levels(recording, USED_BAND * fs_hz, duration_s) for recording in read])
+    doubts = odd_sentences(odd_references(levels, np.array(speeds), channels), called)
     return Machine(
         train, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, called,
-        np.array(speeds), load, loads is None,
+        np.array(speeds), load, loads is None, tuple(doubts),
     )  # fmt: skip
 
 

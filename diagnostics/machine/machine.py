@@ -44,6 +44,8 @@ class Machine:
         Pinion speed, and load as the user gave it (NaN where he did not).
     load_from_slip : bool
         Whether differences of speed tell the load.
+    doubts : tuple of str
+        What is said of references that are unlike the others.
     """
 
     train: tuple[Mesh, ...]
@@ -59,6 +61,7 @@ class Machine:
     speed_hz: np.ndarray
     load: np.ndarray
     load_from_slip: bool = False
+    doubts: tuple[str, ...] = ()
 
 
 def save_machine(machine: Machine, folder: Path) -> None:
@@ -89,6 +92,7 @@ def save_machine(machine: Machine, folder: Path) -> None:
         "duration_s": machine.duration_s,
         "false_alarms": machine.false_alarms,
         "load_from_slip": machine.load_from_slip,
+        "doubts": machine.doubts,
     }
     (folder / FACTS).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
@@ -131,6 +135,7 @@ def load_machine(folder: Path) -> Machine:
         _column(table, "speed_hz"),
         _column(table, "load"),
         content["load_from_slip"],
+        tuple(content.get("doubts", ())),
     )
 
 

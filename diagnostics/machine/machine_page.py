@@ -49,6 +49,7 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check]) 
         html.paragraph(_look(folder, checks)),
         *(_moved_table(check) for check in checks if check.moved),
         html.heading("References"),
+        *html.notes(machine.doubts),
         html.table(
             ("Recording", "Speed [Hz]", "Load"),
             [

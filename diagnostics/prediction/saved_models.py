@@ -19,6 +19,7 @@ from diagnostics.indicators.indicator import base_name
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
 from diagnostics.prediction.release import Release, release, save_release
 from diagnostics.records.record_classes import STATE
+from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import Judged
@@ -65,21 +66,31 @@ def _data(training: Training, dataset: Dataset) -> str:
     return "\n".join(
         [
             f"* identity of the set: `{dataset.manifest['identity']}`",
-            f"* {class_text(training.split)}",
+            f"* {class_text(training.split, dataset)}",
             f"* specimens: {count} (no specimen is in two splits)",
             f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
         ]
     )
 
 
-def class_text(split: SpecimenSplit) -> str:
-    """Return the classes, and which states they hold where that is not one each."""
+def class_text(split: SpecimenSplit, dataset: Dataset) -> str:
+    """Return the classes, which states they hold where that is not one each, and what is damaged in states."""
     merged = {name: states for name, states in split.members.items() if len(states) > 1}
-    if not merged:
-        return f"{split.kind}s: {', '.join(split.classes)}"
+    told = f"{split.kind}s" if not merged else "classes" if split.kind == STATE else "classes (primary faults)"
     held = "; ".join(f"{name}: records of {', '.join(states)}" for name, states in merged.items())
-    told = "classes" if split.kind == STATE else "classes (primary faults)"
-    return f"{told}: {', '.join(split.classes)} ({held})"
+    listed = f"{told}: {', '.join(split.classes)}" + (f" ({held})" if held else "")
+    return f"{listed}; {_faults_text(dataset)}" if split.kind == STATE else listed
+
+
+def _faults_text(dataset: Dataset) -> str:
+    """Return which faults the states of a set have; a class of one state says how far, not what."""
+    labels = dataset.labels(columns=["state", "fault"]).to_pylist()
+    faults: dict[str, dict[str, None]] = {}
+    for one in labels:
+        if one["fault"] != HEALTHY:
+            faults.setdefault(one["fault"], {})[one["state"]] = None
+    held = "; ".join(f"{fault} in {', '.join(states)}" for fault, states in faults.items())
+    return f"faults: {held or 'none'}"
 
 
 def _files(training: Training, dataset: Dataset) -> str:

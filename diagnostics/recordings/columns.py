@@ -23,13 +23,10 @@ import numpy as np
 
 from diagnostics.recordings.file_columns import READERS
 from diagnostics.recordings.reading_process import columns_read_apart
-from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
+from diagnostics.recordings.recorded_columns import LARGEST, OWN_TACHO, Columns
+from diagnostics.recordings.time_gaps import TURNED, refuse_gaps
 from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
 from siggen.errors import UsageError
-
-LARGEST = 1e12
-"""No recorder gives such a number, in whatever unit; from the damaged file that does, the squares would overflow."""
-
 
 PULSE_SHARE = 0.5
 """A vibration that stands at its ends for more than half the time is none; pulses do so nearly always."""
@@ -40,8 +37,6 @@ OFF_A_STEP = 0.25
 
 FEWEST_SAMPLES = 3
 MILLI, MICRO = re.compile(r"(^|[^a-z])m(illi)?s(ec)?($|[^a-z])"), re.compile(r"(^|[^a-z])([uµμ]|micro)s(ec)?($|[^a-z])")
-TURNED = re.compile(r"(^|[^a-z])(rad|deg|rev)($|[^a-z])")
-"""A column in one of these units counts turns, however evenly it rises."""
 
 TIMES_ALIKE = 1e-3
 """Rates of two time columns of one file that are the same, rounded differently; an angle that rises evenly is not."""
@@ -135,7 +130,7 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
     Raises
     ------
     UsageError
-        If it does not exist, has another suffix, cannot be read, or holds no column of numbers.
+        If it does not exist, has another suffix, cannot be read, holds no column of numbers, or one of times jumps.
     """
     if path.is_dir():
         raise UsageError(f"{path}: is a folder; give the file of one recording")
@@ -148,6 +143,7 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
     found = columns_read_apart(path, row)
     if not found.values:
         raise UsageError(f"{path}: holds no column of numbers")
+    refuse_gaps(path, found)
     return _with_clocks(found)
 
 

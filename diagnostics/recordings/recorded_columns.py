@@ -14,6 +14,9 @@ from siggen.errors import UsageError
 OWN_TACHO = "tacho_s"
 """Column of pulse times of a shaft, as siggen's own records have it."""
 
+LARGEST = 1e12
+"""No recorder gives such a number, in whatever unit; from the damaged file that does, the squares would overflow."""
+
 MOST_COLUMNS = 4_000
 """Of a file: no recorder has as many channels, and every column costs time wherever it is looked at."""
 

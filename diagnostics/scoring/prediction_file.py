@@ -20,6 +20,7 @@ import pyarrow as pa
 from diagnostics.base.beside import beside
 from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.grade import PROBABILITY
+from diagnostics.scoring.remaining_life import RUL
 from diagnostics.scoring.size import AREA
 from diagnostics.scoring.tasks import TASKS
 from diagnostics.scoring.truth import Truth
@@ -119,8 +120,15 @@ def _columns(table: pa.Table, truth: Truth, problems: list[str]) -> dict[str, np
     for task in TASKS:
         problems += [_bad(what, record_id[bad], allowed) for what, bad, allowed in task.problems(columns, truth)]
     if not problems and all(task.answers(columns, truth) is None for task in TASKS):
-        problems.append(f"no columns of a task; received {', '.join(table.column_names)}")
+        problems.append(f"no columns of a task; received {', '.join(table.column_names)}{_of_lives(table)}")
     return columns
+
+
+def _of_lives(table: pa.Table) -> str:
+    """Return what a question about remaining life needs, where it is asked of a set without lives."""
+    if RUL not in table.column_names:
+        return ""
+    return f"; {RUL}, the remaining life, is asked of sets of lives alone: `siggen generate fleet --out runs/fleet`"
 
 
 def _bad(what: str, records: np.ndarray, allowed: str) -> str:

@@ -45,6 +45,8 @@ KEYS = {
 }
 """Key of the configuration that a geometry problem is about, where one key is to blame."""
 
+USUAL_RATIO = 10.0
+"""Of one pair of spur gears; beyond it the ratio is the cause, whatever follows from it."""
 PLACES = 65
 """Angles over one pitch at which a coupling is checked: compliances change smoothly between."""
 
@@ -138,6 +140,13 @@ def _coupling_problems(gears: Gears, stiffness: Stiffness | None, pairs: list[Ge
         except StiffTeethError:
             stiff = "whose teeth deflect less than their neighbour deflects them"
             received = f"'{stiffness.coupling}' with beam: {stiffness.beam}, {stiff}"
+            low, high = sorted((pair.pinion.teeth, pair.gear.teeth))
+            if high > USUAL_RATIO * low:
+                name = "gear" if pair.gear.teeth == high else "pinion"
+                received = f"{high} against {low}, a ratio of {high / low:.3g}; stiffness.coupling is then {received}"
+                allowed = f"allowed: a ratio up to {USUAL_RATIO:g}, as pairs have; else coupling: none"
+                yield Problem(f"gears.{name}.teeth", received, allowed)
+                continue
             yield Problem(
                 "stiffness.coupling", received, "allowed: none, or larger bores, or a softer beam such as calibrated"
             )

@@ -8,7 +8,7 @@ from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from siggen.errors import Problem
-from siggen.keys.problems import nearest, received_text, refusal
+from siggen.keys.problems import nearest_word, received_text, refusal
 
 OilName: TypeAlias = Literal[
     "ISO VG 32", "ISO VG 46", "ISO VG 68", "ISO VG 100", "ISO VG 150", "ISO VG 220", "ISO VG 320", "ISO VG 460",
@@ -31,7 +31,7 @@ class OilParser:
             names = [name for name in value if isinstance(name, str) and name in OIL_NAMES]
             if names and len(names) == len(value) == len(set(names)):
                 return tuple(names)
-        meant = nearest(value, OIL_NAMES) if isinstance(value, str) else ""
+        meant = nearest_word(value, OIL_NAMES)
         raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}{meant}")])
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

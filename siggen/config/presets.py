@@ -6,6 +6,7 @@ from pathlib import Path
 
 from siggen.config.data_file import is_file, kind_of_path, shortened_path
 from siggen.errors import UsageError
+from siggen.keys.problems import nearest
 
 SUFFIX = ".yaml"
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -34,4 +35,13 @@ def config_file(source: str | Path) -> Path:
     if path.parent == Path() and path.name.removesuffix(SUFFIX) in shipped:
         return shipped[path.name.removesuffix(SUFFIX)]
     shown, what = shortened_path(source), kind_of_path(path)
-    raise UsageError(f"{shown}: {what}; allowed are the path of a YAML file, or a preset: {', '.join(shipped)}")
+    names = [*(shipped if path.parent == Path() else ()), *_names_beside(path)]
+    meant = nearest(path.stem, names) or ";"
+    raise UsageError(f"{shown}: {what}{meant} allowed are the path of a YAML file, or a preset: {', '.join(shipped)}")
+
+
+def _names_beside(path: Path) -> list[str]:
+    try:
+        return [file.stem for file in path.parent.glob(f"*{SUFFIX}")]
+    except (OSError, ValueError):
+        return []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
@@ -17,6 +17,7 @@ from siggen.gears.damage.heights import axial_height
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Section
@@ -25,7 +26,8 @@ from siggen.keys.wording import AllowedText
 GearName: TypeAlias = Literal["pinion", "gear"]
 GEAR_TEXT = AllowedText(
     "one of pinion, gear, either; of a further stage NAME.pinion, NAME.gear, NAME.either; of planetary sets sun, "
-    "planet, ring"
+    "planet, ring",
+    ("pinion", "gear", "either", "sun", "planet", "ring"),
 )
 AnyGear: TypeAlias = Annotated[
     str, Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)|sun|planet|ring)$"), GEAR_TEXT
@@ -157,3 +159,24 @@ def found_problems(pair: GearPair, damage: Damage, path: str, remark: str = "") 
         Problem(path, f"{remark}{in_mm(problem.received)}", allowed_text(problem.allowed) + GO_ON.get(problem.name, ""))
         for problem in damage_problems(pair, damage)
     ]
+
+
+def size_that_adds_nothing(own: Section, milder: object, sizes: Sequence[str]) -> str | None:
+    """Return the first size if none is larger than that of milder damage that is the same otherwise; else None.
+
+    Both take their quantiles of one draw, so a range adds nothing if neither of its ends lies higher.
+    """
+    if not isinstance(milder, type(own)):
+        return None
+    same = all(getattr(own, key) == getattr(milder, key) for key in type(own).model_fields if key not in sizes)
+    return sizes[0] if same and all(_no_larger(getattr(own, key), getattr(milder, key)) for key in sizes) else None
+
+
+def _no_larger(own: Number | None, milder: Number | None) -> bool:
+    if own == milder:
+        return True
+    if own is None or milder is None:  # one follows from the others
+        return False
+    (low, high), (milder_low, milder_high) = bounds(own), bounds(milder)
+    by_ends = type(own) is type(milder) and isinstance(own, (Uniform, LogUniform))
+    return high <= milder_low or (by_ends and low <= milder_low and high <= milder_high)

@@ -41,6 +41,7 @@ from siggen.faults.flank_place import (
     height_m_of,
     in_mm,
     read_m,
+    size_that_adds_nothing,
 )
 from siggen.faults.growth import Growth
 from siggen.gears.damage.flank_damage import single_problems
@@ -66,6 +67,7 @@ WAVE_SHARE = 0.1
 DEPTH_SHARE = 0.05
 """Depth over the root of profile length x face length, where none is given; assumed."""
 
+SIZES = ("profile_length_mm", "face_share", "depth_mm")
 START: Literal["below_pitch"] = "below_pitch"
 Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch")), Grows(MODULE)]
 Skew = Annotated[Number, Within(least=-5, most=5), Grows(SKEW)]
@@ -112,6 +114,10 @@ class IrregularSpalls(Fault):
     def _a_stage_for_each_tooth(self) -> IrregularSpalls:
         refuse_stages(self.stages, self.teeth)
         return self
+
+    def key_that_adds_nothing(self, milder: Fault) -> str | None:
+        """Return 'profile_length_mm' for spalls in no direction larger than the milder ones at the same place."""
+        return size_that_adds_nothing(self, milder, SIZES)
 
     def drawn(self, growth: Growth) -> Parts:
         """Return a spall on each damaged tooth, with the draws of the first one that it has grown from."""
@@ -177,8 +183,7 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
 
 def _staged(size: IrregularSpalls, stage: float) -> IrregularSpalls:
     """Return drawn sizes at a stage: all lengths shrink alike, and the depth that follows from them."""
-    lengths = ("profile_length_mm", "face_share", "depth_mm")
-    given = {key: value for key in lengths if (value := getattr(size, key)) is not None}
+    given = {key: value for key in SIZES if (value := getattr(size, key)) is not None}
     return size if stage == 1.0 else size.model_copy(update={key: stage * constant(v) for key, v in given.items()})
 
 

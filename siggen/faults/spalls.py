@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.flank_place import READING, HeightReading
+from siggen.faults.flank_place import READING, HeightReading, size_that_adds_nothing
 from siggen.faults.growth import Growth
 from siggen.faults.single_spall import SIZE_KEYS, SpallSize, largest_spall, spall_on_tooth, spall_problems
 from siggen.gears.damage.part import Parts
@@ -37,6 +37,10 @@ class Spalls(SpallSize, Fault):
     def _a_stage_for_each_tooth(self) -> Spalls:
         refuse_stages(self.stages, self.teeth)
         return self
+
+    def key_that_adds_nothing(self, milder: Fault) -> str | None:
+        """Return 'face_length_mm' for spalls in no direction larger than the milder ones at the same place."""
+        return size_that_adds_nothing(self, milder, SIZE_KEYS)
 
     def drawn(self, growth: Growth) -> Parts:
         """Return a spall on each damaged tooth, with the draws of the first spall that it has grown from."""

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from siggen.errors import Problem, counted
-from siggen.keys.wording import allowed_text, models_in
+from siggen.keys.wording import allowed_text, models_in, words_in
 
 REFUSAL = "refusal"
 MISSING = "nothing"
@@ -78,6 +78,11 @@ def nearest(word: str, known: Sequence[str]) -> str:
     return f"; did you mean '{close[0]}'?" if close else ""
 
 
+def nearest_word(value: object, known: Sequence[str]) -> str:
+    """Return what `nearest` says of a value of the YAML file; nothing of what is no text."""
+    return nearest(value, known) if isinstance(value, str) else ""
+
+
 def section_problems(model: type[BaseModel], errors: Sequence[ErrorDetails], below: Location = ()) -> list[Problem]:
     """Translate pydantic's errors about something that lies `below` a section; paths begin at the section."""
     found: list[Problem] = []
@@ -129,23 +134,25 @@ def _translated(model: type[BaseModel], location: Location, error: ErrorDetails)
         case "refusal":
             return [Problem(joined(path, sub), received, allowed) for sub, received, allowed in context["problems"]]
         case "union_tag_not_found" if isinstance(error["input"], Mapping):
-            return [Problem(joined(path, "kind"), MISSING, f"allowed: one of {_kinds_at(model, location)}")]
+            return [Problem(joined(path, "kind"), MISSING, f"allowed: one of {', '.join(_kinds_at(model, location))}")]
         case "union_tag_invalid":
-            received = received_text(error["input"].get("kind"))
-            return [Problem(joined(path, "kind"), received, f"allowed: one of {_kinds_at(model, location)}")]
+            kind, kinds = error["input"].get("kind"), _kinds_at(model, location)
+            allowed = f"allowed: one of {', '.join(kinds)}{nearest_word(kind, kinds)}"
+            return [Problem(joined(path, "kind"), received_text(kind), allowed)]
         case "missing" if not isinstance(location[-1], int):
             return [missing_key(path, _field_at(model, location))]
         case "missing":  # one of the numbers of a place: the place is wrong
             location, path = location[:-1], path.rpartition(".")[0]
         case _:
             pass
-    allowed = allowed_text(_field_at(model, location))
-    return [Problem(path, received_text(error["input"]), f"allowed: {allowed}")]
+    field, came = _field_at(model, location), error["input"]
+    allowed = f"allowed: {allowed_text(field)}{nearest_word(came, words_in(field))}"
+    return [Problem(path, received_text(came), allowed)]
 
 
-def _kinds_at(model: type[BaseModel], location: Location) -> str:
+def _kinds_at(model: type[BaseModel], location: Location) -> list[str]:
     kinds = [get_args(m.model_fields["kind"].annotation)[0] for m in models_in(_field_at(model, location).annotation)]
-    return ", ".join(dict.fromkeys(kinds))
+    return list(dict.fromkeys(kinds))
 
 
 def _field_at(model: type[BaseModel], location: Location) -> FieldInfo:

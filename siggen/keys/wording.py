@@ -13,9 +13,10 @@ from pydantic.fields import FieldInfo
 
 @dataclass(frozen=True, slots=True)
 class AllowedText:
-    """What a field may hold where the type does not say it well; put beside the type in `Annotated`."""
+    """What a field may hold where the type does not say it well, and its words; put beside the type in `Annotated`."""
 
     allowed_text: str
+    words: tuple[str, ...] = ()
 
 
 def allowed_text(field: FieldInfo) -> str:
@@ -39,6 +40,18 @@ def models_in(annotation: object) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return [model for argument in get_args(annotation) for model in models_in(argument)]
+
+
+def words_in(field: FieldInfo) -> list[str]:
+    """Return the words that a field may hold, as far as its type and its markers list them."""
+    marked = [word for marker in field.metadata for word in getattr(marker, "words", ()) if isinstance(word, str)]
+    return [*_literals(field.annotation), *marked]
+
+
+def _literals(annotation: object) -> list[str]:
+    if get_origin(annotation) is Literal:
+        return [str(word) for word in get_args(annotation)]
+    return [word for argument in get_args(annotation) for word in _literals(argument)]
 
 
 def _type_text(annotation: object, limits: str = "") -> str:

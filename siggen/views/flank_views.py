@@ -19,6 +19,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.damage_summary import flank_arc_m
 from siggen.gears.stiffness.sections import union_area_m2
+from siggen.keys.problems import nearest
 from siggen.planning.plan import record_ids_of
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
@@ -128,7 +129,7 @@ def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None =
 def _state_ids(config: Config, state: str | None) -> list[int]:
     names = [s.name for s in config.states]
     if state is not None and state not in names:
-        raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}")
+        raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}{nearest(state, names)}")
     return [index for index, name in enumerate(names) if state in (None, name)]
 
 

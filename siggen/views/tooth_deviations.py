@@ -14,6 +14,7 @@ from siggen.errors import UsageError
 from siggen.gears.errors.gear_errors import profiles_m
 from siggen.gears.errors.helix import HELIX_POINTS
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.problems import nearest
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.errors import MadeGear, specimen_errors
@@ -43,7 +44,7 @@ def gear_charts(config: Config, specimen_id: int = 0, state: str | None = None) 
     """
     names = [one.name for one in config.states]
     if state is not None and state not in names:
-        raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}")
+        raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}{nearest(state, names)}")
     config = gearbox_config(config, specimen_id)
     pair = gear_pair(draw_specimen(config, specimen_id).gears)
     errors = specimen_errors(config, pair, specimen_id, 0 if state is None else names.index(state))

@@ -131,6 +131,7 @@ def test_all_missing_options_are_said_at_once(tmp_path: Path) -> None:
     ("changed", "said"),
     [
         (["--teeth", "25"], "two whole numbers"),
+        (["--teeth", "18,1000"], "gears.gear.teeth: received 1000 against 18, a ratio of 55.6"),
         (["--teeth", "25,x"], "--teeth: received '25,x'"),
         (["--module", "0.002"], "allowed: 0.3 to 50 mm"),
         (["--speed", "25,15"], "the lowest value first"),

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from siggen.checks.loading import load_config
 from siggen.config import Config, parse
+from siggen.errors import ConfigError
 from tests.config.minimal import minimal
 
 LAYERS = {"kind": "layered", "layers": 1, "pits_per_layer": 4}
@@ -76,6 +80,43 @@ def test_a_state_must_add_pits_to_the_one_it_grows_from(milder, damage, key):
     assert problem.path == f"states.1.damage.{key}"
     assert "no pits beyond those of slight" in problem.received
     assert parsed(state("slight", milder), state("severe", damage, grows_from="none")).problems == ()
+
+
+SPALL = {"kind": "spall", "face_length_mm": 8, "profile_length_mm": 1.2, "depth_mm": 0.2}
+IRREGULAR = {"kind": "irregular", "profile_length_mm": {"kind": "uniform", "low": 0.8, "high": 1.4}, "face_share": 0.6}
+
+
+@pytest.mark.parametrize(
+    ("milder", "smaller", "larger", "key"),
+    [
+        (SPALL, {"face_length_mm": 4, "profile_length_mm": 0.6}, {"depth_mm": 0.3}, "face_length_mm"),
+        (SPALL, {}, {"face_centre_mm": 5}, "face_length_mm"),
+        (IRREGULAR, {"face_share": 0.2}, {"face_share": 0.2, "depth_mm": 0.3}, "profile_length_mm"),
+        (
+            IRREGULAR,
+            {"profile_length_mm": {"kind": "uniform", "low": 0.7, "high": 1.2}},
+            {"profile_length_mm": {"kind": "uniform", "low": 0.7, "high": 1.6}},
+            "profile_length_mm",
+        ),
+    ],
+)
+def test_a_spall_no_larger_than_the_milder_one_is_no_growth(
+    milder: dict, smaller: dict, larger: dict, key: str, tmp_path: Path
+) -> None:
+    def planned(change: dict, **keys: str) -> Config:
+        states = [
+            {"name": "healthy"},
+            {"name": "slight", "damage": milder},
+            {"name": "severe", "damage": {**milder, **change}, **keys},
+        ]
+        file = tmp_path / "mine.yaml"
+        file.write_text(f"extends: quickstart\nname: mine\nstates:\n- {states[0]}\n- {states[1]}\n- {states[2]}\n")
+        return load_config(file)
+
+    with pytest.raises(ConfigError, match=rf"states\.2\.damage\.{key}: received no spalls beyond .*slight.*\(line 6\)"):
+        planned(smaller)
+    planned(smaller, grows_from="none")
+    planned(larger)
 
 
 @pytest.mark.parametrize(

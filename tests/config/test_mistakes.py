@@ -50,6 +50,10 @@ MISTAKES = [
     ({"operating_points": 5}, "operating_points", "5", "mapping with speed_hz and torque_nm"),
     ({"sensors__0__axes": "vertical"}, "sensors.0.axes", "the text 'vertical'", "a list of at least 1"),
     # ranges and words
+    ({"states__1__damage__kind": "spal"}, "states.1.damage.kind", "'spal'", "bearing_spall; did you mean 'spall'?"),
+    ({"states__1__severity": "slihgt"}, "states.1.severity", "'slihgt'", "severe; did you mean 'slight'?"),
+    ({"states__1__damage__gear": "pinoin"}, "states.1.damage.gear", "'pinoin'", "ring; did you mean 'pinion'?"),
+    ({"sensors__0__kind": "acelerometer"}, "sensors.0.kind", "'acelerometer'", "; did you mean 'accelerometer'?"),
     ({"gears__module_mm": -3}, "gears.module_mm", "-3.0", "a number above 0"),
     ({"dynamics__mesh_damping_ratio": 1.5}, "dynamics.mesh_damping_ratio", "1.5", "of at least 0 and below 1"),
     ({"gears__gear__profile_shift": 3}, "gears.gear.profile_shift", "3.0", "a number from -1 to 1.5"),

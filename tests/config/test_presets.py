@@ -35,10 +35,22 @@ def test_a_file_of_that_name_goes_first_and_a_folder_does_not(monkeypatch: pytes
     assert config_file("quickstart.yaml") == Path("quickstart.yaml")
 
 
-@pytest.mark.parametrize("unknown", ["quikstart", "configs" + "/nothing.yaml", "sub/quickstart"])
-def test_an_unknown_name_is_answered_with_the_presets(unknown: str) -> None:
-    with pytest.raises(UsageError, match=f"{unknown}: there is no such file; allowed are .*bench, .*quickstart"):
+@pytest.mark.parametrize(
+    ("unknown", "meant"),
+    [
+        ("quikstart", "; did you mean 'quickstart'?"),
+        ("configs" + "/idael.yaml", "; did you mean 'ideal'?"),
+        ("sub/quickstart", ";"),
+    ],
+)
+def test_an_unknown_name_is_answered_with_the_presets_and_the_one_next_to_it(
+    unknown: str, meant: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    with pytest.raises(UsageError) as caught:
         config_file(unknown)
+    assert f"{unknown}: there is no such file{meant} allowed are the path of a YAML file" in str(caught.value)
+    assert ", ".join(presets()) in str(caught.value)
 
 
 def test_a_wheel_carries_them_where_they_are_looked_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -46,7 +46,10 @@ def test_states_that_training_does_not_know_are_found_damaged_and_not_named(
     offered = {"first": sets["first"], "second": other({"severe": "chipped"})}
     command = ("first", "--out", str(tmp_path / "out"), "--test", "second", "--no-cnn")
     assert run(monkeypatch, offered, *command) == 0
-    assert "of chipped, which training does not know, are judged by whether damage is found" in capsys.readouterr().err
+    said, card = capsys.readouterr().err, (tmp_path / "out" / "model_card.md").read_text()
+    assert "of chipped, which training does not know, are judged by whether damage is found" in said
+    for text in (said, card):  # severities alone would not tell a reader what the models find
+        assert "states: healthy, slight, severe; faults: pitting in slight, severe" in text
     found = json.loads((tmp_path / "out" / "metrics.json").read_text())["classifiers_on_other_set"]["indicators"]
     whole = sets["second"].table.num_rows
     assert found["test_records"] == whole * 2 // 3

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ def write_recording(
     seconds: float = SECONDS,
     knock: float = 0.0,
     jitter: float = 1e-3,
+    moved: bool = False,
 ) -> Path:
     """Mesh lines, weak sidebands, noise; one knock per turn where a tooth is damaged."""
     rng = np.random.default_rng(seed)
@@ -35,7 +37,9 @@ def write_recording(
     other = np.roll(signal, 3) * 0.7
     noise = 0.1 * rng.normal(size=(2, turn.size))
     time = np.arange(turn.size) / FS_HZ
-    np.savez(file, t=time, lid=gain * (signal + noise[0]), side=gain * (other + noise[1]))
+    lid, side = signal + noise[0], other + noise[1]
+    lid = np.gradient(lid) if moved else lid  # a place that favours high frequencies
+    np.savez(file, t=time, lid=gain * lid, side=gain * side)
     return file
 
 
@@ -162,6 +166,27 @@ def test_speeds_that_do_not_differ_tell_no_load(tmp_path: Path) -> None:
     facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,35", "--load", "slip", "--out", tmp_path / "rig")
     with pytest.raises(SiggenError, match="--load slip: speeds of the references differ by 14 %"):
         run("baseline", *files, *facts)
+
+
+@pytest.mark.parametrize(
+    ("odd", "off"),
+    [({"gain": 1.0 / 9.81}, "20 dB"), ({"moved": True}, r"\d+ dB"), ({}, "")],
+    ids=["in g", "a sensor elsewhere", "healthy"],
+)
+def test_a_reference_unlike_the_others_is_named_by_baseline_by_check_and_on_the_page(
+    odd: dict[str, Any], off: str, tmp_path: Path
+) -> None:
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=80 + k) for k in range(3)]
+    files.insert(1, write_recording(tmp_path / "odd.npz", seed=90, **odd))
+    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
+    code, said = run("baseline", *files, *facts)
+    _, later = run("check", tmp_path / "rig", write_recording(tmp_path / "new.npz", seed=91))
+    named = rf"doubtful: reference 2 of 4, odd\.npz, is unlike the others: third octaves of (lid|side) are {off} off"
+    assert code == 0
+    for text in (said, later):
+        assert bool(re.search(named, text)) == bool(odd), text
+        assert text.count("unlike the others") == bool(odd)
+    assert ("odd.npz, is unlike the others" in (tmp_path / "rig" / "machine.html").read_text()) == bool(odd)
 
 
 def test_a_recording_in_g_is_called_changed_with_a_word_about_its_unit(machine: Path, tmp_path: Path) -> None:

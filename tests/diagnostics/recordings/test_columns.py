@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from diagnostics.cli.app import app
 from diagnostics.recordings.columns import clocks, read_columns
 from diagnostics.recordings.file_channels import file_channels
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
@@ -94,3 +97,35 @@ def test_a_wrong_name_is_refused_where_the_only_signal_has_another(tmp_path: Pat
 def test_a_record_s_list_of_angles_is_no_time_of_its_samples() -> None:
     samples = np.random.default_rng(3).normal(size=100)
     assert clocks({"lid": samples, "angles_deg": np.array([0.0, 120.0, 240.0])}, {}, "tacho_s") == {}
+
+
+@pytest.mark.parametrize(
+    ("header", "at", "jump_s", "said"),
+    [
+        (
+            "time;lid",
+            1200,
+            0.25,
+            r"column time jumps from 3\.04683\d* to 3\.29687\d* behind sample 1200, by 6401 steps",
+        ),
+        ("x;lid", 1200, 2.0 / FS_HZ, r"column x jumps .* behind sample 1200, by 3 steps of 3\.91e-05"),
+        ("time;lid", 4000, -3.0, r"column time jumps .* behind sample 4000, by -76799 steps"),
+    ],
+    ids=["a gap", "two samples lost", "a clock set back"],
+)
+def test_a_gap_in_the_times_is_refused_with_its_place_and_the_longest_whole_piece(
+    tmp_path: Path, header: str, at: int, jump_s: float, said: str
+) -> None:
+    times = TIMES_S + np.where(np.arange(SAMPLES) >= at, jump_s, 0.0)
+    whole = f"samples {at + 1} to {SAMPLES}" if at < SAMPLES / 2 else f"samples 1 to {at}"
+    file = write(tmp_path, [f"{time:.6f}" for time in times], header)
+    result = CliRunner().invoke(app, ["indicators", str(file), "--teeth", "20,31", "--speed-range", "20,30"])
+    assert isinstance(result.exception, UsageError)
+    assert re.search(said, str(result.exception))
+    assert f"{whole} are the longest whole piece" in str(result.exception)
+
+
+def test_an_angle_that_begins_anew_every_turn_is_no_time_with_jumps(tmp_path: Path) -> None:
+    rng = np.random.default_rng(3)
+    np.savez(tmp_path / "run.npz", phase=(0.01 * np.arange(SAMPLES)) % 1.0, lid=rng.standard_normal(SAMPLES))
+    assert read_columns(tmp_path / "run.npz").clocks == {}

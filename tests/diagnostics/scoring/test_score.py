@@ -122,6 +122,7 @@ def test_every_problem_comes_in_one_list(dataset: Any, damage: dict[str, np.ndar
         ({"id": [1]}, "no column record_id; received id"),
         ({"record_id": [1.5]}, "record_id holds double"),
         ({"record_id": [1]}, "no columns of a task"),
+        ({"record_id": [1], "rul_h": [9.0]}, "rul_h, the remaining life, is asked of sets of lives alone"),
         ({"record_id": [1], "p_slight": [1.0]}, "no column p_healthy, p_severe"),
         ({"record_id": [1], "damage": ["high"]}, "damage holds string in 24 records .*; allowed: finite"),
         ({"record_id": [1, 2], "damage": [0.0]}, "no readable table"),
