@@ -1,14 +1,13 @@
-"""How many test gearboxes rank the baselines of siggen-bench: `baseline_order.py [GEARBOXES] [WORKERS]`.
+"""How many test gearboxes rank the baselines of siggen-bench: `baseline_order.py BENCH [sealed.json]`.
 
-Makes a benchmark with baselines in runs/: 120 gearboxes to learn from, GEARBOXES (180) in the part `same`.
-Prints Markdown, alone and beside a healthy record, without the baseline `chance`: Kendall's tau of the order by AUC,
-between disjoint draws of gearboxes and of each with all, mean over DEALS deals. Then, of baselines that look at
-other columns and lie 0.05 or more apart over all, in which share of draws paired 95 % limits leave zero out.
+Takes a benchmark with its baselines and prints Markdown, for every test part alone and beside a healthy record, without
+the baseline `chance`: Kendall's tau of the order by AUC, between disjoint draws of gearboxes and of each with all, mean
+over DEALS deals. Then, of baselines that look at other columns and lie 0.05 or more apart over all, in which share of
+draws paired 95 % limits leave zero out.
 """
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Iterator
 from itertools import combinations
@@ -17,22 +16,14 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import kendalltau
 
-from diagnostics.base.progress import terminal_stage
 from diagnostics.bench.baselines import BESIDE, CHANCE, STACK, STACKED
-from diagnostics.bench.conditions import CONDITIONS, Tier
-from diagnostics.bench.making import Wanted, make_benchmark
-from diagnostics.bench.questions import write_baselines
-from diagnostics.scoring.benchmark import BASELINES, Benchmark
-from diagnostics.scoring.benchmark_scores import judged_parts, part_columns
+from diagnostics.scoring.benchmark import BASELINES, open_benchmark
+from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
 from diagnostics.scoring.detect import DETECT, EVERY
 from diagnostics.scoring.prediction_file import PREDICTIONS_FILE, prediction_table
 from diagnostics.scoring.sealed_labels import labels_of
 from diagnostics.statistics.evaluation import bootstrap_weights, interval
 
-FOLDER, HIDDEN = Path("runs/order_bench"), Path("runs/order_bench_secret")
-SECRET = hashlib.sha256(b"order of baselines").digest()
-"""Known, so that the numbers can be had again: nobody is scored on this benchmark."""
-SAME, LEARN, TEST = "same", 120, 180
 DRAWS, DEALS, RESAMPLES = (12, 18, 24, 36, 60, 90), 20, 400
 APART, SEED = 0.05, 0
 LIKE = (frozenset({"RMS alone", "six columns", "gradient boosting"}), frozenset({"kurtogram", "best band"}))
@@ -42,25 +33,11 @@ Areas = dict[str, np.ndarray]
 """AUC of each baseline: the value, then those of resampled gearboxes."""
 
 
-def made(gearboxes: int, workers: int) -> Benchmark:
-    """Return the benchmark with its baselines, both made where they are missing."""
-    wanted = Wanted("order", Tier(LEARN, gearboxes), conditions={SAME: CONDITIONS[SAME]})
-    benchmark = make_benchmark(FOLDER, HIDDEN, SECRET, wanted, workers, terminal_stage)
-    if not (FOLDER / BASELINES / PREDICTIONS_FILE).is_file():
-        write_baselines(benchmark, SEED, terminal_stage)
-    return benchmark
-
-
 class Judged:
-    """Answers of the baselines of a track, and the areas that they reach on some gearboxes."""
+    """Answers of the baselines of a track on a part, and the areas that they reach on some gearboxes."""
 
-    def __init__(self, benchmark: Benchmark, *, beside: bool) -> None:
-        (part,) = judged_parts(benchmark, labels_of(benchmark, None))
-        file = benchmark.path / BASELINES / PREDICTIONS_FILE
-        columns = part_columns(benchmark, (part,), prediction_table(file), file, file.stem)[SAME]
-        own = {name.removesuffix(BESIDE): found for name, found in columns.items() if name.endswith(BESIDE) == beside}
-        self.truth = part.truth
-        self.answers = {name: DETECT.answers(found, part.truth) for name, found in own.items() if name != CHANCE}
+    def __init__(self, part: JudgedPart, answers: dict[str, np.ndarray]) -> None:
+        self.truth, self.answers = part.truth, answers
         self.gearboxes = np.unique(part.truth.specimen)
 
     def areas(self, drawn: np.ndarray, resamples: int) -> Areas:
@@ -69,6 +46,23 @@ class Judged:
         truth, (measure,) = self.truth.rows(rows), DETECT.measures
         weights = bootstrap_weights(truth.specimen, SEED, resamples)
         return {name: measure.samples(said[rows], truth, weights) for name, said in self.answers.items()}
+
+
+def tracks(bench: Path, sealed: Path | None) -> Iterator[tuple[str, Judged]]:
+    """Yield title and answers of every part, alone and beside a healthy record."""
+    benchmark = open_benchmark(bench)
+    parts = judged_parts(benchmark, labels_of(benchmark, sealed))
+    file = bench / BASELINES / PREDICTIONS_FILE
+    columns = part_columns(benchmark, parts, prediction_table(file), file, file.stem)
+    for beside in (False, True):
+        for part in parts:
+            own = {
+                name.removesuffix(BESIDE): found
+                for name, found in columns[part.name].items()
+                if name.endswith(BESIDE) == beside
+            }
+            answers = {name: DETECT.answers(found, part.truth) for name, found in own.items() if name != CHANCE}
+            yield f"{part.name}, {'beside a healthy record' if beside else 'alone'}", Judged(part, answers)
 
 
 def tau(first: Areas, second: Areas) -> float:
@@ -90,7 +84,8 @@ def row(judged: Judged, whole: Areas, size: int) -> str:
     between, with_all, near, far = [], [], [], []
     for deal in range(DEALS):
         mixed = np.random.default_rng(deal).permutation(judged.gearboxes)
-        draws = [judged.areas(drawn, RESAMPLES) for drawn in np.split(mixed, mixed.size // size)]
+        count = mixed.size // size
+        draws = [judged.areas(drawn, RESAMPLES) for drawn in np.split(mixed[: count * size], count)]
         between += [tau(first, second) for first, second in combinations(draws, 2)]
         with_all += [tau(draw, whole) for draw in draws]
         for better, worse, apart in unlike(whole):
@@ -100,22 +95,19 @@ def row(judged: Judged, whole: Areas, size: int) -> str:
     return f"| {size} | {np.mean(between):.2f} | {np.mean(with_all):.2f} | {' | '.join(shares)} |"
 
 
-def main(gearboxes: int, workers: int) -> None:
-    """Print the tables of both tracks."""
-    benchmark = made(gearboxes, workers)
-    for beside in (False, True):
-        judged = Judged(benchmark, beside=beside)
+def main(bench: Path, sealed: Path | None) -> None:
+    """Print a table of every part and track."""
+    for title, judged in tracks(bench, sealed):
         whole = judged.areas(judged.gearboxes, RESAMPLES)
-        print(f"\n{'beside a healthy record' if beside else 'alone'}: ", end="")
+        print(f"\n{title}: ", end="")
         print(", ".join(f"{name} {whole[name][0]:.3f}" for name in sorted(whole, key=lambda name: -whole[name][0])))
         apart = [found for found in unlike(whole) if found[2] >= APART]
         print(f"{len(apart)} unlike pairs, of them {sum(one[2] < 2 * APART for one in apart)} 0.05 to 0.10 apart\n")
         print("| gearboxes | tau between draws | tau with all | told, 0.05 to 0.10 apart | told, 0.10 and more |")
         print("|---" * 5 + "|")
-        for size in (size for size in DRAWS if 2 * size <= gearboxes):
+        for size in (size for size in DRAWS if 2 * size <= judged.gearboxes.size):
             print(row(judged, whole, size), flush=True)
 
 
 if __name__ == "__main__":
-    given = [int(number) for number in sys.argv[1:]]
-    main(given[0] if given else TEST, given[1] if len(given) > 1 else 1)
+    main(Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else None)
