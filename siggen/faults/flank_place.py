@@ -162,14 +162,16 @@ def found_problems(pair: GearPair, damage: Damage, path: str, remark: str = "") 
 
 
 def size_that_adds_nothing(own: Section, milder: object, sizes: Sequence[str]) -> str | None:
-    """Return the first size if none is larger than that of milder damage that is the same otherwise; else None.
+    """Return the first smaller size if none is larger than that of milder damage that is the same otherwise; else None.
 
-    Both take their quantiles of one draw, so a range adds nothing if neither of its ends lies higher.
+    Both take their quantiles of one draw, so a range adds nothing if neither of its ends lies higher. Equal ones pass.
     """
     if not isinstance(milder, type(own)):
         return None
     same = all(getattr(own, key) == getattr(milder, key) for key in type(own).model_fields if key not in sizes)
-    return sizes[0] if same and all(_no_larger(getattr(own, key), getattr(milder, key)) for key in sizes) else None
+    if not same or not all(_no_larger(getattr(own, key), getattr(milder, key)) for key in sizes):
+        return None
+    return next((key for key in sizes if getattr(own, key) != getattr(milder, key)), None)
 
 
 def _no_larger(own: Number | None, milder: Number | None) -> bool:

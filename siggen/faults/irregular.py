@@ -116,7 +116,7 @@ class IrregularSpalls(Fault):
         return self
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
-        """Return 'profile_length_mm' for spalls in no direction larger than the milder ones at the same place."""
+        """Return the size that is smaller, for spalls in no direction larger than the milder ones at the same place."""
         return size_that_adds_nothing(self, milder, SIZES)
 
     def drawn(self, growth: Growth) -> Parts:

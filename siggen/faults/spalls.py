@@ -39,7 +39,7 @@ class Spalls(SpallSize, Fault):
         return self
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
-        """Return 'face_length_mm' for spalls in no direction larger than the milder ones at the same place."""
+        """Return the size that is smaller, for spalls in no direction larger than the milder ones at the same place."""
         return size_that_adds_nothing(self, milder, SIZE_KEYS)
 
     def drawn(self, growth: Growth) -> Parts:

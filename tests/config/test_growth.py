@@ -90,8 +90,7 @@ IRREGULAR = {"kind": "irregular", "profile_length_mm": {"kind": "uniform", "low"
     ("milder", "smaller", "larger", "key"),
     [
         (SPALL, {"face_length_mm": 4, "profile_length_mm": 0.6}, {"depth_mm": 0.3}, "face_length_mm"),
-        (SPALL, {}, {"face_centre_mm": 5}, "face_length_mm"),
-        (IRREGULAR, {"face_share": 0.2}, {"face_share": 0.2, "depth_mm": 0.3}, "profile_length_mm"),
+        (IRREGULAR, {"face_share": 0.2}, {"face_share": 0.2, "depth_mm": 0.3}, "face_share"),
         (
             IRREGULAR,
             {"profile_length_mm": {"kind": "uniform", "low": 0.7, "high": 1.2}},
@@ -100,7 +99,7 @@ IRREGULAR = {"kind": "irregular", "profile_length_mm": {"kind": "uniform", "low"
         ),
     ],
 )
-def test_a_spall_no_larger_than_the_milder_one_is_no_growth(
+def test_a_spall_smaller_than_the_milder_one_is_no_growth(
     milder: dict, smaller: dict, larger: dict, key: str, tmp_path: Path
 ) -> None:
     def planned(change: dict, **keys: str) -> Config:
@@ -116,6 +115,7 @@ def test_a_spall_no_larger_than_the_milder_one_is_no_growth(
     with pytest.raises(ConfigError, match=rf"states\.2\.damage\.{key}: received no spalls beyond .*slight.*\(line 6\)"):
         planned(smaller)
     planned(smaller, grows_from="none")
+    planned({})  # as large
     planned(larger)
 
 

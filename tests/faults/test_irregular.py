@@ -48,7 +48,7 @@ def holds(severe: IrregularSpall, mild: IrregularSpall) -> bool:
 
 @given(
     seed=st.integers(0, 2**31),
-    lengths=st.lists(st.floats(0.5, 1.6), min_size=3, max_size=3).map(sorted),
+    lengths=st.lists(st.floats(0.5, 1.6), min_size=3, max_size=3, unique=True).map(sorted),
     shares=st.lists(st.floats(0.1, 1.0), min_size=3, max_size=3),
     waviness=st.lists(st.floats(0.0, 0.12), min_size=3, max_size=3),
     gear=st.sampled_from(["pinion", "gear"]),
