@@ -150,8 +150,8 @@ def _strongest_table(audit: Audit) -> str:
     caption = (
         "The strongest attacker by state, with what it chose most often: AUC against healthy, with 95 % limits. "
         "Chance: share of permutations, the stated states among them, in which the strongest of all attackers but the "
-        "networks and the older probes reaches as much. Each state is a test of its own: of twenty states without any "
-        "effect one lies at 0.05 or below."
+        "networks, the teeth and the older probes reaches as much. Each state is a test of its own: of twenty "
+        "states without any effect one lies at 0.05 or below."
     )
     return html.table(head, rows, caption=caption, text=True)
 
