@@ -23,7 +23,7 @@ def innovations(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     lines : (records, channels, orders) complex128
-        Residual lines; those that are zero do not count. Records without lines, or with NaN, stay as they are.
+        Residual lines; those that are zero do not count. Channels without lines, or with NaN, stay as they are.
     teeth : (records,) int
         Of the shaft that was averaged.
 
@@ -33,26 +33,27 @@ def innovations(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
         Zero where `lines` are.
     """
     found = np.array(lines)
-    usable = np.isfinite(lines).all(axis=(1, 2)) & (np.abs(lines) > 0.0).any(axis=2).all(axis=1)
-    for row in np.flatnonzero(usable).tolist():
-        found[row] = lines[row] / _path(lines[row], int(teeth[row]))
+    for row, channel in np.argwhere(measured_channels(lines)).tolist():
+        found[row, channel] = lines[row, channel] / _path(lines[row, channel], int(teeth[row]))
     return found
 
 
+def measured_channels(lines: np.ndarray) -> np.ndarray:
+    """Return which channels hold lines, (records, channels) bool."""
+    return np.asarray(np.isfinite(lines).all(axis=-1) & (np.abs(lines) > 0.0).any(axis=-1))
+
+
 def _path(lines: np.ndarray, teeth: int) -> np.ndarray:
-    """Return the filter of one record, (channels, orders) complex128."""
+    """Return the filter of one channel of a record, (orders,) complex128."""
     from scipy import fft
     from scipy.ndimage import convolve1d  # a running mean would carry the rounding of strong lines to weak ones
 
     even = np.full(AROUND, 1.0 / AROUND)
-    counted = convolve1d((np.abs(lines) > 0.0).astype(np.float64), even, axis=-1)
-    power = convolve1d(np.square(np.abs(lines)), even, axis=-1)
-    order, steps = np.arange(lines.shape[-1]), 2 * (lines.shape[-1] - 1)
-    size = np.empty(lines.shape)
-    for channel, share in enumerate(counted):
-        known = share > 0.5 / AROUND
-        size[channel] = np.interp(order, order[known], power[channel, known] / share[known])
+    counted = convolve1d((np.abs(lines) > 0.0).astype(np.float64), even)
+    power = convolve1d(np.square(np.abs(lines)), even)
+    order, steps, known = np.arange(lines.size), 2 * (lines.size - 1), counted > 0.5 / AROUND
+    size = np.interp(order, order[known], power[known] / counted[known])
     place, longest = np.arange(steps), PITCHES * steps / teeth
     folded = np.where((place > 0) & (place <= longest), 0.5 + 0.5 * np.cos(np.pi * place / (longest + 1.0)), 0.0)
     folded[0] = 0.5
-    return np.asarray(np.exp(fft.rfft(fft.irfft(np.log(size + TINY), steps, axis=-1) * folded, axis=-1)))
+    return np.asarray(np.exp(fft.rfft(fft.irfft(np.log(size + TINY), steps) * folded)))

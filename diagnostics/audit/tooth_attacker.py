@@ -7,12 +7,13 @@ record has the score of its loudest tooth. Derived.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from diagnostics.audit.held_out import Attacker, Trial, Verdicts
+from diagnostics.audit.innovations import measured_channels
 from diagnostics.audit.measured_set import MeasuredSet
 
 STEPS = 48
@@ -26,6 +27,7 @@ MESHES = (0.5, 3.0, 9.0, 1e9)
 FLOOR = 0.15
 """Added to ratios of energies, whose logarithm a quiet slice would else decide."""
 STRENGTH = 1e-3
+"""C of the regression: columns are many, teeth to learn from few."""
 TINY = 1e-30
 
 
@@ -65,14 +67,14 @@ def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Attac
     """
     if "faulty_teeth_pinion" not in measured.labels:
         return None
-    usable = np.isfinite(lines).all(axis=(1, 2)) & (np.abs(lines) > 0.0).any(axis=2).all(axis=1)
+    usable = np.asarray(measured_channels(lines).all(axis=1))
     teeth, faulty = measured.labels["teeth_pinion"], measured.labels["faulty_teeth_pinion"]
     asked = {row: tooth_energies(lines[row], int(teeth[row])) for row in np.flatnonzero(usable).tolist()}
 
     def attack(trial: Trial) -> Verdicts:
         learnt, judged = trial.rows[trial.train].tolist(), trial.rows[~trial.train].tolist()
         damaged = trial.positive[0][trial.train].tolist()
-        rows = [asked[row][list(faulty[row])] if ill else asked[row] for row, ill in zip(learnt, damaged, strict=True)]
+        rows = [_known(asked[row], faulty[row], ill) for row, ill in zip(learnt, damaged, strict=True)]
         target = np.repeat(damaged, [len(one) for one in rows])
         if not 0 < target.sum() < target.size:  # no label names a tooth
             return Verdicts(np.zeros((1, len(judged))))
@@ -82,6 +84,11 @@ def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Attac
 
     columns = next(iter(asked.values())).shape[1] if asked else 0
     return Attacker(name, attack, usable, columns, deals=1, permutable=False)
+
+
+def _known(energies: np.ndarray, faulty: Sequence[int], damaged: bool) -> np.ndarray:
+    """Return the teeth to learn from: all of a healthy record, else those named; foreign labels may count from 1."""
+    return energies[[tooth for tooth in faulty if 0 <= tooth < len(energies)]] if damaged else energies
 
 
 def _learnt(values: np.ndarray, target: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from siggen.errors import ConfigError
@@ -48,7 +49,7 @@ def holds(severe: IrregularSpall, mild: IrregularSpall) -> bool:
 
 @given(
     seed=st.integers(0, 2**31),
-    lengths=st.lists(st.floats(0.5, 1.6), min_size=3, max_size=3, unique=True).map(sorted),
+    lengths=st.lists(st.floats(0.5, 1.6), min_size=3, max_size=3).map(sorted),
     shares=st.lists(st.floats(0.1, 1.0), min_size=3, max_size=3),
     waviness=st.lists(st.floats(0.0, 0.12), min_size=3, max_size=3),
     gear=st.sampled_from(["pinion", "gear"]),
@@ -62,6 +63,9 @@ def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
         {"kind": "irregular", "gear": gear, "profile_length_mm": a, "face_share": b, "waviness": c, **drawn}
         for a, b, c in zip(lengths, shares, waviness, strict=True)
     ]
+    # a spall smaller than the milder one, and alike in all else, is refused (tests/config/test_growth.py)
+    sizes = list(zip(lengths, waviness, shares, strict=True))
+    assume(not any(mild[:2] == more[:2] and more[2] < mild[2] for mild, more in combinations(sizes, 2)))
     config = config_with(*damages, seed=seed)
     for specimen_id in range(2):
         found = [damage_of(config, state, specimen_id) for state in (3, 1, 2)]

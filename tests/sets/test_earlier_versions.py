@@ -27,7 +27,7 @@ SECOND = Path(__file__).parent / "earlier_set"
 RELEASED = Path(__file__).parent / "set_of_0_2"
 """Two gearboxes of `quickstart` in four states, one of them an extension, by siggen 0.2.0; without run.json."""
 ROUNDING = 1e-6
-"""Of the rms: how far processors of different kinds may lie apart, as in `benchmarks.golden`."""
+"""Of the largest force, and of the rms of a signal in `benchmarks.golden`: how far kinds of processors lie apart."""
 
 
 def say(folder: Path, **facts: object) -> None:

@@ -46,12 +46,13 @@ def test_an_event_behind_modes_stands_again_where_it_happened() -> None:
     assert np.abs(np.log(flat[:, : STEPS // 4]).mean(axis=1) - np.log(flat[:, STEPS // 4 :]).mean(axis=1)).max() < 0.2
 
 
-def test_records_without_lines_stay_as_they_are() -> None:
+def test_channels_without_lines_stay_as_they_are_and_change_nothing_of_the_others() -> None:
     rng = np.random.default_rng(2)
-    lines = np.array([event(rng, 5, 0.0), np.zeros(STEPS // 2 + 1), np.full(STEPS // 2 + 1, np.nan)])[:, None]
-    found = innovations(lines, np.full(3, TEETH))
-    assert not np.array_equal(found[0], lines[0])
-    assert np.array_equal(found[1:], lines[1:], equal_nan=True)
+    lines = np.array([[event(rng, 5, 0.0), np.zeros(STEPS // 2 + 1), np.full(STEPS // 2 + 1, np.nan)]])
+    found = innovations(lines, np.array([TEETH]))
+    assert np.array_equal(found[:, 1:], lines[:, 1:], equal_nan=True)
+    assert np.array_equal(found[:, :1], innovations(lines[:, :1], np.array([TEETH])))
+    assert not np.array_equal(found[:, :1], lines[:, :1])
 
 
 def measured(rng: np.random.Generator) -> tuple[MeasuredSet, np.ndarray]:
@@ -60,7 +61,10 @@ def measured(rng: np.random.Generator) -> tuple[MeasuredSet, np.ndarray]:
     place = np.round((tooth[SPECIMEN] + 0.75) * STEPS / TEETH).astype(int) % STEPS
     lines = np.array([event(rng, place[row], 6.0 * DAMAGED[row]) for row in range(SPECIMEN.size)])[:, None]
     faulty = np.empty(SPECIMEN.size, dtype=object)
-    faulty[:] = [[int(tooth[gearbox])] if ill else [] for gearbox, ill in zip(SPECIMEN, DAMAGED, strict=True)]
+    faulty[:] = [
+        [int(tooth[gearbox]), TEETH] if ill else []  # a number that counts from 1 is passed over
+        for gearbox, ill in zip(SPECIMEN, DAMAGED, strict=True)
+    ]
     labels = {"teeth_pinion": np.full(SPECIMEN.size, TEETH), "faulty_teeth_pinion": faulty}
     return cast(MeasuredSet, SimpleNamespace(labels=labels)), innovations(lines, labels["teeth_pinion"])
 
