@@ -6,7 +6,6 @@ The names below are loaded when they are first used, so that importing siggen, o
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -61,7 +60,7 @@ _HOMES = {
 def __getattr__(name: str) -> Any:
     """Return a public name from the module that defines it, or the version."""
     if name == "__version__":
-        return version("siggen")
+        return import_module("siggen.sources").installed_version()
     if name not in _HOMES:
         raise AttributeError(f"siggen has no {name!r}; it has {', '.join(__all__)}")
     module, attribute = _HOMES[name]

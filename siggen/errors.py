@@ -13,6 +13,9 @@ EXIT_RECORDS_FAILED = 3
 EXIT_MISMATCH = 4
 EXIT_INTERRUPTED = 130
 
+DISTRIBUTION = "siggen-gears"
+"""Name under which siggen is installed. No package index has it, and `siggen` there is a program of somebody else:
+whatever says how to install takes the words of `how_to_install`."""
 
 LISTED_PROBLEMS = 100
 """Of a configuration; the others are counted."""
@@ -21,6 +24,14 @@ LISTED_PROBLEMS = 100
 def counted(count: int, one: str, many: str = "") -> str:
     """Return a count with its noun for a message: "1 record", "2 records"; `many` where it is not `one` with an s."""
     return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def how_to_install(extras: str) -> str:
+    """Return how to install siggen with extras, given as "cnn" or "cnn,onnx", for a message."""
+    return (
+        f"`pip install '.[{extras}]'` in a checkout, `pip install 'WHEEL[{extras}]'` with a wheel's file "
+        "(docs/start/install.md)"
+    )
 
 
 class SiggenError(Exception):

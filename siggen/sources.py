@@ -1,13 +1,24 @@
-"""Digest of source files of this package: the same in a checkout and in a wheel of the same sources."""
+"""Version of this package, and digest of its sources: the same in a checkout and in a wheel of the same sources."""
 
 from __future__ import annotations
 
 from functools import cache
 from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+
+from siggen.errors import DISTRIBUTION
 
 PACKAGE = Path(__file__).resolve().parent
 CHARACTERS = 16
+
+
+def installed_version(distribution: str = DISTRIBUTION) -> str:
+    """Return the version of an installed distribution, of siggen itself by default, or "not installed"."""
+    try:
+        return version(distribution)
+    except PackageNotFoundError:
+        return "not installed"
 
 
 @cache

@@ -38,7 +38,7 @@ from diagnostics.page.style import png_bytes, styled
 from diagnostics.records.named_set import words_of
 from diagnostics.records.recording import gear_names
 from siggen.dataset.reading import Dataset
-from siggen.errors import UsageError
+from siggen.errors import UsageError, how_to_install
 
 SEEN_ALONE, BESIDE = "alone", "beside a healthy record"
 """What attackers see of a record."""
@@ -281,7 +281,7 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realis
             )
             notes.append(f"No AUC from {name} for {', '.join(lacking)}: {why}.")
     if missing_packages("torch"):
-        notes.append(f"The {NETWORK} was not tried: it needs PyTorch (pip install 'siggen[cnn]').")
+        notes.append(f"The {NETWORK} was not tried: it needs PyTorch: {how_to_install('cnn')}.")
     if with_realism and not measured.healthy.any():
         notes.append("No comparison with healthy gearboxes: the set has no healthy records.")
     if with_realism and len(measured.channels) < 3:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 
-from siggen.errors import UsageError
+from siggen.errors import UsageError, how_to_install
 
 EXTRA_OF = {
     "sklearn": "diagnostics",
@@ -31,12 +31,12 @@ def require_packages(purpose: str, *names: str) -> None:
     Raises
     ------
     UsageError
-        Naming the missing packages and the `pip install` line that brings them.
+        Naming the missing packages and how to install them.
     """
     missing = missing_packages(*names)
     if missing:
         extras = ",".join(sorted({EXTRA_OF[name] for name in missing}))
         raise UsageError(
             f"{purpose} needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed; "
-            f"install with: pip install 'siggen[{extras}]'"
+            f"{how_to_install(extras)}"
         )

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from importlib.metadata import version
 
 import typer
 
+import siggen
 from diagnostics.base.kept_memory import keep_memory
 from diagnostics.cli.audit import audit
 from diagnostics.cli.baseline import baseline
@@ -47,7 +47,7 @@ app.add_typer(bench, name="bench", rich_help_panel="A benchmark with sealed labe
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"{PROGRAM} {version('siggen')}")
+        typer.echo(f"{PROGRAM} {siggen.__version__}")
         raise typer.Exit(EXIT_OK)
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from importlib.metadata import version
-
+import siggen
 from diagnostics.page.wording import counted
 from siggen.dataset.reading import Dataset
 
@@ -15,7 +14,7 @@ def provenance(dataset: Dataset, seed: int) -> str:
     """Return what a reader needs to cite the page and to make it again: program, set, identity, seed."""
     records = dataset.labels(columns=["record_id"]).num_rows
     return (
-        f"Made by siggen-diagnostics {version('siggen')} with seed {seed} from the set {dataset.path.name}, identity "
+        f"Made by siggen-diagnostics {siggen.__version__} with seed {seed} from the set {dataset.path.name}, identity "
         f"{dataset.manifest['identity']}: {counted(records, 'record')} of {dataset.duration_s:g}\N{NO-BREAK SPACE}s in "
         f"{counted(len(dataset.channels), 'channel')} at {dataset.fs_hz:g}\N{NO-BREAK SPACE}Hz. The identity names the "
         "configuration. The same configuration gives the same records."

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import json
 import math
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import siggen
 from diagnostics.base.extras import require_packages
 from diagnostics.page import html
 from diagnostics.page.sideband_marks import draw_marks, mark_handles, order_words, sideband_places
@@ -194,7 +194,7 @@ def _weight(vote: Vote) -> str:
 def model_provenance(facts: ModelFacts) -> str:
     """Return which program made the page, and which set the models were trained on."""
     return (
-        f"Made by siggen-diagnostics {version('siggen')} with models trained on the set {facts.set_name}, identity "
+        f"Made by siggen-diagnostics {siggen.__version__} with models trained on the set {facts.set_name}, identity "
         f"{facts.identity}."
     )
 

@@ -37,7 +37,7 @@ from diagnostics.training.classifier_file import (
     load_classifier,
     load_settings,
 )
-from siggen.errors import UsageError
+from siggen.errors import UsageError, how_to_install
 
 if TYPE_CHECKING:
     from diagnostics.training.circular_files import CircularFacts
@@ -269,7 +269,7 @@ def _loadable(folder: Path, scored: Mapping[str, bool]) -> tuple[tuple[str, ...]
     lost = [name for name, wanted in scored.items() if wanted and name not in present]
     note = f"network left out: {FACTS_FILE} gives its scores, but {', '.join(lost)} is missing; train again"
     if present and (missing := missing_packages("torch", "safetensors")):
-        return (), f"network left out: {', '.join(missing)} not installed (pip install 'siggen[cnn]')"
+        return (), f"network left out: {', '.join(missing)} not installed: {how_to_install('cnn')}"
     return present, note if lost else ""
 
 

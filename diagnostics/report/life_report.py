@@ -37,6 +37,7 @@ from diagnostics.training.life_baselines import (
 )
 from diagnostics.training.life_rows import INDICATORS, inspections
 from siggen.dataset.reading import Dataset
+from siggen.errors import how_to_install
 
 PAGE = "report.html"
 KNOWN = (CONSTANT, AGE, AREAS, OUTLOOK)
@@ -105,7 +106,7 @@ def _left_out(found: Inspections, *, wanted: bool) -> str:
     if not wanted:
         return "No sequence network: --no-cnn."
     if missing_packages("torch"):
-        return "No sequence network: PyTorch is not installed (pip install 'siggen[cnn]')."
+        return f"No sequence network: PyTorch is not installed: {how_to_install('cnn')}."
     return "" if found.averages else "No sequence network: records hold fewer than two whole pinion revolutions."
 
 

@@ -50,7 +50,7 @@ from diagnostics.training.studies import Studies, run_studies, studies_metrics
 from diagnostics.training.training import Training, train_models, training_metrics
 from diagnostics.training.training_sets import checked_table, measured_table, other_table
 from siggen.dataset.reading import Dataset
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, how_to_install
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -251,7 +251,7 @@ def _trained(
     notes = []
     missing = missing_packages("torch", "safetensors") if options.cnn else ()
     if missing:
-        notes.append(f"No network: {', '.join(missing)} is not installed. Install it: pip install 'siggen[cnn]'.")
+        notes.append(f"No network: {', '.join(missing)} is not installed: {how_to_install('cnn')}.")
     if not options.cnn:
         notes.append("The networks were left out (--no-cnn). The same command without it trains and judges them.")
     for with_network in dict.fromkeys((options.cnn and not missing, False)):

@@ -72,9 +72,9 @@ app.add_typer(inspect, name="inspect")
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
+        from siggen.sources import installed_version
 
-        typer.echo(f"siggen {version('siggen')}")
+        typer.echo(f"siggen {installed_version()}")
         raise typer.Exit
 
 

@@ -8,12 +8,11 @@ import platform
 import sys
 from collections.abc import Mapping
 from hashlib import sha256
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from siggen.sources import CHARACTERS, sources_digest
+from siggen.sources import CHARACTERS, installed_version, sources_digest
 
-PACKAGES = ("siggen", "numpy", "scipy", "numba", "llvmlite", "pyarrow")
+PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "pyarrow")
 MAKES_RECORDS = (
     *("arrays.py", "compiled.py", "seeding.py", "lanes/**/*.py", "keys/**/*.py", "faults/**/*.py"),
     *("noise/**/*.py", "sensors/**/*.py", "life/**/*.py", "config/**/*.py", "rig/**/*.py"),
@@ -36,7 +35,8 @@ VECTOR_EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl", "a
 def environment() -> dict[str, str]:
     """Return versions, sources, system, C library and CPU family, and the `fingerprint` of what can change a bit."""
     facts = {
-        **{package: _version(package) for package in PACKAGES},
+        "siggen": installed_version(),
+        **{package: installed_version(package) for package in PACKAGES},
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
         "libc": " ".join(platform.libc_ver()).strip() or "unknown",
@@ -85,13 +85,6 @@ def _own_peak_bytes() -> int | None:
     except OSError:
         return None
     return next((1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:")), None)
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "not installed"
 
 
 def _cpu() -> str:

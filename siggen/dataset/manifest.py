@@ -120,9 +120,9 @@ def read_manifest(storage: Storage) -> Inventory:
     if not isinstance(facts, Inventory):
         raise DatasetError(
             f"{storage.location}: received schema version {facts.schema_version[:20]}; allowed is "
-            f"{' and '.join(READ_VERSIONS)}. The set was written by another version of siggen: read a newer one after "
-            "pip install --upgrade siggen, generate an older one again from its config.yaml; `siggen verify` checks "
-            "its files all the same"
+            f"{' and '.join(READ_VERSIONS)}. The set was written by another version of siggen: read a newer one with "
+            "that version (docs/start/install.md), generate an older one again from its config.yaml; `siggen verify` "
+            "checks its files all the same"
         )
     return facts
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from siggen.errors import DatasetError, UsageError
+from siggen.errors import DatasetError, UsageError, how_to_install
 
 ATTEMPTS = 6
 """With waits that double from about 1 s, by chance shortened (`standard` of botocore): half a minute at most."""
@@ -37,7 +37,7 @@ def s3_client() -> Any:
         If boto3 is not installed.
     """
     if importlib.util.find_spec("boto3") is None:
-        raise UsageError("s3:// needs boto3; install with: pip install 'siggen[s3]'")
+        raise UsageError(f"s3:// needs boto3: {how_to_install('s3')}")
     import boto3
     from botocore.config import Config
 

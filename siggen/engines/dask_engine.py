@@ -12,7 +12,7 @@ from siggen.engines.orphan import end_with, ending_with_this
 from siggen.engines.protocol import Result, Results, Task, task_error
 from siggen.engines.window import windowed
 from siggen.engines.worker import ONE_THREAD, RAISED, answer
-from siggen.errors import EngineError, UsageError
+from siggen.errors import EngineError, UsageError, how_to_install
 
 ADDRESS_VARIABLE = "DASK_SCHEDULER_ADDRESS"
 
@@ -39,7 +39,7 @@ class DaskEngine:
         import importlib.util
 
         if importlib.util.find_spec("distributed") is None:
-            raise UsageError("the engine 'dask' needs distributed; install with: pip install 'siggen[dask]'")
+            raise UsageError(f"the engine 'dask' needs distributed: {how_to_install('dask')}")
         if workers < 1:
             raise UsageError(f"received {workers} workers; at least 1 is needed")
         self.workers = workers

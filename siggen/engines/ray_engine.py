@@ -20,7 +20,7 @@ from siggen.engines.processes import TASK_ATTEMPTS
 from siggen.engines.protocol import Result, Results, Task, task_error
 from siggen.engines.window import windowed
 from siggen.engines.worker import ONE_THREAD, RAISED, answer
-from siggen.errors import EngineError, UsageError
+from siggen.errors import EngineError, UsageError, how_to_install
 
 ADDRESS_VARIABLE = "RAY_ADDRESS"
 
@@ -59,7 +59,7 @@ class RayEngine:
 
     def __init__(self, workers: int, address: str | None = None) -> None:
         if importlib.util.find_spec("ray") is None:
-            raise UsageError("the engine 'ray' needs ray; install with: pip install 'siggen[ray]'")
+            raise UsageError(f"the engine 'ray' needs ray: {how_to_install('ray')}")
         if workers < 1:
             raise UsageError(f"received {workers} workers; at least 1 is needed")
         self.workers = workers

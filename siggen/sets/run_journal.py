@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
-from importlib.metadata import version
 from typing import TYPE_CHECKING, TypeVar
 
 from siggen.columns.record import RecordFailure
@@ -15,6 +14,7 @@ from siggen.dataset.sidecar import Sidecar
 from siggen.engines.protocol import Engine
 from siggen.record.stage_times import StageTimes
 from siggen.sets.loss_limit import LossLimit
+from siggen.sources import installed_version
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -72,7 +72,7 @@ class RunJournal:
 
     def start(self, config: Config, path: str, engine: Engine, records: int, shards: int) -> None:
         """Tell that a run begins, with the records and shards of the whole set."""
-        facts = {"log_version": LOG_VERSION, "siggen": version("siggen"), "name": config.name}
+        facts = {"log_version": LOG_VERSION, "siggen": installed_version(), "name": config.name}
         who = {"engine": type(engine).__name__, "workers": engine.workers}
         facts |= {"identity": config.identity, "path": path, **who, "records": records, "shards": shards}
         self._tell("run_started", facts)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +32,7 @@ from siggen.planning.specimen import Specimen, draw_operating_point, draw_specim
 from siggen.planning.state_config import state_config
 from siggen.record.simulation import at_point, start_angle_rad
 from siggen.record.specimen_state import refused_as, specimen_state
+from siggen.sources import installed_version
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import history_s
 from siggen.specimen.step_choice import stepped_motion
@@ -75,7 +75,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     return {
         "format": "siggen exported model",
         "format_version": FORMAT_VERSION,
-        "siggen_version": version("siggen"),
+        "siggen_version": installed_version(),
         "identity": whole.identity,
         "configuration": json.dumps(whole.canonical(), sort_keys=True),
         "record_id": record_id,

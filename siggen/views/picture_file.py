@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from siggen.config.names import NO_NAMES, Names
-from siggen.errors import UsageError
+from siggen.errors import UsageError, how_to_install
 from siggen.views.figure_style import figure_style
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150, names: N
             for text in figure.findobj(Text) if names.gears else ():
                 text.set_text(names.text(text.get_text()))
     except ImportError:
-        raise UsageError("drawing needs matplotlib: pip install 'siggen[diagnostics]'") from None
+        raise UsageError(f"drawing needs matplotlib: {how_to_install('diagnostics')}") from None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with mpl.rc_context(figure_style()):  # letters are set when the file is written

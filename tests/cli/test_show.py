@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import app
 from siggen.dataset.reading import open as open_set
-from siggen.errors import UsageError
+from siggen.errors import UsageError, how_to_install
 from siggen.views.record_figure import SIDEBANDS, amplitude_spectrum, record_figure
 from tests.dataset.fake_set import write_fake_set
 
@@ -88,4 +88,4 @@ def test_without_matplotlib_the_message_says_how_to_install_it(
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     result = CliRunner().invoke(app, ["show", str(folder), "--record", "3", "--png", str(tmp_path / "x.png")])
     assert isinstance(result.exception, UsageError)
-    assert "pip install 'siggen[diagnostics]'" in str(result.exception)
+    assert how_to_install("diagnostics") in str(result.exception)

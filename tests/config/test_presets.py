@@ -69,7 +69,7 @@ def test_an_installed_wheel_plans_a_preset_by_name(tmp_path: Path) -> None:
     subprocess.run([*pip, "wheel", "--no-deps", "-w", tmp_path, ROOT], check=True)
     venv.create(tmp_path / "venv", with_pip=False)
     python = tmp_path / "venv" / "bin" / "python"
-    (wheel,) = tmp_path.glob("siggen-*.whl")
+    (wheel,) = tmp_path.glob("siggen_gears-*.whl")
     subprocess.run([*pip, "--python", python, "install", "--no-deps", wheel], check=True)
     # The libraries of this environment without its siggen, which stands in a file of its own.
     libraries = next(path for path in sys.path if path.endswith("site-packages"))

@@ -10,7 +10,7 @@ from siggen.dataset.environment import PACKAGES, environment, host_facts, peak_m
 def test_the_environment_names_versions_system_and_cpu_and_is_stable() -> None:
     facts = environment()
     assert facts == environment()
-    assert set(facts) == {*PACKAGES, "python", "system", "libc", "cpu", "sources", "fingerprint"}
+    assert set(facts) == {"siggen", *PACKAGES, "python", "system", "libc", "cpu", "sources", "fingerprint"}
     assert all(facts.values())
     assert "not installed" not in facts.values()
 

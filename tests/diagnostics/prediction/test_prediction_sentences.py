@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.metadata import version
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+import siggen
 from diagnostics.prediction.prediction import Nearness, Vote
 from diagnostics.prediction.prediction_page import model_provenance, prediction_summary
 from diagnostics.recordings.shaft_pulses import ShaftPulses
@@ -55,5 +55,5 @@ def test_without_an_answer_the_reasons_come_first_and_the_votes_are_withheld() -
 def test_the_program_and_the_set_behind_the_models_are_named() -> None:
     facts: Any = SimpleNamespace(set_name="quickstart", identity="42ab")
     assert model_provenance(facts) == (
-        f"Made by siggen-diagnostics {version('siggen')} with models trained on the set quickstart, identity 42ab."
+        f"Made by siggen-diagnostics {siggen.__version__} with models trained on the set quickstart, identity 42ab."
     )
