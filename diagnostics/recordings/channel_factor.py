@@ -5,42 +5,24 @@ Accelerations and voltages of accelerometers are turned into m/s^2. Any other qu
 
 from __future__ import annotations
 
-import re
+import logging
+from functools import cache
 from pathlib import Path
 
+from diagnostics.recordings.units import (
+    ACCELERATION,
+    ACCELERATIONS,
+    STANDARD_GRAVITY_M_S2,
+    VOLTAGE,
+    VOLTAGES,
+    known_unit,
+)
 from siggen.errors import UsageError
-
-STANDARD_GRAVITY_M_S2 = 9.80665
-ACCELERATIONS = {
-    "m/s2": 1.0,
-    "m/s^2": 1.0,
-    "mm/s2": 1e-3,
-    "g": STANDARD_GRAVITY_M_S2,
-    "mg": 1e-3 * STANDARD_GRAVITY_M_S2,
-}
-VOLTAGES_MV = {"mV": 1.0, "V": 1000.0}
 
 ASSUMED = "m/s2"
 ACCELERATION_UNIT = "m/s^2"
 """How sets and models write it."""
-SPELLINGS = {
-    "m/s²": "m/s2",
-    "m/s^2": "m/s2",
-    "m/s**2": "m/s2",
-    "m/s/s": "m/s2",
-    "mm/s²": "mm/s2",
-    "mm/s^2": "mm/s2",
-    "gn": "g",
-    "Volts": "V",
-    "Volt": "V",
-}
-"""Other spellings of known units, as recorders write them."""
-KNOWN = ("m/s2", "mm/s2", "g", "mg", "mV", "V")
-OTHER_QUANTITY = re.compile(
-    r"[kMmcduµn]?(N|Pa|bar|N[ *·]?m|m/m|m/s|m|rad|rad/s|A|W|s|Hz|K)|lbf|psi|in|in/s|ips|rpm|1/min|°|deg|(°|deg ?)[CF]",
-    re.IGNORECASE,
-)
-"""Units that are certainly not of an acceleration, nor of an accelerometer's voltage."""
+ALLOWED = (*ACCELERATIONS, *VOLTAGES)
 
 
 def factor_to_m_s2(unit: str, sensitivity_mv_per_g: float | None = None) -> float:
@@ -58,19 +40,20 @@ def factor_to_m_s2(unit: str, sensitivity_mv_per_g: float | None = None) -> floa
     UsageError
         If the unit is unknown, or a voltage comes without a sensitivity, or the sensitivity is not positive.
     """
-    if unit in ACCELERATIONS:
-        return ACCELERATIONS[unit]
-    if unit not in VOLTAGES_MV:
+    known = known_unit(unit)
+    if known is not None and known.quantity == ACCELERATION:
+        return known.factor
+    if known is None or known.quantity != VOLTAGE:
         raise UsageError(
-            f"unit: received {unit!r}; allowed are {', '.join((*ACCELERATIONS, *VOLTAGES_MV))}. Without the unit the "
-            "level of a recording means nothing to a model."
+            f"unit: received {unit!r}; allowed are {', '.join(ALLOWED)}. Without the unit the level of a recording "
+            "means nothing to a model."
         )
     if sensitivity_mv_per_g is None or not sensitivity_mv_per_g > 0.0:
         raise UsageError(
             f"unit {unit}: received sensitivity {sensitivity_mv_per_g}; a voltage needs the accelerometer's, in mV per "
             "g, from its calibration sheet: --sensitivity 100"
         )
-    return VOLTAGES_MV[unit] / sensitivity_mv_per_g * STANDARD_GRAVITY_M_S2
+    return known.factor / sensitivity_mv_per_g * STANDARD_GRAVITY_M_S2
 
 
 def channel_factor(
@@ -102,31 +85,41 @@ def channel_factor(
         If file and user name different units, the file an unknown one and the user none, or one of another quantity
         than is wanted, or as of `factor_to_m_s2`.
     """
-    stated, said = (SPELLINGS.get(unit.strip(), unit.strip()) if unit else None for unit in (stated, said))
     if wanted != ACCELERATION_UNIT:
         _check_same(path, column, stated or said, wanted)
         return 1.0
-    if stated and stated not in KNOWN and OTHER_QUANTITY.fullmatch(stated):
+    known, named = known_unit(stated or ""), known_unit(said or "")
+    if stated and known is not None and known.quantity not in (ACCELERATION, VOLTAGE):
         raise UsageError(
             f"{path}: states the unit {stated[:40]!r} of {column}, which is no acceleration; allowed are "
-            f"{', '.join(KNOWN)}. Name a column of an accelerometer (--channel NAME=COLUMN), or correct the file"
+            f"{', '.join(ALLOWED)}. Name a column of an accelerometer (--channel NAME=COLUMN), or correct the file"
         )
-    if stated in KNOWN and said and said != stated:
+    if known is not None and said and known != named:
         raise UsageError(
             f"{path}: states the unit {stated} of {column}, received --unit {said}; leave --unit out or "
             "correct the file"
         )
-    if stated and stated not in KNOWN and not said:
+    if stated and known is None and not said:
         raise UsageError(
-            f"{path}: states the unit {stated[:40]!r} of {column}; allowed are {', '.join(KNOWN)}. Say what the values "
-            "are, e.g. --unit g"
+            f"{path}: states the unit {stated[:40]!r} of {column}; allowed are {', '.join(ALLOWED)}. Say what the "
+            "values are, e.g. --unit g"
         )
+    if not (stated or said):
+        say_assumed(column)
     return factor_to_m_s2(said or stated or ASSUMED, mv_per_g)
+
+
+@cache
+def say_assumed(column: str) -> None:
+    """Say once that nobody names the unit of a column."""
+    logging.getLogger(__name__).warning(
+        "note: no unit of column %s is stated; %s is assumed, --unit says another", column, ASSUMED
+    )
 
 
 def _check_same(path: Path, column: str, found: str | None, wanted: str) -> None:
     """Refuse another unit than the one wanted, or none at all."""
-    if found == wanted:
+    if found == wanted or (found and known_unit(found) == known_unit(wanted) is not None):
         return
     received = f"the unit {found[:40]!r}" if found else "no unit"
     way_out = f"Name a column in {wanted} (--channel NAME=COLUMN), or take a model of other channels"

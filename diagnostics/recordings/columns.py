@@ -25,6 +25,7 @@ from diagnostics.recordings.file_columns import READERS
 from diagnostics.recordings.reading_process import columns_read_apart
 from diagnostics.recordings.recorded_columns import LARGEST, OWN_TACHO, Columns
 from diagnostics.recordings.time_gaps import TURNED, refuse_gaps
+from diagnostics.recordings.units import known_unit, unit_of_name
 from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
 from siggen.errors import UsageError
 
@@ -143,8 +144,22 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
     found = columns_read_apart(path, row)
     if not found.values:
         raise UsageError(f"{path}: holds no column of numbers")
+    found = replace(found, units=_named_units(path, found))
     refuse_gaps(path, found)
     return _with_clocks(found)
+
+
+def _named_units(path: Path, found: Columns) -> dict[str, str]:
+    """Return the units that the file states of its columns, beside them or in their names."""
+    units = dict(found.units)
+    for name in found.values:
+        in_name = unit_of_name(name)[1]
+        if known_unit(in_name) is None:
+            continue
+        if name in units and known_unit(units[name]) not in (None, known_unit(in_name)):
+            raise UsageError(f"{path}: column {name} names {in_name}, its row of units {units[name]}; correct the file")
+        units.setdefault(name, in_name)
+    return units
 
 
 def _with_clocks(found: Columns) -> Columns:

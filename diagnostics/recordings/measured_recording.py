@@ -14,6 +14,8 @@ import numpy as np
 from diagnostics.recordings.channel_factor import ACCELERATION_UNIT, ASSUMED, channel_factor
 from diagnostics.recordings.columns import read_columns, signal_problem
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
+from diagnostics.recordings.roles import Role, named_role
+from diagnostics.recordings.units import known_unit, unit_of_name
 from siggen.errors import UsageError
 
 HYSTERESIS = 0.2
@@ -207,6 +209,14 @@ def _column(found: Columns, name: str, said: str | None) -> str | None:
 
 
 def _factor(path: Path, found: Columns, column: str, facts: RecordingFacts, wanted: str) -> float:
+    """Return the factor, of columns that are vibration by name and unit; a rig's own channels are what they are."""
+    by_name = named_role(unit_of_name(column)[0], "").role
+    of_rig = wanted != ACCELERATION_UNIT or column in found.own.values()
+    if not of_rig and by_name is not Role.VIBRATION and known_unit(found.units.get(column, "")) is None:
+        raise UsageError(
+            f"{path}: column {column} is called as a {by_name} is; allowed are columns of vibration. Name another "
+            "(--channel NAME=COLUMN), or call it as what it is, with its unit: a [g]"
+        )
     return channel_factor(path, column, found.units.get(column), facts.unit, facts.sensitivity_mv_per_g, wanted)
 
 

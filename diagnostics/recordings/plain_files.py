@@ -20,9 +20,6 @@ COMMENTS = ("#", "%")
 UNIT = re.compile(r"[\[(].*[\])]|(m/s(2|²|\^2|\*\*2)|g|[mµu]?V|[mµun]?s|sec|k?Hz|-|)", re.IGNORECASE)
 """Cell of a row of units: anything in brackets, or one of the units that an acceleration or its time comes in."""
 
-TIME_UNIT = re.compile(r"[mµu]?s|sec", re.IGNORECASE)
-"""Units of columns of acceleration are the user's to say: a row of units often stands over columns it is not of."""
-
 IDENTITY = b"siggen.identity"
 """Key of the schema's metadata in every file that siggen writes."""
 
@@ -70,7 +67,7 @@ def read_csv(path: Path) -> Columns:
     filled = (np.asarray(column.to_numpy(), dtype=np.float64) for column in table.columns)
     units = {name: unit.strip("[]() ") for name, unit in zip(names, rows[1], strict=True)} if above == 2 else {}
     columns = dict(zip(names, filled, strict=True))
-    return Columns(columns, units={name: unit for name, unit in units.items() if TIME_UNIT.fullmatch(unit)})
+    return Columns(columns, units={name: unit for name, unit in units.items() if unit not in ("", "-")})
 
 
 def _first_lines(path: Path) -> list[tuple[int, str]]:

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from scipy.io import savemat, wavfile
 
+from diagnostics.recordings.file_channels import file_channels
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from siggen.errors import UsageError
 
@@ -89,12 +90,6 @@ def test_comments_and_units_above_the_samples_are_skipped(above: str, tmp_path: 
     np.testing.assert_array_equal(found.channels["vertical"], [1.5, 0.5, -1.0])
 
 
-def test_units_with_decimal_commas(tmp_path: Path) -> None:
-    (tmp_path / "run.csv").write_text("vertical;horizontal\ng;g\n1,5;-2\n0,5;3\n-1;1\n")
-    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
-    np.testing.assert_array_equal(found.channels["vertical"], [1.5, 0.5, -1.0])
-
-
 @pytest.mark.parametrize("second", ["start,here", "g,3.0", "g", "g,rotor"])
 def test_a_second_row_that_is_not_plainly_units_is_no_sample_and_refused(second: str, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text(f"vertical,horizontal\n{second}\n1.5,2.5\n0.5,3.0\n")
@@ -162,3 +157,30 @@ def test_rate_channels_and_pickled_arrays_are_refused(tmp_path: Path) -> None:
     for name in ("objects.npy", "pickled.npy"):
         with pytest.raises(UsageError, match="cannot be read as arrays of numbers"):
             read_recording(tmp_path / name, NAMES, RecordingFacts(fs_hz=FS_HZ))
+
+
+@pytest.mark.parametrize(
+    ("above", "factor"),
+    [
+        ("vertical,horizontal\ng,g\n", 9.80665),
+        ("vertical,horizontal\n[mg],[mg]\n", 9.80665e-3),
+        ("vertical [g],horizontal [g]\n", 9.80665),
+        ("vertical_mg,horizontal_mg\n", 9.80665e-3),
+        ("vertical (m/s^2),horizontal (m/s²)\n", 1.0),
+    ],
+)
+def test_a_unit_in_a_name_or_in_a_row_is_that_of_the_values(above: str, factor: float, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(above + "1.5,-2.25\n0.5,3.0\n-1.0,1.0\n", encoding="utf-8")
+    names = dict(zip(NAMES, ("1", "2"), strict=True))
+    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ, columns=names))
+    np.testing.assert_allclose(found.channels["vertical"], factor * np.array([1.5, 0.5, -1.0]))
+
+
+@pytest.mark.parametrize(
+    "other", ["time", "rpm", "speed", "ticks", "motor_speed", "angle", "index", "label", "n [rpm]"]
+)
+def test_columns_of_other_quantities_are_never_vibration(other: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(f"lid,{other}\n" + "1.5,3\n0.5,7\n-1.0,9\n2.0,1\n")
+    assert file_channels(tmp_path / "run.csv") == ("lid",)
+    with pytest.raises(UsageError, match=r"no acceleration|allowed are columns of vibration"):
+        read_recording(tmp_path / "run.csv", ("a",), RecordingFacts(fs_hz=FS_HZ, columns={"a": other}))
