@@ -26,10 +26,10 @@ def publish(
         typer.Option("--with-recordings", help="Publish a set whose paths and lines were fitted to your recordings."),
     ] = False,
 ) -> None:
-    """Make a folder for the Hugging Face hub, Zenodo and a DOI; the set itself is not touched, nothing is uploaded.
+    """Make a folder for the Hugging Face hub and Zenodo; the set itself is not touched, nothing is uploaded.
 
     The folder holds the set's files, a card with class labels, what physics is on and where every number comes from,
-    croissant.json, datacite.json, ISA-PHM metadata and previews. It opens and verifies like the set.
+    croissant.json and previews. It opens and verifies like the set.
 
     Exit codes: 0 done, 2 no finished set, a licence that is unset, or a folder that is not empty.
 

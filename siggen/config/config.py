@@ -36,9 +36,6 @@ from siggen.life.pitting import EXAMPLE
 from siggen.sensors.places import Places
 from siggen.sensors.registry import SensorSection
 
-IDENTITY_VERSION = 2
-"""Part of every identity; raising it changes all of them; see docs/develop/versions.md."""
-
 BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
 
@@ -211,11 +208,8 @@ class Config(Section):
 
     @cached_property
     def identity(self) -> str:
-        """SHA-256 (hexadecimal) of what differs from the defaults, without `specimens`: what records follow from.
-
-        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist.
-        """
-        content = {**_identity_content(self), "schema_version": IDENTITY_VERSION}
+        """SHA-256 (hexadecimal) of what differs from the defaults, without `specimens`: what records follow from."""
+        content = _identity_content(self)
         del content["specimens"]
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()

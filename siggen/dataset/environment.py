@@ -48,7 +48,7 @@ def environment() -> dict[str, str]:
 
 
 def fingerprint(made_in: Mapping[str, str]) -> str:
-    """Return the fingerprint of an environment; empty for one from before there were any."""
+    """Return the fingerprint of an environment; empty if a stranger gave it none."""
     return made_in.get("fingerprint", "")
 
 

@@ -9,8 +9,7 @@ import yaml
 
 from siggen.config import parse, yaml_text
 from siggen.dataset.gate import manifest_facts
-from siggen.dataset.inventory import Inventory
-from siggen.dataset.manifest import CONFIG, MANIFEST, read_manifest
+from siggen.dataset.manifest import CONFIG, MANIFEST
 from siggen.dataset.object_name import CHECKSUMS
 from siggen.dataset.shard_index import promised_files
 from siggen.dataset.storage import Storage
@@ -35,7 +34,7 @@ def is_finished(storage: Storage, config: Config) -> bool:
     Raises
     ------
     DatasetError
-        If the folder holds another set, a finished one of an unknown schema version, or files that are not a set.
+        If the folder holds another set, a finished one of another schema version, or files that are not a set.
         Nothing is ever deleted to make room.
     """
     if not storage.exists(CONFIG):
@@ -51,8 +50,6 @@ def _has_every_file(storage: Storage) -> bool:
         facts = manifest_facts(MANIFEST, storage.get(MANIFEST))
     except VerificationError:
         return False
-    if not isinstance(facts, Inventory):
-        facts = read_manifest(storage)  # says why it is not touched
     if any(sizes.get(name) != file.bytes for name, file in facts.files.items()):
         return False
     try:
@@ -97,7 +94,7 @@ def _refuse_other_set(storage: Storage, config: Config) -> None:
 
 
 def _is_same_set(found: Any, config: Config) -> bool:
-    """Tell whether a stored configuration describes this set in another form, as a version with fewer keys wrote it."""
+    """Tell whether a stored configuration describes this set in another form."""
     stored = parse(found).config if isinstance(found, Mapping) else None
     return stored is not None and (stored.identity, stored.specimens) == (config.identity, config.specimens)
 

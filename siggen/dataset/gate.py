@@ -15,40 +15,46 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from siggen.columns.versions import READ_VERSIONS
-from siggen.dataset.inventory import HashedFiles, Inventory, SidecarFacts
+from siggen.columns.versions import SCHEMA_VERSION
+from siggen.dataset.inventory import Inventory, SidecarFacts
 from siggen.dataset.object_name import CHECKSUMS, INDEX, data_name, internals_name, sidecar_name
 from siggen.dataset.seal import DIGEST, check_seal
-from siggen.errors import VerificationError
+from siggen.errors import DatasetError, VerificationError
 
 SHOWN_PROBLEMS = 3
 SHOWN_CHARACTERS = 60
 MOST_SAMPLES = 2**31
 
-Facts = TypeVar("Facts", HashedFiles, Inventory, SidecarFacts)
+Facts = TypeVar("Facts", Inventory, SidecarFacts)
 ADAPTERS: Mapping[type, Callable[[], TypeAdapter[Any]]] = {
-    kind: cache(partial(TypeAdapter, kind)) for kind in (HashedFiles, Inventory, SidecarFacts)
+    kind: cache(partial(TypeAdapter, kind)) for kind in (Inventory, SidecarFacts)
 }
 """Each is built when the first of its files is read."""
 
 
-def manifest_facts(name: str, stored: bytes) -> HashedFiles:
-    """Return what a manifest says: an Inventory if files of its version are read here, else what every version says.
+def manifest_facts(name: str, stored: bytes) -> Inventory:
+    """Return what a manifest says.
 
     Raises
     ------
+    DatasetError
+        If a version of siggen with other files wrote it.
     VerificationError
         If it was changed after it was sealed, or says what no set can be.
     """
     check_seal(name, stored)
-    facts = _typed(HashedFiles, name, stored)
-    if facts.schema_version in READ_VERSIONS:
-        facts = _typed(Inventory, name, stored)
-        _refuse(name, list(_unfit(facts)))
     try:
         content = json.loads(stored)
     except (ValueError, RecursionError) as error:
         raise VerificationError(f"{name} is not readable as JSON ({error})") from error
+    version = content.get("schema_version")
+    if isinstance(version, str) and version != SCHEMA_VERSION:
+        raise DatasetError(
+            f"{name}: received schema version {version[:20]}; allowed is {SCHEMA_VERSION}. Another version of siggen "
+            "wrote the set: open it with that version, or generate it again from its config.yaml into a new folder"
+        )
+    facts = _typed(Inventory, name, stored)
+    _refuse(name, list(_unfit(facts)))
     del content[DIGEST]
     return replace(facts, content=content)
 

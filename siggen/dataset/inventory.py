@@ -110,7 +110,7 @@ class SidecarTable:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SidecarFacts:
-    """Content of a sidecar, whatever version wrote it."""
+    """Content of a sidecar."""
 
     schema_version: Text
     shard: ShardName
@@ -127,8 +127,8 @@ class SidecarFacts:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HashedFiles:
-    """What the manifest of every version says; `content` is all of it, as JSON has it."""
+class Inventory:
+    """What a manifest says; `content` is all of it, as JSON has it."""
 
     schema_version: Text
     files: dict[ObjectName, PromisedFile]
@@ -136,12 +136,6 @@ class HashedFiles:
     rows: Count
     simulation_version: Count
     content: Annotated[dict[str, Any], SkipValidation] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Inventory(HashedFiles):
-    """What the manifest of a set of a version that is read here says beside."""
-
     name: Name
     seed: int
     specimens: Count

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from siggen.columns.versions import READ_VERSIONS, SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.inventory import Inventory
 from siggen.dataset.shard import FileFacts
@@ -112,19 +112,13 @@ def read_manifest(storage: Storage) -> Inventory:
     if not storage.exists(MANIFEST):
         raise DatasetError(_why_no_manifest(storage))
     try:
-        facts = manifest_facts(MANIFEST, storage.get(MANIFEST))
+        return manifest_facts(MANIFEST, storage.get(MANIFEST))
+    except DatasetError as error:
+        raise DatasetError(f"{storage.location}/{error}") from error
     except VerificationError as error:
         raise DatasetError(
             f"{storage.location}: {error}; `siggen generate` with the set's config.yaml makes it again from its shards"
         ) from error
-    if not isinstance(facts, Inventory):
-        raise DatasetError(
-            f"{storage.location}: received schema version {facts.schema_version[:20]}; allowed is "
-            f"{' and '.join(READ_VERSIONS)}. The set was written by another version of siggen: read a newer one with "
-            "that version (docs/start/install.md), generate an older one again from its config.yaml; `siggen verify` "
-            "checks its files all the same"
-        )
-    return facts
 
 
 def _why_no_manifest(storage: Storage) -> str:

@@ -16,7 +16,6 @@ import yaml
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
 from siggen.dataset.checked_file import CheckedTable
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
-from siggen.dataset.listed_columns import listed_columns
 from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
 from siggen.dataset.object_name import CHECKSUMS
 from siggen.dataset.promises import Promises
@@ -108,7 +107,7 @@ class Dataset:
 
     @cached_property
     def _listed(self) -> dict[str, ListedColumn]:
-        return listed_columns(self.inventory, self.config)
+        return {column.name: column for column in self.inventory.columns}
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.

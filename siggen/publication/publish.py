@@ -22,16 +22,14 @@ from siggen.dataset.storage_at import storage_at
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.publication.audit_section import AUDIT, audit_section
 from siggen.publication.croissant import FOLDERS, croissant
-from siggen.publication.datacite import datacite_fields
 from siggen.publication.dataset_info import dataset_info
-from siggen.publication.isa_phm import ISA_PHM, isa_phm
 from siggen.publication.publication_facts import TEMPLATE, PublicationFacts, read_publication_facts
 from siggen.publication.published_card import published_card
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
-CROISSANT, DATACITE, PREVIEWS = "croissant.json", "datacite.json", "previews"
+CROISSANT, PREVIEWS = "croissant.json", "previews"
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +87,9 @@ def publication(
     config = _config(dataset)
     _check_recordings(path, config, with_recordings=with_recordings)
     files = dataset.files
-    copied = tuple(name for name in files if name not in (CARD, CROISSANT, DATACITE) and not name.startswith(PREVIEWS))
+    copied = tuple(name for name in files if name not in (CARD, CROISSANT) and not name.startswith(PREVIEWS))
     size = sum(files[name].bytes for name in copied)
-    return Publication(_texts(dataset, config, facts, found, size), copied, size, found)
+    return Publication(_texts(dataset, config, facts, found), copied, size, found)
 
 
 def _check_recordings(path: Path | str, config: Config, *, with_recordings: bool) -> None:
@@ -172,9 +170,7 @@ def _config(dataset: Dataset) -> Config:
     return parsed.config
 
 
-def _texts(
-    dataset: Dataset, config: Config, facts: PublicationFacts, audit: Path | None, size: int
-) -> dict[str, bytes]:
+def _texts(dataset: Dataset, config: Config, facts: PublicationFacts, audit: Path | None) -> dict[str, bytes]:
     rows = dataset.inventory.rows
     records = counted(rows, f"labelled {quantities_text(config)} record")
     description = (
@@ -186,23 +182,11 @@ def _texts(
     schemas = _schemas(dataset)
     info = dataset_info(config, schemas, _counts(dataset, tuple(schemas)))
     card = published_card(dataset.card(), config, facts, info, audit_section(config.identity, audit))
-    found = {
-        CARD: card.encode(),
-        CROISSANT: _json(croissant(facts, description, tags(config), schemas, limits)),
-        DATACITE: _json(datacite_fields(facts, description, tags(config), size)),
-    }
-    if config.life is None:  # its studies are states, and an inspection is none
-        studies = isa_phm(config, facts, description, dataset.manifest["channels"], _signal_files(dataset))
-        found[ISA_PHM] = _json(studies)
-    return found
-
-
-def _signal_files(dataset: Dataset) -> list[str]:
-    return [shard.file for shard in dataset.index.shards()]
+    return {CARD: card.encode(), CROISSANT: _json(croissant(facts, description, tags(config), schemas, limits))}
 
 
 def _schemas(dataset: Dataset) -> dict[str, pa.Schema]:
-    """Return the columns of each view as they are in the files, which may be of an earlier version."""
+    """Return the columns of each view as they are in the files."""
     if not dataset.inventory.rows:
         raise DatasetError(f"{dataset.path} has no rows: there is nothing to publish")
     found = {

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from siggen.columns.versions import SIMULATION_VERSION
 from siggen.dataset.environment import version_text
 from siggen.dataset.extensions import put_extensions, read_extensions
 from siggen.dataset.manifest import CONFIG, read_manifest
@@ -55,7 +54,7 @@ def extend(
     UsageError
         If the number is none, or not above what the set has.
     DatasetError
-        If there is no finished set, its shards are of an earlier version, or one of them is damaged.
+        If there is no finished set, its shards are of another fingerprint, or one of them is damaged.
     InterruptionError
         After SIGINT or SIGTERM; the same call continues.
     LossError
@@ -68,8 +67,6 @@ def extend(
         there = manifest.specimens
         wanted = _wanted(specimens, there)
         _check_begun(storage, there, wanted)
-        if manifest.simulation_version != SIMULATION_VERSION:
-            raise _of_earlier_version(storage, wanted)
         config = _config(storage, wanted)
         if config.identity != manifest.identity:
             raise DatasetError(f"{storage.location}/{CONFIG} is not the configuration of this set; nothing was changed")
@@ -119,19 +116,11 @@ def _check_shards(run: SetRun, there: int) -> None:
     run.take_over(old)
     if lost := [shard.key for shard in old if shard.key not in run.sidecars]:
         where = run.storage.location
-        why = "; ".join(note.partition("; they are")[0].replace(" is made again", "") for note in run.notes[:3])
+        why = "; ".join(note.replace(" is made again", "") for note in run.notes[:3])
         raise DatasetError(
             f"{where}: {len(lost)} of its {len(old)} shards are missing, damaged or of another version of siggen "
             f"({', '.join(lost[:3])}{', ...' if len(lost) > 3 else ''}). {why or 'no file is there'}. This is "
-            f"{version_text(run.environment)}: only whole sets whose records it makes to the bit are extended. "
-            f"`siggen verify {where}` compares all files; extend with the version that made the set"
+            f"{version_text(run.environment)}: only whole sets of the same fingerprint are extended. `siggen verify "
+            f"{where}` compares all files; extend with the version and the kind of processor that made the set, or "
+            f"generate a new one: siggen generate {where}/{CONFIG} --set specimens={run.config.specimens} --out NEW"
         )
-
-
-def _of_earlier_version(storage: Storage, wanted: int) -> DatasetError:
-    return DatasetError(
-        f"{storage.location} was made by another version of the simulation; such a set "
-        "is read and verified, not extended. "
-        "Generate one into a new folder: "
-        f"siggen generate {storage.location}/{CONFIG} --set specimens={wanted} --out NEW"
-    )

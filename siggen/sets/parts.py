@@ -25,7 +25,7 @@ from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.planning.plan import ShardPlan
-from siggen.sets.earlier_shards import Again, StoredShard, promised, verdicts
+from siggen.sets.committed_shards import promised
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
@@ -137,30 +137,27 @@ def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | Non
 
 
 def _one_version(run: SetRun, storages: Sequence[Storage]) -> frozenset[str]:
-    """Return the fingerprints of all shards, which have to be of one version, or equal to the bit.
+    """Return the fingerprint of all shards.
 
     Raises
     ------
     DatasetError
-        If they are not; nothing has been copied then.
+        If there are several, or its sources are not those here; nothing has been copied then.
     """
-    found: dict[str, StoredShard] = {}
+    found: dict[str, Sidecar] = {}
     for shard, storage in ((shard, storage) for shard in run.planned for storage in storages):
         run.interruption.check()
         sidecar = _promised(run, storage, shard)
         if shard.key not in found and sidecar is not None:
-            found[shard.key] = StoredShard(storage, sidecar)
-    environments = {fingerprint(one.sidecar.environment): one.sidecar.environment for one in found.values()}
-    same_sources = {made_in.get("sources") for made_in in environments.values()} == {run.environment["sources"]}
-    if len(environments) > 1 or not same_sources:
-        again = Again(run.config, run.physics, run.quantities, run.engine)
-        unlike = [str(v) for v in verdicts(list(found.values()), run.environment, again) if v.difference]
-        if unlike:
-            raise DatasetError(
-                f"{run.storage.location}: parts of other versions are not mixed; this is "
-                f"{version_text(run.environment)}. {'. '.join(unlike[:3])}. Make these parts again with the version "
-                "and the kind of processor that made the others, or merge with the version that made all of them"
-            )
+            found[shard.key] = sidecar
+    environments = {fingerprint(one.environment): one.environment for one in found.values()}
+    sources = {made_in.get("sources") for made_in in environments.values()}
+    if len(environments) > 1 or sources - {run.environment["sources"]}:
+        raise DatasetError(
+            f"{run.storage.location}: parts of other versions are not mixed; this is {version_text(run.environment)}, "
+            f"the parts are by {', '.join(sorted(map(version_text, environments.values()))[:3])}. Make parts again "
+            "with the version and the kind of processor that made the others, or merge with the version that made all"
+        )
     return frozenset(environments)
 
 

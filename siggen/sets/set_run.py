@@ -28,7 +28,7 @@ from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
 from siggen.keys.column import Column
 from siggen.planning.plan import ShardPlan, rows_per_group, shards
 from siggen.sets import physics as contents
-from siggen.sets.earlier_shards import Again, EarlierShards
+from siggen.sets.committed_shards import usable_shards
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import LossLimit
 from siggen.sets.run_facts import run_facts
@@ -134,7 +134,7 @@ class SetRun:
     planned
         All shards of the set.
     trusted
-        Fingerprints of versions whose shards are taken over as they are.
+        Fingerprints whose shards are taken over.
     notes
         Sentences on shards that another version made.
     """
@@ -227,11 +227,10 @@ class SetRun:
         )
 
     def take_over(self, wanted: Sequence[ShardPlan]) -> None:
-        """Find the shards that earlier runs committed, and whose records this version would make to the bit."""
+        """Find the shards that earlier runs committed with a trusted fingerprint."""
         missing = [shard for shard in wanted if shard.key not in self.sidecars]
-        again = Again(self.config, self.physics, self.quantities, self.engine)
-        search = EarlierShards(self.storage, self.trusted, self.environment, again, self.notes)
-        for sidecar in search.usable(missing, self.interruption.check):
+        check = self.interruption.check
+        for sidecar in usable_shards(self.config, self.storage, missing, self.trusted, self.notes, check):
             self.accept(sidecar)
 
     def accept(self, sidecar: Sidecar) -> None:

@@ -9,11 +9,11 @@ from random import Random
 from shlex import quote
 from typing import TYPE_CHECKING
 
-from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
+from siggen.columns.versions import SIMULATION_VERSION
 from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts, sidecar_facts
-from siggen.dataset.inventory import HashedFiles, Inventory, PromisedFile
+from siggen.dataset.inventory import Inventory, PromisedFile
 from siggen.dataset.manifest import (
     BLIND,
     CONFIG,
@@ -94,8 +94,8 @@ def verify(
     """Compare a finished set with its manifest, and `sample` of its records with a new simulation.
 
     Records are compared bit for bit if versions and CPU family are those that made them; elsewhere signals may
-    differ by one step of the converter. A set that another version of the simulation made, or whose files are of a
-    version that this siggen does not read, is compared with its hashes alone, and `comparison` says so.
+    differ by one step of the converter. A set that another version of the simulation made is compared with its hashes
+    alone, and `comparison` says so.
 
     Parameters
     ----------
@@ -110,19 +110,21 @@ def verify(
     Raises
     ------
     DatasetError
-        If there is no finished set.
+        If there is no finished set, or its files are of another version.
     """
     storage = storage_at(path)
     if not storage.exists(MANIFEST):
         read_manifest(storage)  # says what is there instead
     try:
         manifest = manifest_facts(MANIFEST, storage.get(MANIFEST))
+    except DatasetError as error:
+        raise DatasetError(f"{storage.location}/{error}") from error
     except VerificationError as error:
         return Verification(storage.location, 1, storage.size(MANIFEST), (), "none", (Mismatch(MANIFEST, str(error)),))
     mismatches = [*_file_mismatches(storage, manifest.files), *_run(storage)]
     files, shard_mismatches = _with_shards(storage, manifest, mismatches)
     mismatches += shard_mismatches
-    if not mismatches and isinstance(manifest, Inventory):
+    if not mismatches:
         mismatches += _sidecar_mismatches(storage, manifest)
     records: tuple[int, ...] = ()
     comparison = "none asked for"
@@ -135,24 +137,21 @@ def verify(
         mismatches += different
     total = sum(facts.bytes for facts in files.values())
     count = len(files) + 2
-    environments = manifest.environments if isinstance(manifest, Inventory) else ()
-    versions = tuple(dict.fromkeys(version_text(one) for one in environments)), version_text(environment())
+    versions = tuple(dict.fromkeys(map(version_text, manifest.environments))), version_text(environment())
     return Verification(storage.location, count, total, records, comparison, tuple(mismatches), *versions)
 
 
-def why_not_again(manifest: HashedFiles, sample: int) -> str:
+def why_not_again(manifest: Inventory, sample: int) -> str:
     """Return why no record of a set can be compared with a new simulation, or an empty string."""
-    made_by, schema = manifest.simulation_version, manifest.schema_version[:20]
+    made_by = manifest.simulation_version
     if INJECTED in manifest.files:
         return f"{HASHES_ALONE}: its rows hold recordings, which no simulation makes again"
     if BLIND in manifest.files:
         return f"{HASHES_ALONE}: what its rows were made of is secret until it is revealed"
+    if made_by == SIMULATION_VERSION:
+        return ""
     head = f"{HASHES_ALONE}; {counted(min(sample, manifest.rows), 'record')} not simulated again: "
-    if schema not in READ_VERSIONS:
-        return f"{head}its files have schema version {schema}, this siggen reads {' and '.join(READ_VERSIONS)}"
-    if made_by != SIMULATION_VERSION:
-        return f"{head}made by simulation version {made_by}, this is {SIMULATION_VERSION}"
-    return ""
+    return f"{head}made by simulation version {made_by}, this is {SIMULATION_VERSION}"
 
 
 def _file_mismatches(storage: Storage, files: Mapping[str, PromisedFile]) -> Iterator[Mismatch]:
@@ -167,23 +166,21 @@ def _file_mismatches(storage: Storage, files: Mapping[str, PromisedFile]) -> Ite
 
 
 def _with_shards(
-    storage: Storage, manifest: HashedFiles, found: Sequence[Mismatch]
+    storage: Storage, manifest: Inventory, found: Sequence[Mismatch]
 ) -> tuple[Mapping[str, PromisedFile], list[Mismatch]]:
     """Return all files that are promised, and what is wrong with those of the shards.
 
     Where the table that promises them is damaged, they are neither compared nor called strangers.
     """
     files = dict(manifest.files)
-    if CHECKSUMS in files:  # a manifest of an earlier version names all files
-        if any(one.what == CHECKSUMS for one in found):
-            return files, []
-        try:
-            promised = dict(promised_files(storage, files[CHECKSUMS]))
-        except DatasetError as error:
-            return files, [Mismatch(CHECKSUMS, str(error))]
-        files |= promised
-        return files, [*_file_mismatches(storage, promised), *_strangers(storage, files)]
-    return files, list(_strangers(storage, files))
+    if any(one.what == CHECKSUMS for one in found):
+        return files, []
+    try:
+        promised = dict(promised_files(storage, files[CHECKSUMS]))
+    except DatasetError as error:
+        return files, [Mismatch(CHECKSUMS, str(error))]
+    files |= promised
+    return files, [*_file_mismatches(storage, promised), *_strangers(storage, files)]
 
 
 def _sidecar_mismatches(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
@@ -260,7 +257,7 @@ def _simulate_again(
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
 
 
-def stored_config(storage: Storage, manifest: HashedFiles) -> Config:
+def stored_config(storage: Storage, manifest: Inventory) -> Config:
     """Return the set's configuration; its identity must be the one that this version computes, too.
 
     Raises

@@ -10,7 +10,6 @@ import pytest
 import siggen
 from siggen.columns.record import damage_schema, listed_columns, record_schema
 from siggen.columns.state_columns import has_sham
-from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
 from siggen.keys.column import Role
@@ -18,7 +17,6 @@ from tests.dataset.fake_set import fake_config, write_fake_set
 
 ROOT = Path(__file__).resolve().parents[2]
 PRESETS = sorted(path.name for path in (ROOT / "configs").glob("*.yaml"))
-EARLIER = ROOT / "tests" / "sets" / "earlier_set"
 
 
 def role(schema: pa.Schema, name: str) -> str:
@@ -79,18 +77,3 @@ def test_columns_that_a_stranger_does_not_list_are_conditions(tmp_path: Path) ->
     manifest.write_bytes(sealed({**content, "columns": [{"name": "fault", "role": "harmless"}]}))
     with pytest.raises(DatasetError, match=r"columns\.0\.role: received 'harmless'; allowed: 'key', 's"):
         siggen.open(tmp_path)
-
-
-def test_a_set_written_before_roles_has_those_of_its_configuration(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
-    manifest = tmp_path / "manifest.json"
-    content = unsealed("manifest.json", manifest.read_bytes())
-    del content["columns"]
-    for version, expected in (("3", Role.TARGET), (SCHEMA_VERSION, Role.CONDITION)):
-        manifest.write_bytes(sealed({**content, "schema_version": version}))
-        dataset = siggen.open(tmp_path)
-        assert (dataset.role("fault"), dataset.role("path_gain")) == (expected, Role.CONDITION)
-
-
-def test_a_set_whose_configuration_is_no_longer_read_has_conditions_alone() -> None:
-    assert siggen.open(EARLIER).role("fault") == Role.CONDITION

@@ -30,7 +30,6 @@ NOT_RUN = {
     "docs/start/demo.md": [INSTALLS],
     "docs/start/install.md": [INSTALLS, INSTALLS, INSTALLS, "not run: needs a container tool"],
     "docs/start/load_a_set.md": ["needs: lightning", "needs: transformers", "needs: accelerate"],
-    "docs/start/publish.md": ["not run: installs isatools; tests/publication/test_isa_phm.py does the same"],
     "docs/understand/baselines.md": ["not run: the same commands run one by one below"],
     "docs/understand/run_to_failure.md": ["not run: minutes", "not run: minutes"],
     "docs/understand/siggen_bench.md": [

@@ -15,7 +15,6 @@ from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.publication.dataset_info import class_names
-from siggen.publication.isa_phm import isa_phm
 from siggen.publication.physics_sections import assumed_numbers_section, physics_section
 from siggen.publication.publication_facts import TEMPLATE, read_publication_facts
 from siggen.publication.publish import publish
@@ -98,7 +97,7 @@ def test_a_published_folder_is_a_set_that_opens_and_verifies(kept: Path, publish
     found = verify(published, 0)
     assert found.mismatches == ()
     names = set(siggen.open(published).manifest["files"])
-    made = {"croissant.json", "datacite.json", "i_investigation.json", "README.md"}
+    made = {"croissant.json", "README.md"}
     assert names > {*made, "previews/healthy.png", "previews/severe.png"}
     for name in ("data/train-00000.parquet", "config.yaml", "shards/train-00001.json"):
         assert (published / name).read_bytes() == (kept / name).read_bytes()
@@ -133,7 +132,7 @@ def test_the_card_says_what_is_on_what_was_assumed_and_who_says_so(published: Pa
     assert "under the licence `cc-by-4.0`" in card
 
 
-def test_the_card_of_a_machine_says_what_its_file_says(tmp_path: Path) -> None:
+def test_the_card_of_a_machine_says_what_its_file_says() -> None:
     config = load_config(mill())
     text = assumed_numbers_section(config)
     rows = {cells[1].strip(" `"): cells[2].strip() for line in text.splitlines() if len(cells := line.split("|")) > 2}
@@ -142,10 +141,6 @@ def test_the_card_of_a_machine_says_what_its_file_says(tmp_path: Path) -> None:
     expected = {"machine.gears.3.teeth": "17", "sensors.0.place": "input_bearing"}
     assert {key: rows[key] for key in expected} == expected
     assert "gear eva" in rows["states.1.damage"]
-    made = isa_phm(config, read_publication_facts(facts_file(tmp_path)), "", [], [])
-    values = [one["value"] for one in made["studies"][1]["materials"]["samples"][0]["factorValues"]]
-    assert "eva" in values
-    assert "teeth_karl" in str(made["studies"][0]["characteristicCategories"])
 
 
 def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(kept: Path, tmp_path: Path) -> None:
@@ -171,13 +166,6 @@ def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(k
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "identity": "0" * 64}))
     with pytest.raises(UsageError, match="audit of another set"):
         publish(kept, tmp_path / "other", facts_file(tmp_path), tmp_path)
-
-
-def test_datacite_has_its_mandatory_properties(published: Path) -> None:
-    fields = json.loads((published / "datacite.json").read_text())
-    assert {"titles", "creators", "publisher", "publicationYear", "types"} <= set(fields)
-    assert fields["creators"][0]["familyName"] == "Author"
-    assert fields["rightsList"] == [{"rightsIdentifier": "cc-by-4.0", "rightsIdentifierScheme": "SPDX"}]
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -17,13 +17,12 @@ from siggen.cli.app import app
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dataset.manifest import PHYSICS, read_manifest
+from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import EXIT_MISMATCH, DatasetError
 from siggen.sets.precision import FIRST_STEPS, MOST_STEPS, measure_precision
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, file_bytes, simulate, write_fake_set
-
-SECOND = Path(__file__).parent / "earlier_set"
 
 
 def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[Record | RecordFailure]:
@@ -146,6 +145,9 @@ def test_a_set_of_the_linear_law_is_measured_and_states_no_tolerance(
     assert found.largest == pytest.approx(2e-3, rel=1e-2)
 
 
-def test_a_set_of_another_simulation_is_not_measured() -> None:
+def test_a_set_of_another_simulation_is_not_measured(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    manifest = tmp_path / "manifest.json"
+    manifest.write_bytes(sealed({**unsealed("manifest.json", manifest.read_bytes()), "simulation_version": 1}))
     with pytest.raises(DatasetError, match="made by simulation version 1"):
-        measure_precision(SECOND, 2)
+        measure_precision(tmp_path, 2)

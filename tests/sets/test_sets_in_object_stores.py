@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,7 +32,7 @@ from tests.dataset.fake_set import (
 from tests.dataset.s3_server import BUCKET, digests, object_bytes, s3_server
 
 PLACE = f"s3://{BUCKET}/a/set"
-KEPT = Path(__file__).parent / "earlier_set"
+SHORT = ("duration_s=0.5", "specimens=1", "states=[{name: healthy}]", "repeats=1")
 
 
 @pytest.fixture(autouse=True)
@@ -138,12 +137,14 @@ def test_commands_take_a_place_for_a_folder(
     import diagnostics.cli.app
     import siggen.cli.app
 
-    place, kept = upload(KEPT, PLACE), shutil.copytree(KEPT, tmp_path / "kept")
+    kept = tmp_path / "kept"
+    generate(siggen.load_config("quickstart", SHORT), kept, 0)
+    place = upload(kept, PLACE)
     monkeypatch.chdir(tmp_path)
     assert run(siggen.cli.app.main, monkeypatch, "verify", place, "--sample", "0") == 0
     assert f"{PLACE}: " in capsys.readouterr().out
-    assert run(siggen.cli.app.main, monkeypatch, "show", place, "--record", "1") == 0
-    assert f"Record 1 of {PLACE}" in capsys.readouterr().out
+    assert run(siggen.cli.app.main, monkeypatch, "show", place, "--record", "0") == 0
+    assert f"Record 0 of {PLACE}" in capsys.readouterr().out
     assert run(diagnostics.cli.app.main, monkeypatch, "indicators", place, "--out", "there.csv") == 0
     assert run(diagnostics.cli.app.main, monkeypatch, "indicators", str(kept), "--out", "here.csv") == 0
     assert (tmp_path / "there.csv").read_bytes() == (tmp_path / "here.csv").read_bytes()
@@ -156,7 +157,9 @@ def test_commands_take_a_place_for_a_folder(
 
 def test_a_set_that_went_to_a_worker_gives_its_row_groups_there(tmp_path: Path) -> None:
     """What the loader does: `WindowStream` sends the set to processes, which read row groups in any order."""
-    here, there = siggen.open(KEPT), pickle.loads(pickle.dumps(siggen.open(upload(KEPT, PLACE))))
+    write(str(tmp_path / "set"))
+    here = siggen.open(tmp_path / "set")
+    there = pickle.loads(pickle.dumps(siggen.open(upload(tmp_path / "set", PLACE))))
     assert here.row_groups() == there.row_groups()
     for group in here.row_groups("train")[::-1]:
         assert there.row_group(group).equals(here.row_group(group))
