@@ -1,7 +1,6 @@
 """`python -m benchmarks [topic ...] [--quick] [--json FILE]`: what siggen costs, beside named alternatives.
 
 `python -m benchmarks golden` says which numbers of records moved since they were kept, and by how much.
-`python -m benchmarks beside CHECKOUT` says what the loop costs here and in another checkout, in turn.
 """
 
 from __future__ import annotations
@@ -17,44 +16,26 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks import faults
 from benchmarks.machine import load_average, machine_lines
 from benchmarks.results_file import ResultsFile
 from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
 DEFAULT = (
-    *("presets", "record", "sensing", "background", "filtering"),
-    *("stiffness", "integration", "stages", "precision", "lanes"),
-    *(
-        "instructions",
-        "loader",
-        "cold",
-        "memory",
-        "startup",
-        "storage",
-        "many_shards",
-        "many_workers",
-        "workers",
-        "quickstart",
-    ),
-    *("indicators", "pages", "house", "engines", "audit", "scoring"),
+    *("presets", "precision", "loader", "cold", "memory", "startup"),
+    *("workers", "quickstart", "indicators", "pages", "house"),
 )
 """CPU time and memory first, then wall time, then what takes long."""
-APART = ("contact", "faults", "anywhere")
-"""Only where they are named: they check physics and integrity; `faults` takes an hour, `anywhere` half of one."""
-TOPICS = (*DEFAULT, *APART)
-
-PARTS = tuple(f"faults.{part}" for part in faults.PARTS)
-"""Of a long topic, by themselves."""
+APART = ("anywhere",)
+"""Only where it is named: it takes half an hour."""
 
 
-def main() -> int:
+def main(package: str = "benchmarks", default: Sequence[str] = DEFAULT, apart: Sequence[str] = APART) -> int:
     """Measure the topics of the command line (without one: all), print the table and return 1 if one failed."""
-    if sys.argv[1:2] in (["golden"], ["beside"]):
+    if sys.argv[1:2] == ["golden"]:
         os.environ.update(ONE_THREAD)
-        return int(importlib.import_module(f"benchmarks.{sys.argv[1]}").main(sys.argv[2:]))
-    arguments = _arguments()
+        return int(importlib.import_module("benchmarks.golden").main(sys.argv[2:]))
+    arguments = _arguments(package, default, apart)
     # before numpy is loaded by a topic; idle threads of its linear algebra spin, which would count as CPU time
     os.environ.update(ONE_THREAD)
     console = Console(width=None if Console().is_terminal else 160)
@@ -63,11 +44,11 @@ def main() -> int:
         console.print(line, style="yellow" if line.startswith("WARNING") else None, highlight=False)
     if arguments.json is not None:
         arguments.json.parent.mkdir(parents=True, exist_ok=True)
-    results = ResultsFile(arguments.json, " ".join(["python -m benchmarks", *sys.argv[1:]]), lines)
+    results = ResultsFile(arguments.json, " ".join([f"python -m {package}", *sys.argv[1:]]), lines)
     rows: list[tuple[str, Row]] = []
-    for topic in arguments.topics or DEFAULT:
+    for topic in arguments.topics or default:
         begin = time.perf_counter()
-        found = list(_rows(topic, arguments.quick, console))
+        found = list(_rows(f"{package}.{topic}", arguments.quick, console))
         seconds = time.perf_counter() - begin
         results.add(topic, found, seconds, load_average())
         console.print(f"{topic}: {seconds:.0f} s, load average {load_average():.2f}", highlight=False)
@@ -77,22 +58,22 @@ def main() -> int:
     return int(any(row.what == f"{topic} failed" for topic, row in rows))
 
 
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+def _arguments(package: str, default: Sequence[str], apart: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog=f"python -m {package}", description=__doc__)
     # no `choices`: argparse would refuse the empty list of a call without topics
     parser.add_argument(
         "topics",
         nargs="*",
         metavar="topic",
-        help=f"one or more of {', '.join(TOPICS)}; default: all but {', '.join(APART)}; parts: {', '.join(PARTS)}",
+        help=f"one or more of {', '.join((*default, *apart))}; default: all but {', '.join(apart) or 'none'}",
     )
     parser.add_argument("--quick", action="store_true", help="fewer repeats, smaller sets, no whole quickstart")
     parser.add_argument(
         "--json", type=Path, metavar="FILE", help="keep the rows here; docs/scripts/benchmark_page.py prints them"
     )
     arguments = parser.parse_args()
-    if unknown := [topic for topic in arguments.topics if topic not in (*TOPICS, *PARTS)]:
-        parser.error(f"received topic {unknown[0]!r}; allowed: {', '.join((*TOPICS, *PARTS))}")
+    if unknown := [topic for topic in arguments.topics if topic not in (*default, *apart)]:
+        parser.error(f"received topic {unknown[0]!r}; allowed: {', '.join((*default, *apart))}")
     return arguments
 
 
@@ -101,7 +82,7 @@ def _rows(topic: str, quick: bool, console: Console) -> Iterator[Row]:
     with console.status(f"measuring {topic}"):
         try:
             # imported one by one: a topic that is not asked for costs nothing
-            yield from importlib.import_module(f"benchmarks.{topic}").rows(quick=quick)
+            yield from importlib.import_module(topic).rows(quick=quick)
         except Exception as error:
             console.print_exception()
             yield Row(f"{topic} failed", f"{type(error).__name__}: {error}", met=False)

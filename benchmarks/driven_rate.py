@@ -1,6 +1,6 @@
 """DrivenRate: the rate of a state at a time, compiled, for solvers that are not siggen's.
 
-Angle and inputs are straight between the points of a grid of their own. So scipy, Newmark's method and Runge-Kutta
+Angle and inputs are straight between the points of a grid of their own. So scipy and Runge-Kutta
 solve the same equations with the same compiled mesh law; what they cost beyond it is their own.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.compiled import entry
-from siggen.dynamics.mesh.mesh_force import MeshLaw, mesh_stiffness
+from siggen.dynamics.mesh.mesh_force import MeshLaw
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.time.equations import Equations, state_rate
@@ -46,15 +46,6 @@ def compiled_rate(motion: Motion, speed_input: int, pitches: FloatArray, inputs:
         return _pair_rate, (motion.pair_equations, laws, pairs, speed_input, pitches, inputs)
     assert isinstance(motion, LinearMotion)
     return _linear_rate, (motion.equations, motion.law, pitches, inputs)
-
-
-@entry(cache=True)
-def stiffness_along(law: MeshLaw, pitches: FloatArray) -> FloatArray:
-    """Return the mesh stiffness (k,) [N/m] of the linear law at angles (k,) in base pitches."""
-    found = np.empty_like(pitches)
-    for i in range(pitches.size):
-        found[i] = mesh_stiffness(law, pitches[i])
-    return found
 
 
 @entry(cache=True)

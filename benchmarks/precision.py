@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks.precision_case import Case, linear_case, precision_case, state_grid
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import ROOT
-from benchmarks.work_precision import COMPILED, PLAIN, ROSS, Point, equal_cost_s, steps_text, work_points
+from benchmarks.work_precision import COMPILED, PLAIN, Point, equal_cost_s, steps_text, work_points
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.response import Response
 
@@ -59,8 +59,6 @@ def _work_rows(case: Case, law: str, quick: bool) -> Iterator[Row]:
         yield Row(what, f"{duration_text(own.cost_s)}, error {own.error:.1e}", goal=goal, met=met)
     for method in dict.fromkeys(point.method for point in points if point.method != case.method):
         yield _gain_row(law, own, [point for point in points if point.method == method])
-    if ROSS not in {point.method for point in points}:
-        yield Row(f"{law}: {own.method} beside ROSS", "", "not installed (pip install ross-rotordynamics 'plotly<6')")
 
 
 def _gain_row(law: str, own: Point, others: Sequence[Point]) -> Row:

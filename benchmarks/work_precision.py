@@ -1,4 +1,4 @@
-"""Work against precision of one record: siggen, Runge-Kutta, DOP853, Newmark, scipy and ROSS on the same equations.
+"""Work against precision of one record: siggen, Runge-Kutta, DOP853 and scipy on the same equations.
 
 All start from the same state and see the same angle and inputs. An error is the median over the motions of the relative
 rms difference of the acceleration between samples (second difference of the displacement), behind the first STARTING_S,
@@ -10,30 +10,25 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Literal
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.compiled_dop853 import dop853
-from benchmarks.driven_rate import compiled_rate, driven_rate, stiffness_along
-from benchmarks.newmark import newmark
+from benchmarks.driven_rate import compiled_rate, driven_rate
 from benchmarks.precision_case import Case, state_grid
 from siggen.arrays import FloatArray
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.pair_motion import PairMotion
 
 WINDOW_S, STARTING_S, LOOP_S, ROUNDS = 0.1, 0.02, 0.5, 3
 REFERENCE_STEPS = 64
-OWN_STEPS, PLAIN_STEPS, NEWMARK_STEPS = (1, 2, 4), (1, 2, 4, 8, 16), (1, 2, 4)
+OWN_STEPS, PLAIN_STEPS = (1, 2, 4), (1, 2, 4, 8, 16)
 FINEST_PLAIN_STEPS = 64
 """Of the linear law: Runge-Kutta loses its order where a pair of teeth enters within a step."""
 TOLERANCES, ABSOLUTE_SHARE = (1e-3, 1e-5, 1e-7), 1e-6
 GRID_STEPS = 4
 """Per sample: points between which other solvers find angle and inputs straight, an error of 1e-8 rad at most."""
-PLAIN, NEWMARK, ROSS = "Runge-Kutta, numba", "Newmark, numpy", "Newmark of ROSS"
-COMPILED = "DOP853, numba"
+PLAIN, COMPILED = "Runge-Kutta, numba", "DOP853, numba"
 """Adaptive and compiled as a whole; those of scipy call a compiled rate from Python."""
 Scipy = Literal["DOP853", "LSODA"]
 SCIPY: tuple[Scipy, ...] = ("DOP853", "LSODA")
@@ -66,9 +61,7 @@ def work_points(case: Case, *, quick: bool) -> Iterator[Point]:
     rounds = [{key: _cost(solver, LOOP_S) for key, solver in compiled.items()} for _ in range(ROUNDS)]
     for key, error in errors.items():
         yield Point(*key, float(np.median([one[key] for one in rounds])), error)
-    slow = {(NEWMARK, steps_text(k)): _newmark_solver(case, k) for k in NEWMARK_STEPS}
-    slow |= {(method, _rtol(rtol)): _scipy_solver(case, method, rtol) for method in SCIPY for rtol in tolerances}
-    slow |= {(ROSS, steps_text(k)): solver for k, solver in _ross_solvers(case)}
+    slow = {(method, _rtol(rtol)): _scipy_solver(case, method, rtol) for method in SCIPY for rtol in tolerances}
     for key, solver in slow.items():
         solver(0.002)()  # compiles
         run = solver(WINDOW_S)
@@ -119,31 +112,6 @@ def _reference(case: Case) -> Solver:
     return own_solver(case, "product" if linear else "runge_kutta", REFERENCE_STEPS)
 
 
-def _newmark_solver(case: Case, steps: int) -> Solver:
-    motion, start = case.motion("runge_kutta", steps), _start(case)
-    step_s = 1.0 / (case.config.fs_hz * steps)
-
-    def prepared(duration_s: float) -> Run:
-        pitches, inputs = case.driven_steps(motion, steps, duration_s)
-        rate = driven_rate(motion, case.driven.speed_input, pitches, inputs, 1.0 / step_s)
-        path = np.empty((pitches.size, start.size))
-        path[0] = start
-
-        def run() -> FloatArray:
-            if isinstance(motion, LinearMotion):
-                damping = motion.law.damping_n_s_per_m
-                newmark(motion.equations, damping, rate, step_s, path, stiffness_along(motion.law, pitches))
-            else:
-                assert isinstance(motion, PairMotion)
-                damping = motion.law.damping_root_kg * float(np.sqrt(motion.equations.reference_stiffness[0]))
-                newmark(motion.equations, damping, rate, step_s, path)
-            return path[::steps]
-
-        return run
-
-    return prepared
-
-
 def _scipy_solver(case: Case, method: Scipy, rtol: float) -> Solver:
     motion, start, fs_hz = case.motion("runge_kutta", 1), _start(case), case.config.fs_hz
 
@@ -179,35 +147,6 @@ def _compiled_solver(case: Case, rtol: float) -> Solver:
 
 def _rtol(rtol: float) -> str:
     return f"rtol {rtol:g}"
-
-
-def _ross_solvers(case: Case) -> Iterator[tuple[int, Solver]]:
-    """Yield ROSS's own integrator by steps per sample, where it is installed."""
-    try:
-        from benchmarks.ross_newmark import ross_linear, ross_pairs
-    except ImportError:
-        return
-    start = _start(case)
-
-    def prepared(steps: int, duration_s: float) -> Run:
-        motion, step_s = case.motion("runge_kutta", steps), 1.0 / (case.config.fs_hz * steps)
-        pitches, inputs = case.driven_steps(motion, steps, duration_s)
-        path = np.zeros((pitches.size, start.size))
-        path[0] = start
-
-        def run() -> FloatArray:
-            if isinstance(motion, LinearMotion):
-                ross_linear(motion, stiffness_along(motion.law, pitches), step_s, path)
-            else:
-                assert isinstance(motion, PairMotion)
-                rate = driven_rate(motion, case.driven.speed_input, pitches, inputs, 1.0 / step_s)
-                ross_pairs(motion, rate, step_s, path)
-            return path[::steps]
-
-        return run
-
-    for steps in NEWMARK_STEPS:
-        yield steps, partial(prepared, steps)
 
 
 def _start(case: Case) -> FloatArray:

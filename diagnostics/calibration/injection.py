@@ -65,7 +65,7 @@ configuration's range in all rows: a recording does not say it. `siggen-diagnost
 folder; it needs two recordings for training and one for the test.
 
 **Your recordings are in this folder. `siggen publish` refuses it.** Whether a detector gains by such rows is open:
-`docs/scripts/does_it_help.py` compares them with shuffled phases and with no damage at all.
+docs/understand/calibration.md compares them with shuffled phases and with no damage at all.
 """
 
 LONGEST_S = 10.0

@@ -43,7 +43,7 @@ MOST_OF_ONE = 4.5
 """What one line, or both of its sidebands, may add: e^4.5 is 90 to 1."""
 LEAST_SCORE, LEAST_OF_OTHERS = 4.0, 0.5
 """Of a comb, and of it without its best line. Chosen on 24 machines of quickstart: 21 of their combs had both, and none
-that was not theirs beat them; docs/scripts/second_stages.py judges on others."""
+that was not theirs beat them; docs/understand/calibration.md judges on others."""
 LEAD = 1.3
 """Over the next comb that has not the same lines."""
 LINE_EXCESS_DB = 6.0

@@ -2,7 +2,7 @@
 
 Two recordings are as far apart as their levels in third octaves are (rms over bands, of the channel that differs most).
 Recordings hang together that no more than a limit parts, directly or over others; what is not in the largest such group
-is odd. Source: derived; the limits are measured by `docs/scripts/odd_references.py`.
+is odd. Source: derived; the limits stand on docs/start/check_a_machine.md.
 """
 
 from __future__ import annotations

@@ -14,10 +14,7 @@ from typing import Any
 
 PAGE = Path(__file__).resolve().parents[1] / "develop" / "benchmarks.md"
 BEGIN, END = "<!-- benchmark_page.py: begin -->", "<!-- benchmark_page.py: end -->"
-SHOWN = (
-    "presets", "precision", "stiffness", "background", "sensing", "indicators", "workers", "quickstart", "loader",
-    "memory", "startup", "cold",
-)  # fmt: skip
+SHOWN = ("presets", "precision", "indicators", "workers", "quickstart", "loader", "memory", "startup", "cold")
 """Topics on the page; results of the others stay in the files."""
 LEFT_OUT = "by proportion, not measured"
 

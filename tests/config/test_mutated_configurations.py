@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from benchmarks.faults.mutated_configurations import judged, load_presets, mutated
+from tests.faults.mutated_configurations import judged, load_presets, mutated
 
 
 def test_mutated_configurations_end_in_words(tmp_path: Path) -> None:
@@ -16,7 +16,7 @@ def test_mutated_configurations_end_in_words(tmp_path: Path) -> None:
 
 
 def test_a_fault_of_the_program_would_be_seen(tmp_path: Path, monkeypatch) -> None:
-    from benchmarks.faults import mutated_configurations
+    from tests.faults import mutated_configurations
 
     monkeypatch.setattr(mutated_configurations, "load_config", lambda file: 1 / 0)
     assert judged("name: a", tmp_path).outcome == "traceback"

@@ -10,7 +10,6 @@ from unittest.mock import patch
 import pytest
 
 import siggen
-from benchmarks.faults.foreign_sets import outcome_rows, readers
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
 from siggen.planning import plan
@@ -19,6 +18,7 @@ from siggen.sets.parts import generate_part, merge
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, fake_physics, write_fake_set
 from tests.dataset.resealed_set import facts
+from tests.faults.foreign_sets import outcome_rows, readers
 from tests.publication.conftest import facts_file
 
 CHANGES = 15

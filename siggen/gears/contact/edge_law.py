@@ -14,7 +14,7 @@ term is the rigid sink d²/2R, the rest the elasticity of a contact that narrows
 
 The notch of depth D behind the edge takes away material that would have carried: + N. Derived: a narrow load at the
 corner of a quarter plane is softer than on a half plane by ½ [(π/2)(1/(π/2 + 1) + 1/(π/2 - 1)) - 1] = 1.1815 κ per unit
-of ln(D/distance), Poisson's ratio drops out. Fitted to plane finite elements (`benchmarks.contact`, ν = 0.3, D/a from
+of ln(D/distance), Poisson's ratio drops out. Fitted to plane finite elements (`reference.contact`, ν = 0.3, D/a from
 0.35 to 8.4, d̂ from -16 to 2): the course in between, with z = D/(x a) over the distance x a = a (2c + c⁴)/3 from the
 edge (d beyond d̂ = 1). Error 3 % of N for D > a/2 and d̂ <= 0.5, at most 0.02 κF beyond d̂ = 1.
 
@@ -25,7 +25,7 @@ sharp edge and Hertz's contact of the two radii; between them the elastic parts 
 
 the eighth power, fitted, lets the rounding end with the sink at d̂ = 1. The law holds
 
-within 7 % of the elastic part against pressure cells (`benchmarks.contact`, r 0.02 to 0.2 mm).
+within 7 % of the elastic part against pressure cells (`tests.reference.contact`, r 0.02 to 0.2 mm).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ QUARTER_PLANE = 1.1815
 """Derived: see the module's docstring."""
 NOTCH_POWER = 1.25
 NOTCH_SCALE, NOTCH_ON_LAND, NOTCH_SHALLOW, NOTCH_SHALLOW_LINEAR = 0.311, 0.278, 0.262, 0.363
-"""Fitted by `python -m benchmarks.contact notch_fit`."""
+"""Fitted by `python -m tests.reference.contact notch_fit`."""
 NO_EDGE = 1e30
 """Distance of an edge that does not exist [m]."""
 

@@ -4,7 +4,7 @@ Derived, but for two numbers. Deep in a gap the flank of radius R rests on the r
 R r/(R + r). Near the edge the sharp contact's pressure is K/√x at the distance x, K = √(2 c a) (c a - d)/(π κ R) from
 the solution of `edge_law`; the rounding cuts it at A (K²/(κ r))^⅓ (dimensions; A fitted). The two join by a power sum,
 and a contact away from the edge keeps Hertz's pressure on R. A and the power are fitted to pressure cells
-(`benchmarks.contact`, r 0.02 to 0.2 mm, 30 to 100 N/mm, d̂ -11 to 0.9): within 4 %.
+(`tests.reference.contact`, r 0.02 to 0.2 mm, 30 to 100 N/mm, d̂ -11 to 0.9): within 4 %.
 
 Steel yields below: 4 to 5 GPa at 60 N/mm and r = 0.1 mm. So real edges are rounder than they broke out.
 """

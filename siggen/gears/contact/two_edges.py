@@ -8,7 +8,7 @@ and a_i the Hertz half width of F_i alone,
     sink = δ - κF [ln(2/a) + ½]
 
 since either land sinks in the far field of the other's load, λ = l plus the distances of both centroids from their
-edges. An edge that would have to pull carries nothing. Against pressure cells on a half plane (`benchmarks.contact`):
+edges. An edge that would have to pull carries nothing. Against pressure cells on a half plane (`reference.contact`):
 0.005 µm; with the notch against plane finite elements: 0.05 µm, 4 % of what the notch adds for D = 0.2 mm.
 
 The floor of the gap carries from the sink D on; the two limits are joined over `FLOOR_ROUNDING` κF, with `FLOOR_LIFT`

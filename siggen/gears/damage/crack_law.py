@@ -1,6 +1,6 @@
 r"""Compliance that a crack in the root adds to its tooth, by its depth, its angle and the place of the load.
 
-Fitted to plane finite elements of our own (`python -m benchmarks.finite_elements fit_crack`). With the chord S of the
+Fitted to plane finite elements of our own (`-m tests.reference.finite_elements fit_crack`). With the chord S of the
 root at the height y_A (`root_chord`), a crack from the loaded end of it, its depth share η = q/S and its angle v to
 the tooth's centre line, C = cos v, and a load of slant a whose line of action crosses the centre line at R_b/cos a:
 

@@ -17,7 +17,7 @@ from siggen.arrays import FloatArray
 from siggen.compiled import entry, njit
 
 
-@entry(cache=True)
+@njit(cache=True)
 def height(roll: float, base_radius: float, half_angle: float) -> float:
     """Return the height x above the base-circle point along the tooth centre line [m].
 

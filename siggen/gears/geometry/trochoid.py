@@ -13,7 +13,7 @@ from math import cos, pi, sin, sqrt, tan
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.compiled import entry
+from siggen.compiled import entry, njit
 from siggen.gears.geometry.quadrature import NODES_48, WEIGHTS_48
 
 
@@ -32,7 +32,7 @@ def trochoid_point(
     return height, thickness
 
 
-@entry(cache=True)
+@njit(cache=True)
 def trochoid_height_slope(
     gamma: float, depth_m: float, offset_m: float, round_m: float, pitch_radius_m: float
 ) -> float:

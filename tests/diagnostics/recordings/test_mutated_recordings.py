@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.faults.mutated_recordings import mutated_recordings, recordings
 from diagnostics.recordings import reading_process
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.file_columns import file_columns
 from siggen.errors import UsageError
+from tests.faults.mutated_recordings import mutated_recordings, recordings
 
 
 def test_every_mutated_recording_is_read_or_refused_in_words(tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ from random import Random
 import numpy as np
 import pytest
 
-from benchmarks.faults.mutated_recordings import judged, mutated_bytes
 from diagnostics.cli.app import main
 from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.columns import read_columns
@@ -20,6 +19,7 @@ from diagnostics.recordings.file_columns import file_columns
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from diagnostics.recordings.recorder_files import rate_from_increment
 from siggen.errors import UsageError
+from tests.faults.mutated_recordings import judged, mutated_bytes
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # of pyuff, when it writes binary
 FS_HZ, SAMPLES, NAMES = 51_200, 25_600, ("vertical", "horizontal")

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.housing.third_octaves import bands_db, centres_hz, distance, lines_hz
 from siggen.dynamics.housing.box import SIDES, Axis, Box, Material, Thicknesses
 from siggen.dynamics.housing.housing_modes import (
     WAVES,
@@ -21,6 +20,7 @@ from siggen.dynamics.housing.plate_energy import sheet
 from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
 from tests.dynamics.housing.timoshenko_beam import free_bending_hz
+from tests.reference.housing.third_octaves import bands_db, centres_hz, distance, lines_hz
 
 
 @pytest.fixture(scope="module")

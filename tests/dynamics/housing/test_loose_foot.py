@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag, cho_factor, cho_solve, eigh
 
-from benchmarks.housing.solid_box import solid_box
 from siggen.dynamics.housing.box import Axis
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.housing_modes import HousingModes, housing_modes
@@ -16,6 +15,7 @@ from siggen.dynamics.housing.loose_foot import LoosenedModes, loosened, springs
 from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, box_motions, motion_at
 from tests.dynamics.housing.boxes import IRON, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
+from tests.reference.housing.solid_box import solid_box
 
 BOX = iron_box()
 STIFFNESS = np.array(BOX.bolts[-1].stiffness_n_per_m)

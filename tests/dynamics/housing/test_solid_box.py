@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from benchmarks.housing.solid_box import solid_box
-from benchmarks.housing.solid_element import CORNERS, element_matrices
-from benchmarks.housing.solid_mesh import solid_mesh
 from siggen.dynamics.housing.housing_modes import housing_modes
 from tests.dynamics.housing.boxes import IRON, iron_box
+from tests.reference.housing.solid_box import solid_box
+from tests.reference.housing.solid_element import CORNERS, element_matrices
+from tests.reference.housing.solid_mesh import solid_mesh
 
 
 def test_a_distorted_element_passes_the_patch_test() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.contact.face_contact import FaceCase, approach_at, land_of_pits
 from siggen.gears.contact.covered_slice import CoveredSlice, covered_sink, spread_of_cells
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_gaps import face_gaps
@@ -24,6 +23,7 @@ from tests.gears.contact.faces import (
     pitted,
     solve,
 )
+from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_pits
 
 GAP, TIPS, RADII = (0.5e-3, 0.05e-3, 0.2e-3, 0.2e-3), (-NO_EDGE, -NO_EDGE), (RADIUS, 0.0)
 

@@ -7,9 +7,9 @@ from math import log, pi, sqrt
 import numpy as np
 import pytest
 
-from benchmarks.contact.plane_contact import edge_sink, land_cells, solve_cells
 from siggen.gears.contact.edge_law import QUARTER_PLANE, edge_terms, half_length, half_plane_factor, notch_factor
 from siggen.gears.contact.edge_pressure import largest_edge_pressure
+from tests.reference.contact.plane_contact import edge_sink, land_cells, solve_cells
 
 KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)
 RADIUS = 6.676e-3
@@ -56,7 +56,7 @@ def test_a_narrow_contact_at_a_notch_softens_like_a_quarter_plane():
     assert (deep[1] - deep[0]) / log(2.0) == pytest.approx(QUARTER_PLANE, rel=2e-3)
 
 
-# N from `python -m benchmarks.contact notch`: (D [mm], d/a) at 60 N/mm, a = 67.1 µm
+# N from `python -m tests.reference.contact notch`: (D [mm], d/a) at 60 N/mm, a = 67.1 µm
 FINITE_ELEMENTS = {
     (0.05, -6.0): 1.8311, (0.05, -1.0): 0.6748, (0.05, 0.0): 0.3666, (0.05, 0.5): 0.2261,
     (0.2, -11.0): 4.0072, (0.2, -3.7): 2.8264, (0.2, -1.0): 1.8304, (0.2, 0.0): 1.2809, (0.2, 0.5): 0.9805,

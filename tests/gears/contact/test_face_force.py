@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 import pytest
 
-from benchmarks.contact.face_contact import FaceCase, approach_at, land_of_gap, land_of_pits
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_force import face_force
 from siggen.gears.contact.face_gaps import FaceGaps
@@ -20,6 +19,7 @@ from siggen.gears.contact.stored_energy import energy_nodes, stored_energy
 from siggen.gears.stiffness.hertz import weber_banaschek_compliance
 from tests.gears.builders import pair_18_47
 from tests.gears.contact.faces import BENDING, REST, WIDTH, approach_under, face, part_spall, solve, spall
+from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_gap, land_of_pits
 
 
 def land(pair, slices=50) -> FaceGaps:

@@ -7,10 +7,10 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from benchmarks.contact import plane_contact
 from siggen.gears.contact.closed_form import closed_gap_sink, transfer_distance
 from siggen.gears.contact.edge_law import NO_EDGE, half_plane_factor
 from siggen.gears.contact.two_edges import gap_sink
+from tests.reference.contact import plane_contact
 
 KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)
 RADIUS = 6.676e-3
@@ -55,7 +55,7 @@ def test_gaps_narrower_than_the_contact_err_by_a_tenth_of_its_approach(length_mm
 @pytest.mark.slow
 def test_a_notched_gap_against_fresh_finite_elements():
     pytest.importorskip("skfem", reason="the notch's check needs the extra 'fem': pip install -e '.[fem]'")
-    from benchmarks.contact.notched_half_plane import notched_gap_sink
+    from tests.reference.contact.notched_half_plane import notched_gap_sink
 
     length, depth, load = 0.5e-3, 0.2e-3, 60e3 * KAPPA
     for offset in (0.0, 25e-6, 0.15e-3, 0.25e-3):
@@ -67,7 +67,7 @@ def test_a_notched_gap_against_fresh_finite_elements():
         assert law.left_share == pytest.approx(left, abs=0.01)
 
 
-# sink [µm] and left share from `python -m benchmarks.contact two_edges`: (l [mm], D [mm], 2 s/l) at 60 N/mm
+# sink [µm] and left share from `python -m tests.reference.contact two_edges`: (l [mm], D [mm], 2 s/l) at 60 N/mm
 FINITE_ELEMENTS = {
     (0.3, 0.2, 0.0): (2.187, 0.5), (0.3, 0.2, 0.2): (2.139, 0.176), (0.3, 0.2, 1.0): (0.617, 0.0),
     (0.5, 0.05, 0.05): (5.000, 0.282), (0.5, 0.2, 0.1): (5.206, 0.148), (0.8, 0.2, 0.05): (12.576, 0.125),

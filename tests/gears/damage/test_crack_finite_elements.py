@@ -12,16 +12,16 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from benchmarks.finite_elements.calibration import ToothShape  # noqa: E402
-from benchmarks.finite_elements.crack_fit import Case, coordinates, law, present  # noqa: E402
-from benchmarks.finite_elements.cracked_tooth import crack_compliance, crack_line, split  # noqa: E402
-from benchmarks.finite_elements.tooth_compliance_fem import (  # noqa: E402
+from siggen.gears.damage.crack_law import unit_compliance  # noqa: E402
+from tests.reference.finite_elements.calibration import ToothShape  # noqa: E402
+from tests.reference.finite_elements.crack_fit import Case, coordinates, law, present  # noqa: E402
+from tests.reference.finite_elements.cracked_tooth import crack_compliance, crack_line, split  # noqa: E402
+from tests.reference.finite_elements.tooth_compliance_fem import (  # noqa: E402
     PlaneElasticity,
     factorised,
     plane_basis,
 )
-from benchmarks.finite_elements.tooth_mesh import ToothMesh, meshed  # noqa: E402
-from siggen.gears.damage.crack_law import unit_compliance  # noqa: E402
+from tests.reference.finite_elements.tooth_mesh import ToothMesh, meshed  # noqa: E402
 
 SIZE, LENGTH = 0.1, 2.0
 

@@ -11,9 +11,9 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from benchmarks.finite_elements.face_compliance import face_compliance  # noqa: E402
-from benchmarks.finite_elements.part_crack import part_crack  # noqa: E402
-from benchmarks.finite_elements.spatial_pair import bench_pair  # noqa: E402
+from tests.reference.finite_elements.face_compliance import face_compliance  # noqa: E402
+from tests.reference.finite_elements.part_crack import part_crack  # noqa: E402
+from tests.reference.finite_elements.spatial_pair import bench_pair  # noqa: E402
 
 WIDTH, ELEMENT, SIZE = 20 / 3, 0.8, 0.25
 

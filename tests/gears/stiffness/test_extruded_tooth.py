@@ -11,22 +11,22 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from benchmarks.contact.face_contact import FaceCase, approach_at, land_of_gap  # noqa: E402
-from benchmarks.finite_elements.calibration import ToothShape  # noqa: E402
-from benchmarks.finite_elements.extruded_body import ExtrudedBody, face_line  # noqa: E402
-from benchmarks.finite_elements.face_compliance import face_compliance, load_on, tilt_load  # noqa: E402
-from benchmarks.finite_elements.face_kernel import rule_errors  # noqa: E402
-from benchmarks.finite_elements.face_losses import KINDS, loss  # noqa: E402
-from benchmarks.finite_elements.resolved_contact import STRAIN, resolved_pair  # noqa: E402
-from benchmarks.finite_elements.single_pair import library, small_pair  # noqa: E402
-from benchmarks.finite_elements.spatial_pair import spatial_pair  # noqa: E402
-from benchmarks.finite_elements.tooth_compliance_fem import (  # noqa: E402
+from siggen.gears.stiffness.body_coupling import ring_torsion  # noqa: E402
+from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_gap  # noqa: E402
+from tests.reference.finite_elements.calibration import ToothShape  # noqa: E402
+from tests.reference.finite_elements.extruded_body import ExtrudedBody, face_line  # noqa: E402
+from tests.reference.finite_elements.face_compliance import face_compliance, load_on, tilt_load  # noqa: E402
+from tests.reference.finite_elements.face_kernel import rule_errors  # noqa: E402
+from tests.reference.finite_elements.face_losses import KINDS, loss  # noqa: E402
+from tests.reference.finite_elements.resolved_contact import STRAIN, resolved_pair  # noqa: E402
+from tests.reference.finite_elements.single_pair import library, small_pair  # noqa: E402
+from tests.reference.finite_elements.spatial_pair import spatial_pair  # noqa: E402
+from tests.reference.finite_elements.tooth_compliance_fem import (  # noqa: E402
     lines_of_action,
     nodal_functionals,
     tooth_compliance,
 )
-from benchmarks.finite_elements.tooth_mesh import tooth_mesh  # noqa: E402
-from siggen.gears.stiffness.body_coupling import ring_torsion  # noqa: E402
+from tests.reference.finite_elements.tooth_mesh import tooth_mesh  # noqa: E402
 
 pytestmark = pytest.mark.slow
 GEAR = ToothShape(18, 2.0).gear()

@@ -11,24 +11,24 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from benchmarks.finite_elements.calibration import ToothShape, compliance_ratio  # noqa: E402
-from benchmarks.finite_elements.comparison import active_rolls, model_ratios, paper_a_pair  # noqa: E402
-from benchmarks.finite_elements.coupling import (  # noqa: E402
+from siggen.gears.stiffness.body_coupling import ring_torsion  # noqa: E402
+from siggen.gears.stiffness.calibration import calibration_factor  # noqa: E402
+from tests.reference.finite_elements.calibration import ToothShape, compliance_ratio  # noqa: E402
+from tests.reference.finite_elements.comparison import active_rolls, model_ratios, paper_a_pair  # noqa: E402
+from tests.reference.finite_elements.coupling import (  # noqa: E402
     coupled_bodies,
     equal_approach,
     model_stiffness,
     neighbour_compliance,
     shape_pair,
 )
-from benchmarks.finite_elements.tooth_compliance_fem import (  # noqa: E402
+from tests.reference.finite_elements.tooth_compliance_fem import (  # noqa: E402
     PlaneElasticity,
     displacements,
     lines_of_action,
     tooth_compliance,
 )
-from benchmarks.finite_elements.tooth_mesh import tooth_mesh  # noqa: E402
-from siggen.gears.stiffness.body_coupling import ring_torsion  # noqa: E402
-from siggen.gears.stiffness.calibration import calibration_factor  # noqa: E402
+from tests.reference.finite_elements.tooth_mesh import tooth_mesh  # noqa: E402
 
 pytestmark = pytest.mark.slow
 

@@ -11,13 +11,13 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from benchmarks.finite_elements.calibration import ToothShape  # noqa: E402
-from benchmarks.finite_elements.extruded_body import face_line  # noqa: E402
-from benchmarks.finite_elements.helical_body import HelicalBody  # noqa: E402
-from benchmarks.finite_elements.helical_tooth import helical_bench_pair, line_compliances, line_rolls  # noqa: E402
-from benchmarks.finite_elements.tooth_mesh import tooth_mesh  # noqa: E402
 from siggen.gears.stiffness.compliance import tooth_compliance  # noqa: E402
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions  # noqa: E402
+from tests.reference.finite_elements.calibration import ToothShape  # noqa: E402
+from tests.reference.finite_elements.extruded_body import face_line  # noqa: E402
+from tests.reference.finite_elements.helical_body import HelicalBody  # noqa: E402
+from tests.reference.finite_elements.helical_tooth import helical_bench_pair, line_compliances, line_rolls  # noqa: E402
+from tests.reference.finite_elements.tooth_mesh import tooth_mesh  # noqa: E402
 
 pytestmark = pytest.mark.slow
 GEAR = ToothShape(18, 2.0).gear()

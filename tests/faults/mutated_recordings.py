@@ -1,0 +1,139 @@
+"""Recordings with bytes that are wrong: each has to give indicators or be refused in words, by `indicators`."""
+
+from __future__ import annotations
+
+import signal
+import tempfile
+import time
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from random import Random
+
+import numpy as np
+
+from benchmarks.row import Row
+from diagnostics.machine.recording_indicators import recording_indicators
+from diagnostics.recordings.measured_recording import RecordingFacts
+from siggen.errors import EXIT_USAGE, SiggenError
+from tests.faults.mutated_configurations import Case, outcomes_row
+from tests.faults.recorder_files import recorder_files
+
+FS_HZ, SAMPLES = 4096, 8192
+KINDS = ("csv", "mat", "mat", "wav", "wav", "npy", "npz", "parquet", "parquet")
+COUNT, QUICK_COUNT = 1_000, 45
+LIMIT_S = 60
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Yield a row of the files that everybody has, and one of those of recorders."""
+    count = QUICK_COUNT if quick else COUNT
+    with tempfile.TemporaryDirectory() as name:
+        for whole in (recordings(Path(name)), recorder_files(Path(name), channels(), FS_HZ)):
+            kinds = ", ".join(dict.fromkeys(path.suffix for path in whole))
+            what = f"{count} mutated recordings ({kinds})"
+            cases = mutated_recordings(count, whole)
+            yield outcomes_row(what, cases, count, "with indicators", "CPU beside the parser's process")
+
+
+def channels() -> dict[str, np.ndarray]:
+    """Return two channels: mesh lines with sidebands, lines of both shafts, and noise."""
+    rng, time_s = np.random.default_rng(5), np.arange(SAMPLES) / FS_HZ
+    turns = 2 * np.pi * 20.0 * time_s
+    mesh = sum(np.sin(20 * k * turns) * (1 + 0.3 * np.cos(turns)) / k for k in (1, 2, 3)) + 0.5 * np.cos(turns)
+    shafts = (np.cos(k * turns * ratio + rng.uniform(0.0, 6.0)) for ratio in (1.0, 2.0 / 3.0) for k in range(1, 91))
+    first, second = 0.1 * rng.standard_normal((2, SAMPLES)) + mesh + 0.05 * sum(shafts)
+    return {"a": first, "b": second}
+
+
+def recordings(folder: Path) -> list[Path]:
+    """Write one whole recording of each kind that needs no library of a recorder's format."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+    from scipy.io import savemat, wavfile
+
+    first, second = channels().values()
+    both = np.stack([first, second], axis=1)
+    np.savetxt(folder / "0.csv", both, delimiter=",", header="a,b", comments="", fmt="%.6g")
+    savemat(folder / "1.mat", {"a": first, "b": second, "s": {"x": 1.0, "y": "text"}}, do_compression=True)
+    savemat(folder / "2.mat", {"a": first, "b": second, "c": np.array(["x", "y"], dtype=object)})
+    wavfile.write(folder / "3.wav", FS_HZ, both.astype(np.float32))
+    wavfile.write(folder / "4.wav", FS_HZ, (5000 * both).astype(np.int16))
+    np.save(folder / "5.npy", both)
+    np.savez_compressed(folder / "6.npz", a=first, b=second)
+    pq.write_table(pa.table({"a": first, "b": second}), folder / "7.parquet")
+    pq.write_table(pa.table({"a": [first.tolist()], "b": [second.tolist()], "t": ["x"]}), folder / "8.parquet")
+    return [folder / f"{number}.{kind}" for number, kind in enumerate(KINDS)]
+
+
+def mutated_bytes(content: bytes, chance: Random) -> bytes:
+    """Return a file with one to eight changes, most of them where a format keeps its structure: at its ends."""
+    changed = bytearray(content)
+    for _ in range(chance.randint(1, 8)):
+        if not changed:
+            return b""
+        near = chance.choice((64, 512, len(changed)))
+        place = min(chance.randrange(near), len(changed) - 1)
+        place = place if chance.random() < 0.6 else len(changed) - 1 - place
+        _change(changed, place, chance)
+    return bytes(changed)
+
+
+def _change(content: bytearray, place: int, chance: Random) -> None:
+    kind = chance.randrange(6)
+    if kind == 0:
+        content[place] ^= 1 << chance.randrange(8)
+    elif kind == 1:
+        content[place] = chance.choice((0, 1, 0x7F, 0x80, 0xFF))
+    elif kind == 2:
+        huge = chance.choice((0x7FFFFFFF, 0xFFFFFFFF, 0x80000000, 1 << 20, 0)).to_bytes(4, "little")
+        content[place : place + 4] = huge
+    elif kind == 3:
+        del content[place : place + chance.choice((1, 4, 1000, len(content)))]
+    elif kind == 4:
+        content[place:place] = chance.randbytes(chance.choice((1, 4, 300)))
+    else:
+        content[place : place + 16] = content[:16]
+
+
+def mutated_recordings(count: int, whole: Sequence[Path], seed: int = 0) -> Iterator[Case]:
+    """Yield what comes of each of `count` mutations of whole recordings, one after the other; they are overwritten."""
+    chance = Random(seed)
+    contents = [path.read_bytes() for path in whole]
+    for number in range(count):
+        path = whole[number % len(whole)]
+        path.write_bytes(mutated_bytes(contents[number % len(whole)], chance))
+        yield _judged(path)
+
+
+def _judged(path: Path) -> Case:
+    facts = RecordingFacts(None if path.suffix == ".wav" else FS_HZ, full_scale=10.0)
+    return judged(path.name, lambda: recording_indicators(path, (20, 30), facts, (10.0, 30.0)))
+
+
+def judged(text: str, work: Callable[[], object]) -> Case:
+    """Return what came of some work: 'accepted', 'refused', 'traceback' or 'hang'."""
+    started_s = time.process_time()
+    outcome, message = "accepted", ""
+    before = signal.signal(signal.SIGALRM, _too_long)
+    signal.alarm(LIMIT_S)
+    try:
+        work()
+    except SiggenError as error:
+        outcome, message = "refused" if error.exit_code == EXIT_USAGE else "traceback", str(error)
+    except _TooLong:
+        outcome, message = "hang", traceback.format_exc()
+    except Exception:
+        outcome, message = "traceback", traceback.format_exc()
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+    return Case(text, outcome, message, time.process_time() - started_s)
+
+
+class _TooLong(BaseException):
+    """Not an Exception, so that nothing on the way swallows it."""
+
+
+def _too_long(_number: int, _frame: object) -> None:
+    raise _TooLong

@@ -1,0 +1,92 @@
+"""`python -m tests.faults.victim_run STEP PLACE ...`: one step of making a small set of the default model.
+
+A process of its own, so that it can be killed. Shards hold one gearbox each: a second of work lies between two commits.
+As the command of siggen it imports next to nothing, since its workers import it first.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+from unittest.mock import patch
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+SPECIMENS, PARTS = 6, 3
+"""Of the set that is killed, made in parts or extended."""
+
+OVERRIDES = (
+    "duration_s=0.04",
+    "internals={quantities: [mesh_force_n]}",
+    "states=[{name: healthy}, {name: spall, severity: severe, damage: {kind: irregular, gear: pinion, teeth: 1, "
+    "centre_height_mm: below_pitch, profile_length_mm: 0.8, face_share: 0.5, face_centre_mm: 10}}]",
+)
+
+
+def default_model(specimens: int = SPECIMENS) -> Config:
+    """Return the quickstart (casing, tooth pairs, contact across the face) with two states and short records."""
+    import siggen
+
+    return siggen.load_config("quickstart", [*OVERRIDES, f"specimens={specimens}"])
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a step; return the exit code of a command."""
+    from siggen.errors import SiggenError
+    from siggen.planning import plan
+
+    given = _arguments(arguments)
+    if given.memory_mb:
+        import resource
+
+        # of address space, for this process and its workers: what `ulimit -v` sets
+        resource.setrlimit(resource.RLIMIT_AS, (given.memory_mb << 20, resource.RLIM_INFINITY))
+    try:
+        with patch.object(plan, "SHARD_BYTES", 1):
+            _run(given)
+    except SiggenError as error:
+        sys.stderr.write(f"{error}\n")
+        return error.exit_code
+    except MemoryError:
+        sys.stderr.write("not enough memory; finished shards stay\n")
+        return 1
+    return 0
+
+
+def _run(given: argparse.Namespace) -> None:
+    from siggen.engines.registry import engine_of
+    from siggen.sets.extension import extend
+    from siggen.sets.generation import generate
+    from siggen.sets.parts import generate_part, merge
+
+    if given.step == "merge":
+        merge(given.sources, given.place)
+        return
+    engine = engine_of(given.engine, given.workers, given.address)
+    if given.step == "extend":
+        extend(given.place, given.specimens, engine=engine)
+    elif given.step == "part":
+        generate_part(default_model(given.specimens), given.place, (given.part, PARTS), engine=engine)
+    else:
+        generate(default_model(given.specimens), given.place, engine=engine)
+
+
+def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m tests.faults.victim_run", description=__doc__)
+    parser.add_argument("step", choices=("generate", "part", "merge", "extend"))
+    parser.add_argument("place")
+    parser.add_argument("sources", nargs="*", help="of merge")
+    parser.add_argument("--engine", default="processes")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--address")
+    parser.add_argument("--memory-mb", type=int, default=0)
+    parser.add_argument("--part", type=int, default=1)
+    parser.add_argument("--specimens", type=int, default=SPECIMENS)
+    return parser.parse_args(arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Contact across the face beside independent solvers: `python -m tests.reference.contact TABLE`."""

@@ -1,0 +1,186 @@
+"""Numbers of the library beside those of the independent solvers: edges, gaps, notches, losses across the face."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from siggen.gears.contact import two_edges
+from siggen.gears.contact.edge_law import half_plane_factor, notch_factor
+from tests.reference.contact.case import (
+    KAPPA,
+    LINE_LOADS,
+    RADIUS_M,
+    REST_M_PER_N,
+    RIGID,
+    Teeth,
+    answer_under,
+    approach_under,
+    face_of_land,
+    half_width,
+)
+from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_gap, land_of_pits
+from tests.reference.contact.plane_contact import edge_sink, gap_sink
+
+LENGTHS_M = (0.3e-3, 0.5e-3, 0.8e-3, 1.5e-3)
+AHEAD = (1.5, 1.0, 0.5, 0.0, -1.0, -3.7, -6.0, -11.0)
+NOTCH_DEPTHS_M = (0.05e-3, 0.2e-3)
+SHARES = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2)
+"""Offsets of the normal from mid-gap over half its length."""
+LANDS = {
+    "gap of 30 % in the middle": lambda case: land_of_gap(case, 0.3),
+    "gap of 50 % in the middle": lambda case: land_of_gap(case, 0.5),
+    "gap of 80 % in the middle": lambda case: land_of_gap(case, 0.8),
+    "gap of 30 % at one end": lambda case: land_of_gap(case, 0.3, 0.0),
+    "gap of 50 % at one end": lambda case: land_of_gap(case, 0.5, 0.0),
+    "gap of 80 % at one end": lambda case: land_of_gap(case, 0.8, 0.0),
+    "10 pits of 0.6 mm": lambda case: land_of_pits(case, 10),
+    "16 pits of 0.6 mm": lambda case: land_of_pits(case, 16),
+}
+
+
+FINE_M, SLIVER = 0.01e-3, 1e-9
+"""Cells from which parts of slices are counted, and the part that does not count."""
+
+
+@dataclass(frozen=True, slots=True)
+class SinkPair:
+    """A sink of the library beside that of a solver [m], for a gap and an offset s [m] under a line load [N/m].
+
+    `share`, `solver_share`: of the left edge; `plain_m`, `solver_plain_m`: the sinks without a notch.
+    """
+
+    length_m: float
+    depth_m: float
+    offset_m: float
+    line_load_n_per_m: float
+    sink_m: float
+    solver_m: float
+    share: float
+    solver_share: float
+    plain_m: float
+    solver_plain_m: float
+
+    @property
+    def error_m(self) -> float:
+        """Difference of the sinks."""
+        return self.sink_m - self.solver_m
+
+    @property
+    def notch_error(self) -> float:
+        """Relative error of what the notch adds."""
+        return (self.sink_m - self.plain_m) / (self.solver_m - self.solver_plain_m) - 1.0
+
+
+def notched_gaps(
+    lengths: tuple[float, ...] = LENGTHS_M, depths: tuple[float, ...] = NOTCH_DEPTHS_M
+) -> Iterator[SinkPair]:
+    """Yield notched gaps with two edges beside finite elements (the extra 'fem')."""
+    from tests.reference.contact.notched_half_plane import LAND_M, notched_gap_sink
+
+    for length in lengths:
+        for depth in depths:
+            for line in LINE_LOADS:
+                for share in SHARES:
+                    offset = 0.5 * length * share
+                    if offset - 0.5 * length + half_width(line) > 0.96 * LAND_M:
+                        continue
+                    sink, left = notched_gap_sink(offset, length, depth, RADIUS_M, KAPPA * line)
+                    plain, _ = gap_sink(offset, length, RADIUS_M, KAPPA * line)
+                    law, bare = _law(length, depth, offset, line), _law(length, 0.0, offset, line)
+                    yield SinkPair(
+                        length, depth, offset, line, law.sink_m, sink, law.left_share, left, bare.sink_m, plain
+                    )
+
+
+def _law(length: float, depth: float, offset: float, line: float) -> two_edges.GapSink:
+    return two_edges.gap_sink(0.5 * length + offset, 0.5 * length - offset, depth, 0.0, RADIUS_M, 0.0, KAPPA * line)
+
+
+def one_edge() -> Iterator[tuple[float, float, float]]:
+    """Yield d/a, the sink over κF of pressure cells, and G."""
+    for ahead in AHEAD:
+        load = 0.5
+        yield ahead, edge_sink(ahead, 1.0, load) / load, half_plane_factor(ahead)
+
+
+def notches(
+    depths: tuple[float, ...], loads: tuple[float, ...] = LINE_LOADS
+) -> Iterator[tuple[float, float, float, float, float]]:
+    """Yield depth [m], line load [N/m], d/a, N of finite elements and N of the library (the extra 'fem')."""
+    from tests.reference.contact.notched_half_plane import notched_edge_sink
+
+    for depth in depths:
+        for line in loads:
+            width = half_width(line)
+            for ahead in AHEAD:
+                cut = notched_edge_sink(ahead * width, depth, RADIUS_M, KAPPA * line)
+                plain = edge_sink(ahead * width, RADIUS_M, KAPPA * line)
+                yield depth, line, ahead, (cut - plain) / (KAPPA * line), notch_factor(ahead, depth / width)
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """Loss of pair stiffness at a force, in per cent: contact in three dimensions, and the library with n slices."""
+
+    land: str
+    force_n: float
+    solver: float
+    library: dict[int, float]
+
+
+def losses(
+    force_n: float, slices: tuple[int, ...] = (200,), cell_m: float = 0.05e-3, teeth: Teeth = RIGID
+) -> Iterator[Loss]:
+    """Yield the losses of all `LANDS`."""
+    case = face_case(cell_m, teeth)
+    rest = REST_M_PER_N - teeth.compliance_m_per_n
+    whole = approach_at(case, np.ones(round(case.face_width_m / cell_m), bool), force_n)[0]
+    healthy = {n: approach_under(face_of_land(np.ones(n), teeth), force_n) for n in slices}
+    for name, land in LANDS.items():
+        damaged = approach_at(case, land(case), force_n, reach=6.0)[0]
+        solver = 1.0 - (rest + whole / force_n) / (rest + damaged / force_n)
+        library = {}
+        for n in slices:
+            face = face_of_land(_parts(land(replace(case, cell_m=FINE_M)), n), teeth)
+            library[n] = 100.0 * (1.0 - healthy[n] / approach_under(face, force_n))
+        yield Loss(name, force_n, 100.0 * solver, library)
+
+
+def _parts(land: np.ndarray, slices: int) -> np.ndarray:
+    """Return which part of every slice (slices,) is land, from cells (k,) that are or are not."""
+    edges = np.linspace(0.0, land.size, slices + 1)
+    below = np.concatenate([[0.0], np.cumsum(land)])
+    parts = np.diff(np.interp(edges, np.arange(land.size + 1), below)) * slices / land.size
+    return np.where(parts > 1.0 - SLIVER, 1.0, np.where(parts < SLIVER, 0.0, parts))
+
+
+def face_case(cell_m: float, teeth: Teeth) -> FaceCase:
+    """Return the case of the contact in three dimensions with these teeth."""
+    return FaceCase(cell_m=cell_m, tooth_length_m=teeth.length_m, tooth_m_per_n=teeth.compliance_m_per_n)
+
+
+@dataclass(frozen=True, slots=True)
+class Tilted:
+    """Whole face under a tilt at a force: approach [m] and moment [N m] of the library and in three dimensions."""
+
+    tilt_rad: float
+    force_n: float
+    approach_m: float
+    moment_n_m: float
+    solver_approach_m: float
+    solver_moment_n_m: float
+
+
+def tilted(force_n: float, slices: int = 100, cell_m: float = 0.1e-3, teeth: Teeth = RIGID) -> Iterator[Tilted]:
+    """Yield tilts of 20 to 400 µrad."""
+    case = face_case(cell_m, teeth)
+    count = round(case.face_width_m / cell_m)
+    y = (np.arange(count) + 0.5) * cell_m - 0.5 * case.face_width_m
+    rest = force_n * (REST_M_PER_N - teeth.compliance_m_per_n)
+    for tilt in (2e-5, 1e-4, 2e-4, 4e-4):
+        approach, line = approach_at(case, np.ones(count, bool), force_n, 4.0, tilt)
+        answer = answer_under(face_of_land(np.ones(slices), teeth), force_n, tilt)
+        yield Tilted(tilt, force_n, answer[0], answer[1], approach + rest, float(line @ y) * cell_m)
