@@ -40,20 +40,20 @@ __all__ = [
 ]
 
 _HOMES = {
-    "generate_part": ("siggen.sets.parts", "generate_part"),
-    "merge": ("siggen.sets.parts", "merge"),
-    "extend": ("siggen.sets.extension", "extend"),
-    "generate": ("siggen.sets.generation", "generate"),
-    "load_config": ("siggen.checks.loading", "load_config"),
-    "mesh_stiffness_curves": ("siggen.views.stiffness_curves", "mesh_stiffness_curves"),
-    "mesh_stiffness_meaning": ("siggen.views.stiffness_curves", "mesh_stiffness_meaning"),
-    "open": ("siggen.dataset.reading", "open"),
-    "plan": ("siggen.planning.plan", "plan"),
-    "publish": ("siggen.publication.publish", "publish"),
-    "simulate": ("siggen.record.simulation", "simulate"),
-    "write_card_section": ("siggen.dataset.card_section", "write_card_section"),
-    "write_csv": ("siggen.dataset.spreadsheet", "write_csv"),
-    "write_recorded_set": ("siggen.sets.recorded_set", "write_recorded_set"),
+    "generate_part": "siggen.sets.parts",
+    "merge": "siggen.sets.parts",
+    "extend": "siggen.sets.extension",
+    "generate": "siggen.sets.generation",
+    "load_config": "siggen.checks.loading",
+    "mesh_stiffness_curves": "siggen.views.stiffness_curves",
+    "mesh_stiffness_meaning": "siggen.views.stiffness_curves",
+    "open": "siggen.dataset.reading",
+    "plan": "siggen.planning.plan",
+    "publish": "siggen.publication.publish",
+    "simulate": "siggen.record.simulation",
+    "write_card_section": "siggen.dataset.card_section",
+    "write_csv": "siggen.dataset.spreadsheet",
+    "write_recorded_set": "siggen.sets.recorded_set",
 }
 
 
@@ -63,5 +63,9 @@ def __getattr__(name: str) -> Any:
         return import_module("siggen.sources").installed_version()
     if name not in _HOMES:
         raise AttributeError(f"siggen has no {name!r}; it has {', '.join(__all__)}")
-    module, attribute = _HOMES[name]
-    return getattr(import_module(module), attribute)
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    """Return the public names, loaded or not, so that completion and `help` show them."""
+    return sorted([*__all__, "__version__"])

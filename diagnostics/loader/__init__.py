@@ -28,3 +28,8 @@ def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"diagnostics.loader has no {name!r}; it has {', '.join(__all__)}")
     return getattr(import_module(f"diagnostics.loader.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """Return the public names, loaded or not, so that completion and `help` show them."""
+    return sorted(__all__)
