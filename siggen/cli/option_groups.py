@@ -61,5 +61,5 @@ def _options(group: Any) -> Iterator[Parameter]:
         (option,) = hints[field.name].__metadata__
         headed = copy(option)
         headed.rich_help_panel = heading
-        annotation: Any = Annotated.__class_getitem__((hints[field.name].__origin__, headed))  # type: ignore[attr-defined]
+        annotation: Any = Annotated[hints[field.name].__origin__, headed]
         yield Parameter(field.name, Parameter.KEYWORD_ONLY, default=field.default, annotation=annotation)
