@@ -19,7 +19,7 @@ from rich.table import Table
 from benchmarks.machine import load_average, machine_lines
 from benchmarks.results_file import ResultsFile
 from benchmarks.row import Row
-from siggen.engines.worker import ONE_THREAD
+from siggen.child_environment import ONE_THREAD
 
 DEFAULT = (
     *("presets", "precision", "loader", "cold", "memory", "startup"),

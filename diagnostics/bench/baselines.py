@@ -8,15 +8,14 @@ is chosen on a test part. Source: stacked generalisation (Wolpert 1992), standar
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from multiprocessing import get_context
 
 import numpy as np
 import pyarrow as pa
 
 from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN
 from diagnostics.base.extras import missing_packages
+from diagnostics.base.process_pool import process_pool
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
@@ -150,7 +149,7 @@ def damage_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Sta
     at_once = partial(_track, parts, seed)
     with (
         stage("baselines, tracks", len(TRACKS)) as advance,
-        ProcessPoolExecutor(len(TRACKS), mp_context=get_context("spawn")) as pool,
+        process_pool(len(TRACKS)) as pool,
     ):
         for tables in pool.map(at_once, TRACKS):
             yield from tables

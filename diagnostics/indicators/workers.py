@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Future
 from itertools import islice
-from multiprocessing import get_context
 from typing import TypeVar
 
 from diagnostics.base.kept_memory import keep_memory
+from diagnostics.base.process_pool import process_pool
 from diagnostics.records.recording import Recording
 
 CHUNK_RECORDS = 8
@@ -32,7 +32,7 @@ def mapped(records: Iterable[Recording], function: Callable[[Recording], Result]
         yield from map(function, records)
         return
     chunks = _chunks(records)
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=keep_memory) as pool:
+    with process_pool(workers, keep_memory) as pool:
         waiting: deque[Future[list[Result]]] = deque()
         try:
             for chunk in chunks:

@@ -64,7 +64,7 @@ def _asked(question: dict[str, Any]) -> dict[str, Any]:
 
 
 def _start() -> subprocess.Popen[str]:
-    command = [sys.executable, "-c", "from diagnostics.recordings.reading_process import serve; serve()"]
+    command = [sys.executable, "-P", "-c", "from diagnostics.recordings.reading_process import serve; serve()"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     process = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment
@@ -128,9 +128,10 @@ def _limit(size: int) -> None:
     import resource
 
     memory, seconds = MEMORY_BYTES + MEMORY_PER_BYTE * size, CPU_S + size // BYTES_PER_CPU_S
-    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    for limit, asked in ((resource.RLIMIT_AS, memory), (resource.RLIMIT_CPU, seconds), (resource.RLIMIT_CORE, 0)):
+        # never above what this process was started with: asking for more is refused
+        given = [bound for bound in resource.getrlimit(limit) if bound != resource.RLIM_INFINITY]
+        resource.setrlimit(limit, (min([asked, *given]),) * 2)
 
 
 def _keep(found: Columns, folder: Path) -> None:

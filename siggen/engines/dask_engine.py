@@ -8,10 +8,11 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any
 
+from siggen.child_environment import OF_WORKERS, child_environment
 from siggen.engines.orphan import end_with, ending_with_this
 from siggen.engines.protocol import Result, Results, Task, task_error
 from siggen.engines.window import windowed
-from siggen.engines.worker import ONE_THREAD, RAISED, answer
+from siggen.engines.worker import RAISED, answer
 from siggen.errors import EngineError, UsageError, how_to_install
 
 ADDRESS_VARIABLE = "DASK_SCHEDULER_ADDRESS"
@@ -90,8 +91,9 @@ class DaskEngine:
         options = {"host": "127.0.0.1", "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
         with ExitStack() as stack:
             stack.enter_context(ending_with_this())  # to the end: those that die are replaced
+            stack.enter_context(child_environment(OF_WORKERS))  # what Dask is given as `env` comes after the start
             try:
-                cluster = stack.enter_context(LocalCluster(n_workers=self.workers, env=dict(ONE_THREAD), **options))
+                cluster = stack.enter_context(LocalCluster(n_workers=self.workers, **options))
                 client = stack.enter_context(Client(cluster))
             except (RuntimeError, OSError, TimeoutError) as error:
                 raise EngineError(

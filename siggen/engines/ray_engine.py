@@ -14,12 +14,13 @@ from contextlib import contextmanager, redirect_stdout
 from functools import partial
 from typing import Any
 
+from siggen.child_environment import OF_WORKERS, SAFE_PATH, child_environment
 from siggen.engines import orphan
 from siggen.engines.orphan import end_with
 from siggen.engines.processes import TASK_ATTEMPTS
 from siggen.engines.protocol import Result, Results, Task, task_error
 from siggen.engines.window import windowed
-from siggen.engines.worker import ONE_THREAD, RAISED, answer
+from siggen.engines.worker import RAISED, answer
 from siggen.errors import EngineError, UsageError, how_to_install
 
 ADDRESS_VARIABLE = "RAY_ADDRESS"
@@ -97,7 +98,7 @@ class RayEngine:
         os.environ.update({name: value for name, value in QUIET.items() if name not in os.environ})
         import ray
 
-        options: dict[str, Any] = {"runtime_env": {"env_vars": dict(ONE_THREAD)}}
+        options: dict[str, Any] = {"runtime_env": {"env_vars": dict(OF_WORKERS)}}
         if self.address is None:
             memory = RESULT_BYTES * max(2, self.workers)
             local = {"num_cpus": self.workers, "include_dashboard": False, "object_store_memory": memory}
@@ -110,15 +111,30 @@ class RayEngine:
         logging.getLogger("ray").setLevel(logging.ERROR)
         # Ray prints what befalls its workers to stdout, where a command's result stands alone
         with redirect_stdout(sys.stderr):
-            with _own_signals(), _loopback():
+            with _own_signals(), _loopback(), child_environment(SAFE_PATH):
                 try:
-                    ray.init(log_to_driver=False, configure_logging=False, **options)
+                    ray.init(log_to_driver=False, configure_logging=False, job_config=_job_config(), **options)
                 except (ConnectionError, RuntimeError, ValueError, TimeoutError) as error:
                     raise EngineError(f"the cluster of Ray at {self.address or 'this machine'}: {error}") from error
             try:
                 yield ray
             finally:
                 ray.shutdown()
+
+
+class _ImportedPaths(list[str]):
+    """Folders that workers import from too; without the current one, which Ray puts first, unless this process does."""
+
+    def extend(self, paths: Iterable[str]) -> None:
+        super().extend(path for path in paths if path in sys.path)
+
+
+def _job_config() -> Any:
+    from ray.job_config import JobConfig
+
+    job = JobConfig()
+    job._py_driver_sys_path = _ImportedPaths()
+    return job
 
 
 @contextmanager

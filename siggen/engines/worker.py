@@ -5,30 +5,16 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
+from siggen.child_environment import OF_WORKERS, child_environment
 from siggen.engines.orphan import end_with
 
 READY, DONE, RAISED = "ready", "done", "raised"
-
-ONE_THREAD = dict.fromkeys(
-    (
-        "OMP_NUM_THREADS",
-        "OPENBLAS_NUM_THREADS",
-        "MKL_NUM_THREADS",
-        "VECLIB_MAXIMUM_THREADS",
-        "NUMEXPR_NUM_THREADS",
-        "NUMBA_NUM_THREADS",
-        "ARROW_NUM_THREADS",
-        "ARROW_IO_THREADS",
-    ),
-    "1",
-)
-"""Numeric libraries read these when they are loaded: as many workers as cores, each with one thread."""
 
 PARENTS_SIGNALS = {signal.SIGINT, signal.SIGTERM}
 """A terminal sends Ctrl-C to the whole process group; only the parent decides what it means."""
@@ -60,7 +46,7 @@ class Worker:
         # as bytes: reading it imports the physics, and before that the process has to end with its parent
         pickled = bytes(ForkingPickler.dumps(function))
         self._process = context.Process(target=_work, args=(theirs, pickled, os.getpid()), daemon=True)
-        with _environment(ONE_THREAD), _blocked(PARENTS_SIGNALS):
+        with child_environment(OF_WORKERS), _blocked(PARENTS_SIGNALS):
             self._process.start()
         # the process must hold the only other end, or its death would not close the pipe
         theirs.close()
@@ -120,21 +106,6 @@ def _settle_down() -> None:
 
     pa.set_cpu_count(1)
     pa.set_io_thread_count(1)
-
-
-@contextlib.contextmanager
-def _environment(variables: Mapping[str, str]) -> Iterator[None]:
-    """Set environment variables for processes that start inside the block."""
-    before = {name: os.environ.get(name) for name in variables}
-    os.environ.update(variables)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 @contextlib.contextmanager

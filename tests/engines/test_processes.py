@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from siggen.child_environment import ONE_THREAD
 from siggen.engines.processes import ProcessEngine, default_workers
 from siggen.engines.serial import SerialEngine
-from siggen.engines.worker import ONE_THREAD
 from siggen.errors import EngineError, UsageError
 from tests.engines import tasks
 from tests.engines.tasks import DiesOnArrival

@@ -23,8 +23,8 @@ from random import Random
 from typing import BinaryIO, Self
 
 from benchmarks.row import Row
+from siggen.child_environment import ONE_THREAD
 from siggen.dataset.storage import LocalFolder
-from siggen.engines.worker import ONE_THREAD
 from tests.faults.process_tree import Process, below, seconds_until_gone
 from tests.faults.ray_cluster import OPEN, RayCluster
 from tests.faults.set_files import committed_problems, committed_shards, set_files, whole_set_problems

@@ -10,8 +10,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from siggen.child_environment import ONE_THREAD
 from siggen.engines.ray_engine import QUIET
-from siggen.engines.worker import ONE_THREAD
 from tests.faults.process_tree import Process, below
 
 PORT = 26379

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -47,3 +49,20 @@ def test_a_parser_that_crashes_or_never_ends_is_told_in_words(tmp_path: Path) ->
         patched.setattr(reading_process, "_asked", lambda _: {"ended": "signal 11"})
         with pytest.raises(UsageError, match=r"0.csv: cannot be read: it is damaged, or far too large \(signal 11\)"):
             read_columns(path)
+
+
+UNDER_A_LIMIT = """
+import resource, sys
+from pathlib import Path
+from diagnostics.recordings.columns import read_columns
+resource.setrlimit(resource.RLIMIT_AS, (4_000_000 << 10,) * 2)
+print(*read_columns(Path(sys.argv[1])).values)
+"""
+
+
+def test_a_good_file_is_read_below_a_memory_limit_of_the_user(tmp_path: Path) -> None:
+    path = recordings(tmp_path)[0]
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", UNDER_A_LIMIT, path], capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.stdout.split() == list(read_columns(path).values), done.stderr
