@@ -63,7 +63,7 @@ BACKGROUND_QUANTITIES = (
 )
 """What stands beside the mesh lines. Ranges pool channels of two or three machines and what is expected of others.
 
-Where one machine was measured, the other end is judgement (docs/understand/background.md).
+Where one machine was measured, the other end is judgement (docs/understand/methods.md).
 """
 
 SPEED_RANGES = {BENCH: ((0.007, 0.05),), VARIABLE: ((0.3, 1.5),)}

@@ -1,7 +1,7 @@
 """What a healthy machine adds to its mesh lines: shaft lines, floor, lines above mesh 5, modulation and tails of noise.
 
 The record lies in equal steps of pinion angle. Densities are means of Hann windows of 40 turns, the floor of a band is
-their median over 0.693. Noise is what the averages of both shafts leave. Aims: docs/understand/background.md. Source:
+their median over 0.693. Noise is what the averages of both shafts leave. Aims: docs/understand/methods.md. Source:
 standard literature; lines above mesh 5 and what returns every turn derived.
 
 Level of a channel's noise in ten bands, measured in the half turn of the pinion in which it is weakest.

@@ -1,4 +1,4 @@
-"""Tables of docs/understand/iso_6336.md: mean mesh stiffness of pairs by our models beside ISO 6336-1, method B."""
+"""Tables of docs/understand/methods.md: mean mesh stiffness of pairs by our models beside ISO 6336-1, method B."""
 
 from math import cos, radians
 
@@ -95,7 +95,7 @@ def ours(pair: GearPair, options: StiffnessOptions, *, still: bool = False) -> t
 
 
 def main() -> None:
-    """Print the table of docs/understand/iso_6336.md."""
+    """Print the table of docs/understand/methods.md."""
     print("| z1/z2 | ε | c'th | c' | cγα of c'th | cγα | " + " | ".join(MODELS) + " |")
     print("|---" * (6 + len(MODELS)) + "|")
     ratios = {name: [] for name in MODELS}

@@ -1,4 +1,4 @@
-"""Table and figure of docs/understand/background.md: healthy levels of quickstart against speed.
+"""Table and figure of docs/understand/methods.md: healthy levels of quickstart against speed.
 
 `python docs/scripts/levels_by_speed.py [GEARBOXES] [--png FILE]`; 24 gearboxes at 5, 10, 20 and 40 Hz and 40 N m, as
 they are and without their background, take four minutes.

@@ -56,5 +56,5 @@ def damage_notes(config: Config) -> tuple[str, ...]:
     return (
         "all spalls are idealised: their edges are exactly parallel to the axis, so the whole contact line enters a "
         "spall across the face at once; edges of real spalls are skewed and wavy (damage kind: irregular, "
-        "docs/understand/irregular_spalls.md)",
+        "docs/understand/methods.md)",
     )

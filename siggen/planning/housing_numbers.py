@@ -1,6 +1,6 @@
 """Proportions of a housing of plates that no file sets, with their sources; drawn per gearbox, by name, like its keys.
 
-Ranges are those of `docs/understand/housing.md`: clearances, walls and ribs from design rules, bosses and welded walls
+Ranges are those of `docs/understand/methods.md`: clearances, walls and ribs from design rules, bosses and welded walls
 assumed. Lengths are shares of the centre distance or of the wall.
 """
 

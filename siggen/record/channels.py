@@ -1,6 +1,6 @@
 """What every sensor of a record stores, block after block: inputs through filters of limited length.
 
-Memory is bounded but for the stored channels (docs/understand/blocks.md).
+Memory is bounded but for the stored channels (docs/understand/methods.md).
 """
 
 from __future__ import annotations

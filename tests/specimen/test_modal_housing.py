@@ -34,7 +34,7 @@ ROWS = [
     ",".join(map(str, (f, d, *(shape[r] for shape in SHAPES.values()))))
     for r, (f, d) in enumerate(zip(FREQUENCY_HZ, DAMPING, strict=True))
 ]
-PAGE = Path("docs/understand/housing.md")
+PAGE = Path("docs/understand/methods.md")
 
 
 def written(folder: Path, text: str, **changes: Any) -> Path:

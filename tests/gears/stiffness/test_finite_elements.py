@@ -76,7 +76,7 @@ def test_analytical_models_are_softer_than_finite_elements_at_the_pitch_point():
     for gear, expected in ((pair.pinion, (1.037, 1.359, 1.097)), (pair.gear, (1.213, 1.159, 1.045))):
         roll = np.array([np.tan(gear.pressure_angle_rad)])
         ratios = model_ratios(gear, roll, tooth_compliance(gear, roll, size=0.04))
-        # Values of docs/understand/finite_elements.md; their last digit and this mesh differ by 0.05 % each.
+        # Values of docs/understand/methods.md; their last digit and this mesh differ by 0.05 % each.
         np.testing.assert_allclose([r[0] for r in list(ratios.values())[:3]], expected, rtol=1e-3)
 
 
@@ -112,6 +112,6 @@ def test_coupled_mesh_meets_two_tooth_finite_elements_of_gears_it_was_not_fitted
     pair, places = shape_pair(pinion, gear), np.array([0.05, 0.5, 0.95])
     exact = equal_approach(coupled_bodies(pair, places, 0.05))
     plain, coupled = (model_stiffness(pair, places, c) for c in ("none", "body"))
-    # The goal is 3 %; measured 0.2 % on standard racks and 0.6 % on shifted ones (docs/understand/finite_elements.md).
+    # The goal is 3 %; measured 0.2 % on standard racks and 0.6 % on shifted ones (docs/understand/methods.md).
     np.testing.assert_allclose(coupled, exact, rtol=0.01)
     assert np.all(plain > 1.1 * exact)
