@@ -1,13 +1,15 @@
 """The wheel, built and tried in a bare environment: `python docs/scripts/bare_wheel.py dist` (`make wheel`).
 
 Builds a wheel into the folder, makes an environment that has nothing but Python beside the checkout, installs the wheel
-there after what locks/siggen.txt pins with hashes, and lets it generate and verify a small set from a preset.
+there after what locks/siggen.txt pins with hashes, starts every command of both programs, and lets a small set be
+generated from a preset and verified. The Python that runs this script is the one that all of it is tried with.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -16,6 +18,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+COMMANDS = re.compile(r"^#+ `(siggen[a-z -]*)`$", re.MULTILINE)
+"""Headings of the page of commands, which has all of them: a test compares it with the programs."""
 SMALL = ("--set", "specimens=1", "--set", "duration_s=0.2")
 
 
@@ -36,6 +40,8 @@ def tried(wheel: Path, place: Path) -> None:
     install = [str(place / "bare/bin/python"), "-m", "pip", "install", "--quiet", "--require-hashes"]
     run([*install, "-r", str(ROOT / "locks/siggen.txt")])
     run([*install, "--no-deps", "-r", str(wanted)])
+    for program, *words in map(str.split, COMMANDS.findall((ROOT / "docs/reference/commands.md").read_text())):
+        run([str(place / "bare/bin" / program), *words, "--help"], place)
     siggen = str(place / "bare/bin/siggen")
     for command in (
         [siggen, "--version"],
