@@ -6,25 +6,20 @@ import shutil
 from pathlib import Path
 
 import numpy as np
-import pyarrow.parquet as pq
 import pytest
-import yaml
 
 import siggen.sets.verification
 from siggen.config import parse
 from siggen.dataset.reading import open as open_set
-from siggen.errors import DatasetError, UsageError
-from siggen.planning.plan import has_internals, planned_record, specimens_per_shard
+from siggen.errors import UsageError
+from siggen.planning.plan import planned_record
 from siggen.sets.verification import EXACT, verify
 from tests.config.minimal import minimal
 from tests.dataset.fake_set import (
     FAKE_FILES,
     QUANTITIES,
     fake_config,
-    file_bytes,
     simulate,
-    simulate_with_a_bug,
-    simulate_with_failures,
     simulate_with_longer_contact,
     simulate_with_thicker_films,
     verify_fake_set,
@@ -32,7 +27,6 @@ from tests.dataset.fake_set import (
 )
 
 ALL = {"internals": {}}
-SOME = {"internals": {"records": "first_of_state"}}
 FILES = sorted(FAKE_FILES + [name.replace("data/", "internals/") for name in FAKE_FILES if name.startswith("data/")])
 
 
@@ -50,15 +44,6 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def folder(reference: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(reference, tmp_path / "set"))
-
-
-def test_every_shard_has_a_file_of_internals_that_the_card_names_once(reference: Path) -> None:
-    assert sorted(p.relative_to(reference).as_posix() for p in reference.rglob("*") if p.is_file()) == FILES
-    views = yaml.safe_load((reference / "README.md").read_text().split("---\n")[1])["configs"]
-    assert [view["config_name"] for view in views] == ["signals", "labels", "damage", "internals"]
-    matched = [p for view in views for file in view["data_files"] for p in reference.glob(file["path"])]
-    assert sorted(matched) == sorted(reference.glob("*/*.parquet"))
-    assert "| `mesh_force_n` | float[512] | N |" in (reference / "README.md").read_text()
 
 
 def test_rows_join_the_records_and_hold_their_series(reference: Path) -> None:
@@ -95,59 +80,12 @@ def test_undefined_films_hide_no_difference(reference, monkeypatch, elsewhere, s
     assert all(problem in mismatch.problem for mismatch in mismatches)
 
 
-def test_columns_and_rows_of_a_batch_are_those_asked_for(reference: Path) -> None:
-    batches = list(open_set(reference).internals("test", ["mesh_force_n"], batch_rows=1))
-    assert {batch.num_rows for batch in batches} == {1}
-    assert batches[0].schema.names == ["mesh_force_n"]
-    with pytest.raises(UsageError, match="colour"):
-        next(open_set(reference).internals(columns=["colour"]))
-
-
-@pytest.mark.parametrize("workers", [0, pytest.param(2, marks=pytest.mark.slow)])
-def test_bytes_do_not_depend_on_the_number_of_workers(reference: Path, tmp_path: Path, workers: int) -> None:
-    write_fake_set(tmp_path, config(), workers=workers)
-    assert file_bytes(tmp_path) == file_bytes(reference)
-
-
 def test_the_signals_are_those_of_the_set_without_internals(reference: Path, tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     for record_id in (0, 17, 29):
         with_internals, without = (open_set(p).record(record_id) for p in (reference, tmp_path))
         for name, value in without.items():
             np.testing.assert_array_equal(with_internals[name], value)
-
-
-def test_records_can_be_chosen_by_state(tmp_path: Path) -> None:
-    chosen = config(SOME)
-    write_fake_set(tmp_path, chosen)
-    dataset = open_set(tmp_path)
-    expected = [i for i in range(30) if i % 2 == 0]
-    assert sorted(i for batch in dataset.internals() for i in batch["record_id"].to_pylist()) == expected
-    assert [i for i in range(30) if has_internals(chosen, planned_record(chosen, i))] == expected
-    assert dataset.record_internals(1) is None
-    assert verify_fake_set(tmp_path, 30).mismatches == ()
-
-
-@pytest.mark.parametrize("damage", ["lost", "flipped"])
-def test_a_damaged_file_of_internals_is_made_again_with_its_shard(reference: Path, folder: Path, damage: str) -> None:
-    (folder / "manifest.json").unlink()
-    file = folder / "internals/train-00001.parquet"
-    if damage == "lost":
-        file.unlink()
-    else:
-        content = bytearray(file.read_bytes())
-        content[len(content) // 2] ^= 1
-        file.write_bytes(content)
-    again = write_fake_set(folder, config())
-    assert (again.records_made, again.shards_taken_over) == (6, 4)
-    assert file_bytes(folder) == file_bytes(reference)
-
-
-def test_an_interrupted_shard_leaves_neither_of_its_files(tmp_path: Path) -> None:
-    with pytest.raises(Exception, match="ZeroDivisionError"):
-        write_fake_set(tmp_path, config(), simulation=simulate_with_a_bug)
-    data, internals = ({p.name for p in (tmp_path / kind).glob("*")} for kind in ("data", "internals"))
-    assert data == internals == {p.name.replace("json", "parquet") for p in (tmp_path / "shards").glob("*")}
 
 
 def test_verification_reads_every_byte_and_simulates_internals_again(reference: Path, folder: Path) -> None:
@@ -173,12 +111,6 @@ def test_another_internal_quantity_is_a_mismatch_of_its_record(reference: Path) 
     assert "internal quantity mesh_force_n differs" in found.mismatches[0].problem
 
 
-def test_failed_records_have_no_internals(tmp_path: Path) -> None:
-    write_fake_set(tmp_path, config(), simulation=simulate_with_failures)
-    ids = [i for batch in open_set(tmp_path).internals() for i in batch["record_id"].to_pylist()]
-    assert sorted(ids) == [i for i in range(30) if i not in (3, 8, 10)]
-
-
 def simulate_nan(config, record_ids):
     results = simulate(config, record_ids)
     results[0].internals["mesh_force_n"][0] = np.nan
@@ -191,17 +123,6 @@ def test_a_quantity_that_is_not_a_number_fails_its_record(tmp_path: Path) -> Non
     assert "internal quantity mesh_force_n has 1 value not finite" in generation.failures[0].reason
 
 
-def simulate_without(config, record_ids):
-    results = simulate(config, record_ids)
-    results[0].internals.pop("mesh_force_n")
-    return results
-
-
-def test_a_quantity_that_the_simulation_forgets_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="internal quantity mesh_force_n: missing"):
-        write_fake_set(tmp_path, config(), simulation=simulate_without)
-
-
 def test_a_set_without_internals_says_how_to_get_them(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     dataset = open_set(tmp_path)
@@ -210,18 +131,6 @@ def test_a_set_without_internals_says_how_to_get_them(tmp_path: Path) -> None:
         with pytest.raises(UsageError, match="siggen simulate"):
             ask()
     assert b"internals" not in (tmp_path / "shards/test-00000.json").read_bytes()
-
-
-def test_the_series_are_stored_as_the_signals_are(reference: Path) -> None:
-    schema = pq.read_schema(reference / "internals/test-00000.parquet")
-    field = schema.field("mesh_force_n")
-    assert str(field.type) == "fixed_size_list<element: float not null>[512]"
-    assert field.metadata[b"unit"] == b"N"
-    assert schema.metadata[b"siggen.identity"].decode() == config().identity
-
-
-def test_internals_count_in_the_size_of_a_shard() -> None:
-    assert specimens_per_shard(config()) < specimens_per_shard(fake_config())
 
 
 def test_mistakes_are_answered_with_what_is_allowed() -> None:

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import json
-import os
 import pickle
 import subprocess
 import sys
-import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from siggen.dataset import object_store, writer_lock
+from siggen.dataset import object_store
 from siggen.dataset.object_path import object_path
 from siggen.dataset.object_store import LOCK, ObjectStore
 from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder, sha256
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError
 from tests.dataset.s3_server import BUCKET, s3_server
-from tests.dataset.swallowed_answers import swallowing
 
 PLACE = f"s3://{BUCKET}/some/set"
 
@@ -69,33 +64,6 @@ def test_an_object_is_replaced_read_listed_and_found_by_its_place(store: ObjectS
     assert store.names("data") == ["data/c.bin"]
     assert sha256(store, "a/b.json") == "20a96de1d7f9c25045cc7e54a249e23a8129c6ad5bb98888895e28be303334e6"
     assert pickle.loads(pickle.dumps(store)).get("a/b.json") == b"new one"
-
-
-def test_objects_of_several_answers_to_a_listing_are_all_named(
-    store: ObjectStore, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(object_store, "PAGE_OBJECTS", 2)
-    for number in range(5):
-        store.put(f"{number}", b"")
-    assert store.names() == ["0", "1", "2", "3", "4"]
-
-
-def test_a_read_in_pieces_gives_the_bytes_and_a_row_needs_few_requests(store: ObjectStore) -> None:
-    content = os.urandom(9_000_001)
-    store.put("a", content)
-    asked: list[object] = []
-    client(store).meta.events.register("before-call.s3.GetObject", lambda **_: asked.append(1))
-    with store.open("a") as file:
-        assert file.seek(-7, os.SEEK_END) == len(content) - 7
-        assert file.read() == content[-7:]
-        file.seek(4_000_000)
-        assert file.read(5) == content[4_000_000:4_000_005]
-        file.seek(0)
-        pieces = []
-        while piece := file.read(1 << 20):
-            pieces.append(piece)
-    assert b"".join(pieces) == content
-    assert len(asked) <= 2 + 9
 
 
 def test_a_draft_that_fails_leaves_the_old_object_and_no_trace(store: ObjectStore, tmp_path: Path) -> None:
@@ -148,109 +116,6 @@ def test_a_second_writer_is_refused_while_the_first_lives_and_goes_on_once_it_is
     with store.writing():
         assert store.names() == []
     assert not store.exists(LOCK)
-
-
-def test_of_many_writers_at_the_same_moment_one_is_let_in(store: ObjectStore) -> None:
-    let_in, gate, done = [], threading.Barrier(8), threading.Barrier(8)
-
-    def write() -> None:
-        mine = storage_at(PLACE)
-        gate.wait()
-        try:
-            with mine.writing():
-                let_in.append(1)
-                done.wait(30)
-        except DatasetError:
-            done.wait(30)
-
-    threads = [threading.Thread(target=write) for _ in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert len(let_in) == 1
-
-
-def put_lock_of_elsewhere(store: ObjectStore) -> None:
-    store.put(LOCK, json.dumps({"host": "elsewhere", "boot": "b", "pid": 1, "token": "t"}).encode())
-
-
-def test_a_lock_of_another_machine_holds_until_it_is_stale(store: ObjectStore, monkeypatch: pytest.MonkeyPatch) -> None:
-    put_lock_of_elsewhere(store)
-    with pytest.raises(DatasetError, match="process 1 on elsewhere"), store.writing():
-        pass
-    monkeypatch.setattr(writer_lock, "STALE_S", -1.0)
-    with store.writing():
-        store.put("a", b"1")
-    assert not store.exists(LOCK)
-
-
-def test_a_living_writer_renews_its_lock_and_stops_where_another_took_it_over(
-    store: ObjectStore, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(writer_lock, "RENEW_S", 0.05)
-    renewed = threading.Event()
-
-    def write_on() -> None:
-        with store.writing():
-            client(store).meta.events.register("before-call.s3.PutObject", lambda **_: renewed.set())
-            assert renewed.wait(20)
-            put_lock_of_elsewhere(store)
-            for _ in range(400):
-                time.sleep(0.05)
-                store.put("a", b"1")
-
-    with pytest.raises(DatasetError, match="could not renew its lock"):
-        write_on()
-    assert store.exists(LOCK)  # it is the other one's now
-
-
-@pytest.fixture
-def lossy(store: ObjectStore, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[ObjectStore, list[str]]]:
-    """The store by a way that loses the first answers to writing and deleting its lock."""
-    with swallowing(os.environ["AWS_ENDPOINT_URL"], LOCK, {"PUT", "DELETE"}) as (address, swallowed):
-        monkeypatch.setenv("AWS_ENDPOINT_URL", address)
-        found = storage_at(PLACE)
-        assert isinstance(found, ObjectStore)
-        yield found, swallowed
-
-
-def test_a_writer_whose_lock_was_made_without_an_answer_goes_on(lossy: tuple[ObjectStore, list[str]]) -> None:
-    store, swallowed = lossy
-    with store.writing():
-        assert swallowed == ["PUT"]
-        store.put("a", b"1")
-        with pytest.raises(DatasetError, match="by another siggen process"), storage_at(PLACE).writing():
-            pass
-    assert swallowed == ["PUT", "DELETE"]
-    assert not store.exists(LOCK)
-
-
-def test_a_stale_lock_is_taken_over_although_the_answer_is_lost(lossy: tuple[ObjectStore, list[str]]) -> None:
-    store, swallowed = lossy
-    put_lock_of_elsewhere(store)
-    swallowed.clear()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(writer_lock, "STALE_S", -1.0)
-        with store.writing():
-            assert swallowed == ["PUT"]
-            store.put("a", b"1")
-
-
-def test_a_renewal_without_an_answer_is_none_of_another_writer(
-    lossy: tuple[ObjectStore, list[str]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Servers that encrypt give every write another tag, whatever was written: the repetition then has the old one."""
-    monkeypatch.setattr(writer_lock, "RENEW_S", 0.05)
-    store, swallowed = lossy
-    with store.writing():
-        # the tag of the body is the same at every renewal; one that is not is refused as by such a server
-        store._lock._tag = '"of-an-earlier-write"'
-        swallowed.clear()
-        deadline = time.monotonic() + 20
-        while store._lock._tag == '"of-an-earlier-write"' and time.monotonic() < deadline:
-            time.sleep(0.02)
-        store.put("a", b"1")
 
 
 def test_a_store_that_is_gone_or_refuses_is_named_with_how_to_go_on(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,10 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.columns.record import record_batch, record_schema, signal_matrix
-from siggen.dataset import shard
 from siggen.dataset.shard import write_table
 from siggen.dataset.storage import LocalFolder
-from siggen.errors import DatasetError
 from tests.dataset.fake_set import fake_config, simulate
 
 CONFIG = fake_config()
@@ -66,35 +63,10 @@ def test_bytes_do_not_depend_on_how_rows_arrive(tmp_path_factory: pytest.TempPat
     assert written(folder, pieces).read_bytes() == written(folder / "whole", [ROWS]).read_bytes()
 
 
-def test_facts_are_those_of_the_file(tmp_path: Path) -> None:
-    facts = write_table(LocalFolder(tmp_path), "data/a.parquet", SCHEMA, [ROWS], 4)
-    content = (tmp_path / "data/a.parquet").read_bytes()
-    assert (facts.rows, facts.bytes, facts.sha256) == (11, len(content), hashlib.sha256(content).hexdigest())
-
-
 def test_a_shard_of_which_every_record_failed_is_an_empty_file_with_the_schema(tmp_path: Path) -> None:
     table = pq.read_table(written(tmp_path, []))
     assert table.num_rows == 0
     assert table.schema.equals(SCHEMA)
-
-
-@pytest.mark.parametrize("wrong", ["accel_bearing_vertical_m_s2", "accel_bearing_vertical_m_s2.element"])
-def test_an_encoding_that_the_writer_ignores_is_noticed_and_nothing_is_committed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wrong: str
-) -> None:
-    options = shard._options(SCHEMA)
-    options["column_encoding"] = {wrong: "BYTE_STREAM_SPLIT"}
-    monkeypatch.setattr(shard, "_options", lambda schema: options)
-    with pytest.raises(DatasetError, match="encodings"):
-        written(tmp_path, [ROWS])
-    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
-
-
-def test_a_dictionary_for_signals_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    options = {**shard._options(SCHEMA), "use_dictionary": True, "column_encoding": None}
-    monkeypatch.setattr(shard, "_options", lambda schema: options)
-    with pytest.raises(DatasetError, match="did not do as asked"):
-        written(tmp_path, [ROWS])
 
 
 def test_rows_that_stop_coming_leave_nothing_behind(tmp_path: Path) -> None:

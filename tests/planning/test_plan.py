@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tracemalloc
 from collections import Counter
 from itertools import pairwise
 
@@ -13,13 +12,9 @@ from hypothesis import strategies as st
 from siggen.config import BLOCK
 from siggen.planning.plan import (
     SPLITS,
-    SUB_BLOCK,
-    PlannedRecord,
-    estimated_bytes,
     plan,
     planned_record,
     record_ids_of,
-    rows_per_group,
     shard_count,
     shards,
     specimen_count,
@@ -45,35 +40,11 @@ def test_every_block_of_20_holds_exactly_the_splits(counts, seed, block):
     assert {name: labels[name] for name in SPLITS} == counts
 
 
-@given(splits(), SEEDS, st.integers(1, 60))
-def test_a_set_cut_off_anywhere_is_nearly_balanced(counts, seed, specimens):
-    made = config(seed=seed, splits=counts)
-    labels = Counter(split_of(made, i) for i in range(specimens))
-    for name in SPLITS:
-        # a label's place is less than 1 ahead or behind its share at the end of a sub-block, and moves by at most the
-        # others of its sub-block in between
-        assert abs(labels[name] - counts[name] * specimens / BLOCK) < SUB_BLOCK
-
-
-@given(SEEDS, st.integers(0, 1000))
-def test_every_five_specimens_hold_every_split_at_12_4_4(seed, five):
-    made = config(seed=seed)
-    labels = Counter(split_of(made, i) for i in range(5 * five, 5 * five + 5))
-    assert labels == {"train": 3, "validation": 1, "test": 1}
-
-
 def test_splits_are_shuffled_by_the_seed():
     orders = {tuple(split_of(config(seed=seed), i) for i in range(BLOCK)) for seed in range(50)}
     assert (
         len(orders) > 40
     )  # 20^4 orders of 3 + 1 + 1 in four sub-blocks: 50 draws coincide with a probability below 1 %
-
-
-def test_every_place_of_a_sub_block_may_hold_any_split():
-    made = config()
-    test_places = Counter(i % SUB_BLOCK for i in range(5000) if split_of(made, i) == "test")
-    # 1000 sub-blocks: 200 per place with a standard deviation of 13
-    assert all(120 < test_places[place] < 280 for place in range(SUB_BLOCK))
 
 
 def test_a_split_depends_on_nothing_but_seed_splits_and_specimen():
@@ -127,14 +98,6 @@ def test_a_negative_index_is_refused():
         planned_record(config(), -1)
 
 
-def test_records_behave_as_a_sequence():
-    records = plan(config()).records
-    assert records[-1] == PlannedRecord(39, 19, 1, 0, 0, split_of(config(), 19))
-    assert records[3:5] == (records[3], records[4])
-    with pytest.raises(IndexError):
-        records[40]
-
-
 def test_ten_million_records_are_planned_without_listing_them():
     made = config(specimens=5_000_000)
     records = plan(made).records
@@ -169,20 +132,6 @@ def test_shards_hold_whole_specimens_of_a_split_in_order(specimens, duration_s):
     assert sorted(seen) == list(range(plan(made).count))
 
 
-def test_a_planned_record_takes_few_bytes_of_memory():
-    """A million of them 5 MB, where the process that plans them takes 100 MB by itself."""
-    made = config(specimens=5_000, repeats=4)
-    tracemalloc.start()
-    try:
-        kept = [shards(made, split) for split in SPLITS]
-        held = tracemalloc.get_traced_memory()[0]
-    finally:
-        tracemalloc.stop()
-    records = sum(shard.record_count for found in kept for shard in found)
-    assert records == plan(made).count
-    assert held / records < 5.0
-
-
 def test_a_larger_set_has_the_same_full_shards():
     small, large = config(specimens=300, duration_s=10.0), config(specimens=1000, duration_s=10.0)
     for split in SPLITS:
@@ -191,44 +140,8 @@ def test_a_larger_set_has_the_same_full_shards():
         assert shards(large, split)[: len(full)] == full
 
 
-def test_a_full_shard_has_about_64_mb_on_disk():
-    made = config(duration_s=1.0)
-    raw = specimens_per_shard(made) * made.records_per_specimen * 51_200 * 4
-    # one specimen of 2 records of 0.2 MB more would pass the aim
-    assert 63.8e6 < raw * 0.45 <= 64e6
-
-
-def test_the_estimate_of_bytes_on_disk_knows_what_is_quantised():
-    raw = 40 * 51_200 * 4
-    assert estimated_bytes(config()) == raw * 45 // 100
-    assert estimated_bytes(config(sensors__0__bits=None)) == raw * 81 // 100
-    both = [{"name": "a", "axes": ["vertical", "horizontal"]}, {"name": "b", "bits": 24}]
-    assert estimated_bytes(config(sensors=both)) == raw * (45 + 45 + 81) // 100
-    quiet = [{"name": "a", "bits": "noise", "noise": {"floor_m_s2": 0.01}}]
-    assert estimated_bytes(config(sensors=quiet)) == raw * 55 // 100
-
-
 def test_a_specimen_larger_than_a_shard_is_a_shard():
     assert specimens_per_shard(config(duration_s=1000.0)) == 1
-
-
-@given(st.floats(0.01, 200.0), st.integers(1, 12))
-def test_row_groups_hold_4_to_8_mb_per_channel_and_at_most_64_mb(duration_s, channels):
-    samples = round(51_200 * duration_s)
-    made = config(duration_s=samples / 51_200, sensors=[{"name": f"s{i}"} for i in range(channels)])
-    rows, row_bytes = rows_per_group(made), samples * 4
-    assert rows >= 1
-    if rows > 1:
-        assert rows * row_bytes <= 8e6
-        assert rows * row_bytes * channels <= 64e6
-    if row_bytes <= 4e6 and channels <= 8:
-        assert rows * row_bytes > 4e6 or 2 * rows * row_bytes * channels > 64e6
-
-
-def test_row_groups_of_the_usual_records():
-    # 16 to 32 records of 1 s and 2 or 3 of 10 s were measured to read well
-    assert rows_per_group(config(duration_s=1.0)) == 32
-    assert rows_per_group(config(duration_s=10.0)) == 2
 
 
 @pytest.mark.parametrize("specimens", [1, 7, 20, 39, 100, 401])

@@ -17,9 +17,8 @@ from siggen.cli.app import app
 from siggen.cli.run_display import RunDisplay, run_shown
 from siggen.dataset.seal import unsealed
 from siggen.errors import DatasetError, EngineError, UsageError
-from siggen.record.stage_times import StageTimes, collected, stage
 from siggen.sets.run_journal import EVENTS, stamped
-from siggen.sets.run_report import DRIVER, WORKERS, read_run
+from siggen.sets.run_report import read_run
 from tests.dataset.fake_set import simulate_with_a_bug, simulate_with_failures, write_fake_set
 
 ROOT = Path(__file__).parents[2]
@@ -166,14 +165,6 @@ def test_a_pipe_without_a_reader_and_a_folder_are_refused_at_once(tmp_path: Path
             pass
 
 
-def test_stages_of_the_driver_add_up_to_the_run(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
-    facts = unsealed("run.json", (tmp_path / "run.json").read_bytes())
-    assert set(facts["stages"]["driver_s"]) <= set(DRIVER)
-    # what is left out: opening the folder, and rounding of six stages to a millisecond
-    assert sum(facts["stages"]["driver_s"].values()) == pytest.approx(facts["seconds"], abs=0.1)
-
-
 def test_the_report_names_every_stage_and_refuses_a_folder_without_one(tmp_path: Path) -> None:
     write_fake_set(tmp_path / "set")
     result = CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set")])
@@ -183,32 +174,3 @@ def test_the_report_names_every_stage_and_refuses_a_folder_without_one(tmp_path:
     assert json.loads(shown) == unsealed("run.json", (tmp_path / "set" / "run.json").read_bytes())
     with pytest.raises(DatasetError, match=r"has no run\.json"):
         read_run(tmp_path)
-
-
-def test_only_the_innermost_stage_is_charged() -> None:
-    clock = iter([0.0, 1.0, 3.0, 7.0])
-    times = StageTimes(lambda: next(clock))
-    with times.during("outer"), times.during("inner"):
-        pass
-    assert times.seconds == {"outer": 5.0, "inner": 2.0}
-
-
-def test_nothing_is_charged_where_nobody_collects() -> None:
-    with stage("loop"):
-        pass
-    with collected("other") as times, stage("loop"):
-        sum(range(100_000))
-    assert times.seconds["loop"] > 0.0
-    assert set(times.seconds) < set(WORKERS)
-
-
-def test_a_simulated_record_charges_the_stages_of_the_physics() -> None:
-    from siggen.checks.loading import load_config
-    from siggen.record.simulation import simulate_specimen
-
-    config = load_config(
-        ROOT / "configs" / "quickstart.yaml", ["duration_s=0.1", "internals={quantities: [mesh_force_n]}"]
-    )
-    with collected("other") as times:
-        list(simulate_specimen(config, [0]))
-    assert set(times.seconds) == set(WORKERS) - {"rows", "files"}

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,24 +19,17 @@ from scipy.signal import resample_poly
 from diagnostics.base.progress import silent_stage
 from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
-from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import RecordTable, record_table
-from diagnostics.prediction.release import REFERENCED, release
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks
-from diagnostics.statistics.calibration import fitted_temperature
 from diagnostics.training import circular_network, circular_training
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
-from diagnostics.training.classifier_file import load_classifier
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.referenced import (
-    healthy_referenced,
     healthy_references,
-    reference_speed_ratio,
     referenced_classifiers,
 )
-from diagnostics.training.splits import specimen_split
 from diagnostics.training.training import Training, train_models, training_metrics
 from tests.diagnostics.conftest import SPLITS_24
 
@@ -79,26 +71,6 @@ def test_damaged_records_have_as_many_and_as_near_references_as_healthy_ones(row
 def test_a_damaged_record_without_a_healthy_twin_refers_to_nothing() -> None:
     found = healthy_references(labels(("healthy", 0, 0), ("again", 0, 0), ("severe", 1, 0)))
     assert [rows.tolist() for rows in found] == [[1], [0], []]
-
-
-def test_a_single_healthy_record_serves_nobody() -> None:
-    found = labels(("healthy", 0, 0), ("severe", 0, 0))
-    assert [rows.size for rows in healthy_references(found)] == [0, 0]
-    assert np.isnan(reference_speed_ratio(found))
-
-
-def test_differences_are_logarithms_minus_the_mean_over_the_references() -> None:
-    values = np.array([[2.0], [8.0], [32.0]])
-    found, kept = healthy_referenced(
-        FeatureMatrix(values, ("rms__a",), labels(("healthy", 0, 0), ("again", 0, 0), ("severe", 0, 0)))
-    )
-    assert kept.all()
-    np.testing.assert_allclose(found.values[:, 0], np.log([2 / 8, 8 / 2, 32 / 8]))
-
-
-def test_speed_ratio_is_the_largest_between_a_record_and_its_references() -> None:
-    rows = (("healthy", 0, 0), ("healthy", 3, 0), ("severe", 0, 0), ("severe", 3, 0))
-    assert reference_speed_ratio(labels(*rows)) == pytest.approx(33.0 / 30.0)
 
 
 @pytest.fixture(scope="module")
@@ -236,33 +208,6 @@ def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
     assert alone.permuted_auroc.shape == (1,)
     every = circular_predictions_of(TrainedCircularFile(trained, averages.channels, "0"), averages, matrix)
     np.testing.assert_array_equal(every.truth[split.test], alone.predictions.truth)
-
-
-def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(
-    trained: tuple[Path, Path], features_of_both: pa.Table
-) -> None:
-    matrix = feature_matrix(features_of_both)
-    differences, kept = healthy_referenced(matrix)
-    split = specimen_split(matrix.labels)
-    held_out = differences.rows(split.validation[kept])
-    saved = load_classifier(trained[0], REFERENCED)
-    plain = replace(saved, temperature=1.0).predict(held_out)
-    assert saved.temperature == pytest.approx(fitted_temperature(plain))
-    assert saved.temperature != pytest.approx(1.0, rel=0.01)
-
-
-def test_test_records_do_not_widen_the_speeds_at_which_references_may_run(
-    twice: Any, features_of_both: pa.Table
-) -> None:
-    labels = feature_matrix(features_of_both).labels
-    rows = {name: (labels["split"] == name) & (labels["repeat"] == 1) for name in ("validation", "test")}
-    speed = np.select([rows["validation"], rows["test"]], [33.0, 45.0], 30.0)
-    position = features_of_both.schema.get_field_index("speed_hz")
-    table = features_of_both.set_column(position, "speed_hz", pa.array(speed))
-    split = specimen_split(labels)
-    found = referenced_classifiers(feature_matrix(table), split, [], None, 0, NetworkOptions(cnn=False), silent_stage)
-    training: Any = SimpleNamespace(split=split, referenced=found)
-    assert release(training, table, twice).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
 
 
 def test_references_at_another_rate_are_brought_to_that_of_the_model(
