@@ -154,7 +154,7 @@ def _hermite(t: float) -> FloatArray:
     return np.array([_hermite_value(b, t) for b in range(4)])
 
 
-@entry(cache=True)
+@entry(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _hermite_value(b: int, t: float) -> float:
     s = 1.0 - t
     if b == 0:
@@ -166,7 +166,7 @@ def _hermite_value(b: int, t: float) -> float:
     return -t * t * s
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _legendre_value(degree: int, t: float) -> float:
     if degree == 0:
         return 1.0
@@ -177,7 +177,7 @@ def _legendre_value(degree: int, t: float) -> float:
     return -1.0 + t * (12.0 + t * (-30.0 + 20.0 * t))
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _stiffness_moments(
     law: MeshLaw, scheme: Scheme, k_ref: float, start: float, end: float, nodal: FloatArray, moments: FloatArray
 ) -> None:
@@ -205,7 +205,7 @@ def _stiffness_moments(
                 moments[p, b] += nodal[q] * scheme.products[q, p, b]
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _add_clipped_pair(
     law: MeshLaw, scheme: Scheme, row: int, place: float, advance: float, moments: FloatArray
 ) -> None:
@@ -220,7 +220,7 @@ def _add_clipped_pair(
                 moments[p, b] += k * _legendre_value(p, t) * _hermite_value(b, t)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _free_motion(scheme: Scheme, start: FloatArray, free: FloatArray) -> None:
     """Write the state after one step without input, with its approach, into `free` (columns,), four at a time."""
     for i in range(0, free.size, 4):
@@ -234,7 +234,7 @@ def _free_motion(scheme: Scheme, start: FloatArray, free: FloatArray) -> None:
         free[i], free[i + 1], free[i + 2], free[i + 3] = a, b, c, d
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _end_of_step(
     scheme: Scheme, moments: FloatArray, size: int, rest: float, x_0: float, v_0: float, state: FloatArray
 ) -> None:
@@ -257,7 +257,7 @@ def _end_of_step(
             state[i] -= scheme.response[p, i] * moment
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _substeps(
     equations: Equations,
     law: MeshLaw,
@@ -282,7 +282,7 @@ def _substeps(
         )
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _add_inputs(scheme: Scheme, start: FloatArray, end: FloatArray, state: FloatArray) -> None:
     """Add to the motion after one step (columns,) what inputs (m,), linear over the step, contribute."""
     for k in range(start.size):
