@@ -1,49 +1,34 @@
-"""What a record of every shipped preset costs, split by stage: tables, loop, filters, layers, sensing, writing."""
+"""What a record of every shipped preset costs, split by stage: as `siggen.record` times them, and writing."""
 
 from __future__ import annotations
 
 import tempfile
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
 
-from benchmarks.layers import layers
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import ROOT, shipped
 from siggen.columns.record import Record, record_batch, record_schema
 from siggen.config import Config
 from siggen.dataset.shard import table_draft
 from siggen.dataset.storage import LocalFolder
-from siggen.dynamics.time.exponential_motion import ExponentialMotion
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.planning.plan import planned_record, record_ids_of
-from siggen.planning.specimen import draw_specimen
-from siggen.record.channels import measured_channels
-from siggen.record.simulation import record_response, simulate_specimen
-from siggen.record.specimen_state import specimen_state
-from siggen.specimen.instrument import specimen_instrument
-from siggen.specimen.made_gears import MadeGears
+from siggen.record.simulation import simulate_specimen
+from siggen.record.stage_times import collected, stage
 
-PRESETS = ("quickstart", "bench", "industrial", "paper_b", "linear_pits")
 GOALS_S = {"quickstart": 0.06, "bench": 0.06, "industrial": 0.045}
-STATES = 4
-"""Records of a gearbox: one of each of these states, from the first to the last."""
-
-T = TypeVar("T")
+RECORDS = 4
+"""Records of a gearbox, from its first to its last: where a preset has states, one of each of these."""
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
     """Yield one row per preset: CPU time per second of signal as a sum, and its parts."""
-    for name in PRESETS:
-        file = ROOT / "configs" / f"{name}.yaml"
+    for file in sorted((ROOT / "configs").glob("*.yaml")):
         config = shipped(file)
         _costs(shipped(file, "duration_s=0.05"), 0)  # compiles
         found = [_costs(config, gearbox) for gearbox in range(1, 2 if quick else 4)]
-        mean = {stage: sum(cost[stage] for cost in found) / len(found) for stage in found[0]}
-        yield _row(name, config, mean)
+        mean = {name: sum(cost.get(name, 0.0) for cost in found) / len(found) for name in found[0]}
+        yield _row(file.stem, config, mean)
 
 
 def _row(name: str, config: Config, cost: Mapping[str, float]) -> Row:
@@ -60,72 +45,17 @@ def _row(name: str, config: Config, cost: Mapping[str, float]) -> Row:
 
 
 def _costs(config: Config, gearbox: int) -> dict[str, float]:
-    """Return the CPU time of every stage per second of signal, over some records of one gearbox."""
+    """Return the CPU time of every stage per second of signal; plan and tables are shared out to all records."""
     ids = record_ids_of(config, gearbox)
-    of_state = len(ids) // len(config.states)
-    chosen = sorted({round(k * (len(config.states) - 1) / (STATES - 1)) for k in range(STATES)})
-    planned = [planned_record(config, ids[state * of_state]) for state in chosen]
-    specimen = draw_specimen(config, gearbox)
-    build, instrument = _timed(lambda: specimen_instrument(config, specimen))
-    made = MadeGears(config, specimen)
-    tables, states = _timed(lambda: {s: specimen_state(config, specimen, s, made) for s in chosen})
-    with _loop_time() as loop:
-        motion, responses = _timed(
-            lambda: [record_response(config, specimen, states[p.state_id], p)[0] for p in planned]
-        )
-    seen_of_background, _ = _timed(lambda: [layers(config, specimen, p, instrument) for p in planned])
-    seen, _ = _timed(
-        lambda: [measured_channels(config, specimen, p, r, instrument) for p, r in zip(planned, responses, strict=True)]
-    )
-    ready = simulate_specimen(config, [p.record_id for p in planned[:1]])
-    records = [record for record in ready if isinstance(record, Record)]
-    writing, _ = _timed(lambda: _written(config, records))
-    per_record = {
-        "tables": tables / len(chosen) / of_state,
-        "loop": loop[0] / len(planned),
-        "inputs and filters": (motion - loop[0]) / len(planned),
-        "layers": seen_of_background / len(planned),
-        "sensing": (seen - seen_of_background) / len(planned) + build / len(ids),
-        "writing": writing / max(len(records), 1),
-    }
-    return {stage: value / config.duration_s for stage, value in per_record.items()}
-
-
-@contextmanager
-def _loop_time() -> Iterator[list[float]]:
-    """Give a list whose only value is the CPU time spent in the time loops of all motions so far."""
-    spent = [0.0]
-    kinds: Sequence[Any] = (ExponentialMotion, PairMotion, LinearMotion)
-    plain = [kind.__dict__["advance"] for kind in kinds]
-
-    def timed(advance: Callable[..., Any]) -> Callable[..., Any]:
-        def advanced(*arguments: Any) -> Any:
-            begin = time.process_time()
-            try:
-                return advance(*arguments)
-            finally:
-                spent[0] += time.process_time() - begin
-
-        return advanced
-
-    for kind, advance in zip(kinds, plain, strict=True):
-        kind.advance = timed(advance)
-    try:
-        yield spent
-    finally:
-        for kind, advance in zip(kinds, plain, strict=True):
-            kind.advance = advance
-
-
-def _written(config: Config, records: Sequence[Record]) -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        draft = table_draft(LocalFolder(Path(folder)), "data.parquet", record_schema(config), len(records))
-        with draft as data:
-            data.add(record_batch(config, records))
-            data.finish()
-
-
-def _timed(function: Callable[[], T]) -> tuple[float, T]:
-    begin = time.process_time()
-    result = function()
-    return time.process_time() - begin, result
+    chosen = [ids[round(k * (len(ids) - 1) / (RECORDS - 1))] for k in range(RECORDS)]
+    states = {planned_record(config, i).state_id for i in ids}
+    with collected("rest") as times:
+        results = list(simulate_specimen(config, chosen))
+        records = [result for result in results if isinstance(result, Record)]
+        with stage("writing"), tempfile.TemporaryDirectory() as folder:
+            draft = table_draft(LocalFolder(Path(folder)), "data.parquet", record_schema(config), len(records))
+            with draft as data:
+                data.add(record_batch(config, records))
+                data.finish()
+    shared = {"plan": len(ids), "tables": RECORDS * len(ids) / len(states)}
+    return {name: value / shared.get(name, RECORDS) / config.duration_s for name, value in times.seconds.items()}
