@@ -1,4 +1,4 @@
-"""The repository measured against the goals of its layout: rooms, files, circles, lines of logic, strict types."""
+"""The repository measured against the goals of its layout: rooms, circles, lines of code, strict types."""
 
 from __future__ import annotations
 
@@ -15,26 +15,19 @@ from benchmarks.row import Row
 
 ROOT = Path(__file__).resolve().parents[1]
 LOOSE = {"siggen": 5, "diagnostics": 2}
-FILES = {"siggen": 190, "diagnostics": 150}
-"""Goals: modules beside the rooms of a package, and files of a package ('about')."""
-ABOUT = 1.1
-SHORT_LINES, SHORT_SHARE = 15, 0.08
-IMPORT_SHARE = 0.10
-"""Files with so few lines of logic, their share, and the share of lines that import; models have 3 to 10 %."""
+"""Goal: modules beside the rooms of a package."""
 CODE_LINES = {"siggen": 22_000, "diagnostics": 14_000, "tests": 25_000, "benchmarks": 3_000, "docs/scripts": 2_000}
 COMMANDS = {"siggen": 12, "diagnostics": 10}
-MOST_PARAMETERS = 8
 ROOMS = ROOT / "tests" / "house" / "test_layering.py"
 
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """One file: what it imports, wherever the import stands, and its lines by kind."""
+    """One file: what it imports, wherever the import stands, and its lines of code."""
 
     path: Path
     imports: frozenset[str]
-    import_lines: int
-    logic_lines: int
+    code_lines: int
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
@@ -43,8 +36,6 @@ def rows(*, quick: bool) -> Iterator[Row]:
     for name, found in packages.items():
         loose = [m for m in found.values() if m.path.parent == ROOT / name and m.path.name != "__init__.py"]
         yield _row(f"{name}: loose modules beside its rooms", len(loose), LOOSE[name])
-    for name, found in packages.items():
-        yield _row(f"{name}: files", len(found), round(ABOUT * FILES[name]), f"about {FILES[name]}")
     entries, numbers, astray = _floor_table()
     yield Row(
         "table of floors: entries, numbers in it, entries that are no room",
@@ -54,13 +45,6 @@ def rows(*, quick: bool) -> Iterator[Row]:
     )
     circles = [circle for found in packages.values() for circle in _circles(found)]
     yield _row("circles, lazy and type imports counted", len(circles), 0)
-    every = [module for found in packages.values() for module in found.values()]
-    written = [module for module in every if module.logic_lines + module.import_lines]
-    short = sum(module.logic_lines <= SHORT_LINES for module in written) / len(written)
-    yield _share_row(f"files with at most {SHORT_LINES} lines of logic", short, SHORT_SHARE)
-    importing = sum(module.import_lines for module in every)
-    total = importing + sum(module.logic_lines for module in every)
-    yield _share_row("lines that import, of all lines of code", importing / total, IMPORT_SHARE)
     yield from _sizes(packages)
     if not quick:
         strict, of_decorators = _strict_errors()
@@ -69,10 +53,10 @@ def rows(*, quick: bool) -> Iterator[Row]:
 
 
 def _sizes(packages: Mapping[str, Mapping[str, Module]]) -> Iterator[Row]:
-    """Yield what the repository asks a reader to know: code, words, configuration paths, commands, parameters."""
+    """Yield what the repository asks a reader to know: code, words, configuration paths, commands."""
     for name, most in CODE_LINES.items():
         found = packages.get(name) or _modules(name)
-        lines = sum(module.logic_lines + module.import_lines for module in found.values())
+        lines = sum(module.code_lines for module in found.values())
         yield Row(f"{name}: code lines (files)", f"{lines} ({len(found)})", goal=f"about {most}")
     words = sum(len(page.read_text(encoding="utf-8").split()) for page in (ROOT / "docs").rglob("*.md"))
     yield Row("words in docs", str(words), goal="about 50000")
@@ -81,26 +65,10 @@ def _sizes(packages: Mapping[str, Mapping[str, Module]]) -> Iterator[Row]:
     for name, most in COMMANDS.items():
         app = importlib.import_module(f"{name}.cli.app").app
         yield _row(f"{name}: commands", len(app.registered_commands) + len(app.registered_groups), most)
-    most, where = max(_parameters(path) for name in packages for path in (ROOT / name).rglob("*.py"))
-    yield Row("most parameters of a function", f"{most} ({where})", goal="<= 8", met=most <= MOST_PARAMETERS)
 
 
-def _parameters(path: Path) -> tuple[int, str]:
-    """Return the most parameters of a function of a file, and which one; `self` does not count."""
-    found = [(0, "")]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            names = [one.arg for one in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
-            found.append((len([name for name in names if name != "self"]), f"{path.relative_to(ROOT)}: {node.name}"))
-    return max(found)
-
-
-def _row(what: str, value: int, most: int, goal: str = "") -> Row:
-    return Row(what, str(value), goal=goal or (f"<= {most}" if most else "0"), met=value <= most)
-
-
-def _share_row(what: str, value: float, most: float) -> Row:
-    return Row(what, f"{100.0 * value:.1f} %", goal=f"<= {100.0 * most:.0f} %", met=value <= most)
+def _row(what: str, value: int, most: int) -> Row:
+    return Row(what, str(value), goal=f"<= {most}" if most else "0", met=value <= most)
 
 
 def _modules(package: str) -> dict[str, Module]:
@@ -114,21 +82,20 @@ def _name(path: Path) -> str:
 
 
 def _module(path: Path, known: set[str]) -> Module:
-    """Return a file's imports and lines; docstrings, comments and blank lines are neither imports nor logic."""
+    """Return a file's imports and lines of code; docstrings, comments and blank lines are none."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     imported: set[str] = set()
-    importing: set[int] = set()
     texts: set[int] = set()
     code: set[int] = set()
     for node in ast.walk(tree):
         if isinstance(node, (ast.Import, ast.ImportFrom)):
-            importing.update(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+            code.update(range(node.lineno, (node.end_lineno or node.lineno) + 1))
             imported.update(_imported(node, known))
         elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
             texts.update(range(node.lineno, (node.end_lineno or node.lineno) + 1))
         elif isinstance(node, (ast.stmt, ast.expr)):
             code.update((node.lineno, node.end_lineno or node.lineno))
-    return Module(path, frozenset(imported), len(importing), len(code - importing - texts))
+    return Module(path, frozenset(imported), len(code - texts))
 
 
 def _imported(node: ast.Import | ast.ImportFrom, known: set[str]) -> Iterator[str]:
