@@ -7,7 +7,7 @@ from pathlib import Path
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.measured_recording import OWN_COLUMN
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
-from diagnostics.recordings.roles import Role, named_role
+from diagnostics.recordings.roles import ColumnUse, named_role
 from diagnostics.recordings.units import unit_of_name
 from siggen.errors import UsageError
 
@@ -17,7 +17,7 @@ PREFIX, SUFFIX = OWN_COLUMN.split("{}")
 
 def is_vibration(found: Columns, name: str) -> bool:
     """Return whether neither the name nor the unit of a column says that it is another quantity."""
-    return named_role(unit_of_name(name)[0], found.units.get(name, "")).role is Role.VIBRATION
+    return named_role(unit_of_name(name)[0], found.units.get(name, "")).role is ColumnUse.VIBRATION
 
 
 def file_channels(path: Path, tacho: str | None = None, row: int | None = None) -> tuple[str, ...]:

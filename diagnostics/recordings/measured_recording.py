@@ -14,7 +14,7 @@ import numpy as np
 from diagnostics.recordings.channel_factor import ACCELERATION_UNIT, ASSUMED, channel_factor
 from diagnostics.recordings.columns import read_columns, signal_problem
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
-from diagnostics.recordings.roles import Role, named_role
+from diagnostics.recordings.roles import ColumnUse, named_role
 from diagnostics.recordings.units import known_unit, unit_of_name
 from siggen.errors import UsageError
 
@@ -212,7 +212,7 @@ def _factor(path: Path, found: Columns, column: str, facts: RecordingFacts, want
     """Return the factor, of columns that are vibration by name and unit; a rig's own channels are what they are."""
     by_name = named_role(unit_of_name(column)[0], "").role
     of_rig = wanted != ACCELERATION_UNIT or column in found.own.values()
-    if not of_rig and by_name is not Role.VIBRATION and known_unit(found.units.get(column, "")) is None:
+    if not of_rig and by_name is not ColumnUse.VIBRATION and known_unit(found.units.get(column, "")) is None:
         raise UsageError(
             f"{path}: column {column} is called as a {by_name} is; allowed are columns of vibration. Name another "
             "(--channel NAME=COLUMN), or call it as what it is, with its unit: a [g]"

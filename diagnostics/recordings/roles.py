@@ -20,7 +20,7 @@ from diagnostics.recordings.units import (
 )
 
 
-class Role(StrEnum):
+class ColumnUse(StrEnum):
     """What a column is."""
 
     TIME = "time"
@@ -35,19 +35,19 @@ class Role(StrEnum):
 class NamedRole(NamedTuple):
     """A role, and why it is taken."""
 
-    role: Role
+    role: ColumnUse
     why: str
 
 
-WORDS: dict[Role, str] = {
-    Role.TIME: "t|time|times|timestamps?|datetime|date|zeit|zeitstempel|uhrzeit|datum|temps|tiempo|tempo|epoch|unix|"
+WORDS: dict[ColumnUse, str] = {
+    ColumnUse.TIME: "t|time|times|timestamps?|datetime|date|zeit|zeitstempel|uhrzeit|datum|temps|tiempo|tempo|epoch|unix|"
     "utc|clock|when|seconds?|secs?|milliseconds?|elapsed",
-    Role.TACHO: "tachos?|tach|tachometers?|keyphasor|keyphaser|kph|pulses?|puls|impuls|trigger|trig|1xpulse|drehgeber",
-    Role.SPEED: "speed|rpm|drehzahl|drehzahlen|revs|rotationspeed",
-    Role.ANGLE: "angle|angles|winkel|drehwinkel|phase|theta|phi|azimuth",
-    Role.COUNTER: "ticks?|counts?|counter|encoder|index|idx|samples?|nr|no|number|record|row|line|zeile|point|"
+    ColumnUse.TACHO: "tachos?|tach|tachometers?|keyphasor|keyphaser|kph|pulses?|puls|impuls|trigger|trig|1xpulse|drehgeber",
+    ColumnUse.SPEED: "speed|rpm|drehzahl|drehzahlen|revs|rotationspeed",
+    ColumnUse.ANGLE: "angle|angles|winkel|drehwinkel|phase|theta|phi|azimuth",
+    ColumnUse.COUNTER: "ticks?|counts?|counter|encoder|index|idx|samples?|nr|no|number|record|row|line|zeile|point|"
     "punkt|unnamed",
-    Role.LABEL: "labels?|class|classes|state|status|fault|target|severity|comments?|kommentar|note|notes|flag|"
+    ColumnUse.LABEL: "labels?|class|classes|state|status|fault|target|severity|comments?|kommentar|note|notes|flag|"
     "temperature|temperatur|temp|torque|drehmoment|load|last|pressure|druck|current|strom|humidity|power",
 }
 _PATTERNS = {role: re.compile(words) for role, words in WORDS.items()}
@@ -55,12 +55,12 @@ _VIBRATION = re.compile(
     r"acc\w*|vib\w*|beschl\w*|bearing|lager|[xyz]|axial|radial|vertical|horizontal|housing|casing|mic|micro\w*"
 )
 _BY_QUANTITY = {
-    **dict.fromkeys((ACCELERATION, VELOCITY, DISPLACEMENT, VOLTAGE), Role.VIBRATION),
-    TIME: Role.TIME,
-    SPEED: Role.SPEED,
-    ANGLE: Role.ANGLE,
-    COUNTS: Role.VIBRATION,
-    OTHER: Role.LABEL,
+    **dict.fromkeys((ACCELERATION, VELOCITY, DISPLACEMENT, VOLTAGE), ColumnUse.VIBRATION),
+    TIME: ColumnUse.TIME,
+    SPEED: ColumnUse.SPEED,
+    ANGLE: ColumnUse.ANGLE,
+    COUNTS: ColumnUse.VIBRATION,
+    OTHER: ColumnUse.LABEL,
 }
 
 
@@ -76,14 +76,14 @@ def named_role(name: str, unit: str) -> NamedRole:
     ends = (*words[-1:], *words[:1])
     by_name = next((role for word in ends for role, known in _PATTERNS.items() if known.fullmatch(word)), None)
     if name.lower() == "x_value":
-        by_name = Role.TIME
+        by_name = ColumnUse.TIME
     elif by_name and len(words) > 1 and any(_VIBRATION.fullmatch(word) for word in words):
         by_name = None
     if stated is not None and stated.quantity not in (VOLTAGE, COUNTS):
         role = _BY_QUANTITY[stated.quantity]
-        if role is Role.TIME and by_name is Role.TACHO:
-            role = Role.TACHO
+        if role is ColumnUse.TIME and by_name is ColumnUse.TACHO:
+            role = ColumnUse.TACHO
         return NamedRole(role, f"unit {unit}")
     if by_name is not None:
         return NamedRole(by_name, "name")
-    return NamedRole(Role.VIBRATION, "")
+    return NamedRole(ColumnUse.VIBRATION, "")
