@@ -40,9 +40,10 @@ class NamedRole(NamedTuple):
 
 
 WORDS: dict[ColumnUse, str] = {
-    ColumnUse.TIME: "t|time|times|timestamps?|datetime|date|zeit|zeitstempel|uhrzeit|datum|temps|tiempo|tempo|epoch|unix|"
-    "utc|clock|when|seconds?|secs?|milliseconds?|elapsed",
-    ColumnUse.TACHO: "tachos?|tach|tachometers?|keyphasor|keyphaser|kph|pulses?|puls|impuls|trigger|trig|1xpulse|drehgeber",
+    ColumnUse.TIME: "t|time|times|timestamps?|datetime|date|zeit|zeitstempel|uhrzeit|datum|temps|tiempo|tempo|epoch|"
+    "unix|utc|clock|when|seconds?|secs?|milliseconds?|elapsed",
+    ColumnUse.TACHO: "tachos?|tach|tachometers?|keyphasor|keyphaser|kph|pulses?|puls|impuls|trigger|trig|"
+    "1xpulse|drehgeber",
     ColumnUse.SPEED: "speed|rpm|drehzahl|drehzahlen|revs|rotationspeed",
     ColumnUse.ANGLE: "angle|angles|winkel|drehwinkel|phase|theta|phi|azimuth",
     ColumnUse.COUNTER: "ticks?|counts?|counter|encoder|index|idx|samples?|nr|no|number|record|row|line|zeile|point|"

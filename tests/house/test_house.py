@@ -37,7 +37,6 @@ SHARED_NAMES = {
     "Pieces",
     "Pit",
     "Quantity",
-    "Resonance",
     "Rig",
     "RigNumbers",
     "Rotor",
