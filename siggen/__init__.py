@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from siggen.checks.loading import load_config
-    from siggen.dataset.card_section import write_card_section
     from siggen.dataset.reading import open
     from siggen.dataset.spreadsheet import write_csv
     from siggen.planning.plan import plan
@@ -34,7 +33,6 @@ __all__ = [
     "plan",
     "publish",
     "simulate",
-    "write_card_section",
     "write_csv",
     "write_recorded_set",
 ]
@@ -51,7 +49,6 @@ _HOMES = {
     "plan": "siggen.planning.plan",
     "publish": "siggen.publication.publish",
     "simulate": "siggen.record.simulation",
-    "write_card_section": "siggen.dataset.card_section",
     "write_csv": "siggen.dataset.spreadsheet",
     "write_recorded_set": "siggen.sets.recorded_set",
 }

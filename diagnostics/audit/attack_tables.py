@@ -40,30 +40,6 @@ def chance_sentence(audit: Audit) -> str:
     )
 
 
-def card_section(audit: Audit) -> str:
-    """Return the section for the card; it ends with a line break."""
-    lines = ["## What this set was measured to teach", "", audit.verdict, ""]
-    lines += [
-        f"* **{finding.trap}**: {finding.measured}. Bound: {finding.bound}. To correct it: {finding.mend}"
-        for finding in audit.findings
-    ]
-    if audit.findings:
-        lines.append("")
-    if audit.realism:
-        lines += [
-            f"Averaged over the quantities, {audit.realism.mean_inside:.0%} of {audit.realism.channel_records} healthy "
-            "channel-records lie inside the range of recordings of healthy gearboxes.",
-            "",
-            "| quantity | median | inside |",
-            "|---|---|---|",
-            *(f"| {s.quantity.title} | {s.quantiles[1]:.3g} | {s.inside:.0%} |" for s in audit.realism.shares),
-            "",
-        ]
-    lines += [*probe_table(audit), ""] if audit.states else []
-    lines.append("These values come from `siggen-diagnostics audit`. Simulated data were judged on simulated data.")
-    return "\n".join(lines) + "\n"
-
-
 def probe_table(audit: Audit) -> list[str]:
     """Return what every probe reached for every state, and what that means."""
     names = list(dict.fromkeys(name for state in audit.states for name in audit.probes(state)))

@@ -54,9 +54,6 @@ def audit(
             "--strict", help="End with exit code 4 unless passed: after a trap, or with too few gearboxes to tell."
         ),
     ] = False,
-    write_card: Annotated[
-        bool, typer.Option("--write-card", help="Write the result into the set's README.md. Implies --realism.")
-    ] = False,
     paired: Annotated[
         bool, typer.Option("--paired", help="Also judge the differences from the specimen's own healthy record.")
     ] = False,
@@ -78,7 +75,6 @@ def audit(
 
     Example: siggen-diagnostics audit data/quickstart --strict --realism
     """
-    from diagnostics.audit.attack_tables import card_section
     from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
     from diagnostics.audit.audit_sentences import audit_summary
     from diagnostics.base.beside import beside
@@ -96,7 +92,7 @@ def audit(
     wanted = AuditOptions(
         seed=seed,
         paired=paired,
-        with_realism=realism.realism or write_card,
+        with_realism=realism.realism,
         speed=realism.speed.value,
         reference=realism.reference,
         reference_fs_hz=realism.reference_fs,
@@ -111,10 +107,6 @@ def audit(
     with terminal_stage("page", 1):
         page = write_audit(found, dataset, folder)
     typer.echo(str(page))
-    if write_card:
-        import siggen
-
-        siggen.write_card_section(directory, card_section(found))
     if strict and found.findings:
         raise VerificationError(f"{directory}: {counted(len(found.findings), 'trap')} found (--strict)")
     if strict and found.tells_too_little:

@@ -34,7 +34,6 @@ class TableOptions(RankingOptions):
     leave_out: Annotated[
         bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
     ] = False
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0
 
 
 @grouped
@@ -131,8 +130,7 @@ def _ranked_tables(
         settings = IndicatorSettings(speed_range_hz=span)
         everything = record_table(dataset, settings, own, workers=computing.workers, advance=advance)
     table = ranking_table(everything, dataset, states=states, leave_out=ranking.leave_out)
-    judged = AssessmentSettings(seed=ranking.seed, false_alarms=ranking.false_alarms)
-    found = evaluated(table, judged, terminal_stage)
+    found = evaluated(table, AssessmentSettings(), terminal_stage)
     path = write_evaluation(dataset, found, out or beside(dataset.path, "_indicators"), values=True)
     for sentence in findings(dataset, found)[1:]:
         typer.echo(words_of(dataset)(sentence))

@@ -120,7 +120,6 @@ def _page(
     page = PageOptions(
         predictions=pages.predictions,
         states=pages.state or (),
-        false_alarms=pages.false_alarms,
         limit=pages.limit,
         full=pages.full,
         workers=pages.workers,

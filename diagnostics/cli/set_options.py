@@ -50,12 +50,6 @@ class AmountOptions:
 class RankingOptions:
     """How indicators of a set are ranked."""
 
-    false_alarms: Annotated[
-        float,
-        typer.Option(
-            "--false-alarms", min=0.001, max=0.5, help="Share of healthy records above the threshold of an indicator."
-        ),
-    ] = 0.05
     state: Annotated[
         list[str] | None,
         typer.Option(

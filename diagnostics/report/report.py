@@ -68,8 +68,6 @@ class PageOptions:
         The user's predictions, which get a row beside the classifiers.
     states : sequence of str
         Damaged states that features are judged on; all where empty.
-    false_alarms : float
-        Rate at which features are judged.
     limit, full : int, bool
         Of how many records the page holds the signals, and whether with every sample.
     workers : int
@@ -78,7 +76,6 @@ class PageOptions:
 
     predictions: Path | None = None
     states: Sequence[str] = ()
-    false_alarms: float = 0.05
     limit: int = 100
     full: bool = False
     workers: int = 1
@@ -176,7 +173,7 @@ def write_report(
 def _evaluated(records: RecordTable, dataset: Dataset, seed: int, page: PageOptions, stage: Stage) -> Evaluated:
     """Return how every feature separates damage; records that cannot be used were refused before."""
     table = ranking_table(records, dataset, states=page.states, leave_out=True)
-    return evaluated(table, AssessmentSettings(seed=seed, false_alarms=page.false_alarms), stage)
+    return evaluated(table, AssessmentSettings(seed=seed), stage)
 
 
 def _opening(

@@ -20,10 +20,8 @@ from siggen.cli.merge import merge
 from siggen.cli.modes import modes
 from siggen.cli.path import path
 from siggen.cli.plan import plan
-from siggen.cli.planetary import planetary
 from siggen.cli.pressure import pressure
 from siggen.cli.publish import publish
-from siggen.cli.run_report import run_report
 from siggen.cli.schema import schema
 from siggen.cli.show import show
 from siggen.cli.simulate import simulate
@@ -42,11 +40,9 @@ INSPECTED: dict[str, Callable[..., None]] = {
     "errors": errors,
     "modes": modes,
     "path": path,
-    "planetary": planetary,
     "life": life,
-    "run": run_report,
 }
-"""What `siggen inspect` shows of one gearbox, of its life, of a planetary set, or of a run."""
+"""What `siggen inspect` shows of one gearbox or of its life."""
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",
@@ -60,7 +56,7 @@ for command in COMMANDS:
     app.command()(command)
 
 inspect = typer.Typer(
-    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path, life; at a planetary set; at a run.",
+    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path, life.",
     no_args_is_help=True,
     rich_markup_mode="rich",
     epilog="Begin with: siggen inspect tvms quickstart --open",

@@ -24,9 +24,8 @@ def extend(
 ) -> None:
     """Add gearboxes to a finished set; the same command continues an interrupted extension.
 
-    Shards that are there keep their bytes, new ones come behind them. Tables, card and manifest are written again; a
-    measured section in the card is left out, since it was measured on fewer gearboxes. Every record is the one that a
-    set generated at once would have.
+    Shards that are there keep their bytes, new ones come behind them. Tables, card and manifest are written again.
+    Every record is the one that a set generated at once would have.
 
     Exit codes: 0 done, 2 no finished set or a wrong number, 3 records failed (done without them, or stopped by
     --allowed-loss), 130 interrupted.

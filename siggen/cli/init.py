@@ -54,9 +54,7 @@ def init(
     *,
     numbers: RigNumbers,
     sensors: Annotated[int, typer.Option("--sensors", help="Number of accelerometers on the casing.")] = 2,
-    pressure_angle: Annotated[float, typer.Option("--pressure-angle", help="Of the rack, in degrees.")] = 20.0,
     base: Annotated[str, typer.Option("--extends", help="Preset that gives everything else.")] = "bench",
-    name: Annotated[str, typer.Option("--name", help="Of the set; by default the file's name.")] = "",
 ) -> None:
     """Write a short configuration of your own gearbox; at a terminal it asks for what is missing.
 
@@ -83,9 +81,9 @@ def init(
         refuse_missing(missing_answers(answers))
     for option in missing_answers(answers):
         answers[option] = str(typer.prompt(QUESTIONS[option]))
-    rig, proposals = rig_of(answers, sensors, pressure_angle)
+    rig, proposals = rig_of(answers, sensors)
     rig = replace(rig, accuracy_classes=covering_classes(rig))
-    text = rig_text(rig, name or _name(out), base, proposals)
+    text = rig_text(rig, _name(out), base, proposals)
     config = load_config(inherited(parse_yaml(text, str(out))))  # what is refused is never written
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(text, encoding="utf-8")

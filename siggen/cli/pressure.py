@@ -28,15 +28,10 @@ def pressure(
     tooth: Annotated[
         int | None, typer.Option("--tooth", min=0, help="Index of the tooth; by default the first damaged one.")
     ] = None,
-    roll: Annotated[
-        list[float] | None,
-        typer.Option("--roll", help="Turn of the pinion since the pair entered contact [degrees] at which the load is "
-                     "drawn across the face; may be given several times.", metavar="DEG"),
-    ] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as duration_s=0.5.")
     ] = None,
-) -> None:  # fmt: skip
+) -> None:
     """Simulate one record and write how the force of a tooth spreads over its flank: load per length and pressure.
 
     Force and tilt are those of the motion. How they spread is solved across the face, with damage, crowning, helix and
@@ -53,7 +48,7 @@ def pressure(
     check_wanted(out, png, "pressure")
     with working("simulating the record and solving the pressure across the face"):
         found = face_pressure(chosen_config(source, record, overrides or ()), record, gear, tooth)
-    positions = chosen_positions(found, roll or ())
+    positions = chosen_positions(found)
     if out is not None:
         write_table_file(pressure_table(found), out)
     if png is not None:

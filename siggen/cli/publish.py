@@ -12,8 +12,7 @@ from siggen.cli.working import working
 
 def publish(
     folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
-    to: Annotated[Path | None, typer.Option("--to", help="New or empty folder to write.", metavar="PATH")] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Check all, list what would be written.")] = False,
+    to: Annotated[Path, typer.Option("--to", help="New or empty folder to write.", metavar="PATH")],
     facts: Annotated[
         Path | None,
         typer.Option("--facts", help="YAML file with licence, authors, citation; without it a template is printed."),
@@ -35,18 +34,14 @@ def publish(
 
     Example: siggen publish sets/quickstart --to upload --facts publication.yaml
     """
-    from siggen.errors import UsageError, counted
-    from siggen.publication.publish import publication
+    from siggen.errors import counted
     from siggen.publication.publish import publish as publish_set
 
-    if (to is None) != dry_run:
-        raise UsageError("publish: received both or neither of --to and --dry-run; allowed: one of the two")
-    own = {"with_recordings": with_recordings}
     with working("reading the set", compiles=False):
-        made = publication(folder, facts, audit, **own) if to is None else publish_set(folder, to, facts, audit, **own)
+        made = publish_set(folder, to, facts, audit, with_recordings=with_recordings)
     typer.echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
     for name, content in made.texts.items():
         typer.echo(f"{name}: {len(content)} bytes, made for publication", err=True)
     quoted = f"quotes {made.audit}" if made.audit else "says that there is no audit (siggen-diagnostics audit)"
     typer.echo(f"the card {quoted}", err=True)
-    typer.echo("nothing was written" if to is None else str(to))
+    typer.echo(str(to))

@@ -44,12 +44,6 @@ def tvms(
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     picture: PictureOptions,
     gearbox: GearboxChoice,
-    pitches: Annotated[
-        int | None,
-        typer.Option(
-            "--pitches", min=1, help="Tooth pitches to compute; by default two behind the last damaged tooth."
-        ),
-    ] = None,
     further: FurtherCurves,
     torque_nm: Annotated[
         float | None,
@@ -87,7 +81,7 @@ def tvms(
     with working("computing the mesh stiffness of every state"):
         usable = gearbox.of(load_config(config, overrides or ()))
         torque = static_torque_nm(usable, gearbox.specimen) if torque_nm is None else torque_nm
-        curves = stiffness_curves(usable, gearbox.specimen, pitches=pitches, torque_nm=torque)
+        curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque)
         meaning = stiffness_meaning(usable, torque)
         error = table_error_text(usable, gearbox.specimen)
     if out is not None:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from siggen.errors import UsageError
 from siggen.views.face_pressure import FacePressure
 from siggen.views.picture_file import save_figure
 
@@ -21,23 +20,8 @@ COLOURS = ("C2", "C3", "tab:purple", "tab:brown", "tab:pink", "tab:cyan")
 MOST_POSITIONS = len(COLOURS)
 
 
-def chosen_positions(pressure: FacePressure, roll_deg: Sequence[float] = ()) -> list[int]:
-    """Return the positions nearest to turns of the pinion since the pair entered contact; by default three.
-
-    By default a quarter of the engagement, three quarters, and where the pressure is largest.
-
-    Raises
-    ------
-    UsageError
-        If a turn lies outside the engagement, or there are too many.
-    """
-    last = float(pressure.roll_deg[-1])
-    outside = [roll for roll in roll_deg if not 0.0 <= roll <= last]
-    if outside or len(roll_deg) > MOST_POSITIONS:
-        received = f"{outside[0]:g}" if outside else f"{len(roll_deg)} angles"
-        raise UsageError(f"--roll {received}; allowed: up to {MOST_POSITIONS} angles from 0 to {last:.4g} degrees")
-    if roll_deg:
-        return [int(np.argmin(np.abs(pressure.roll_deg - roll))) for roll in roll_deg]
+def chosen_positions(pressure: FacePressure) -> list[int]:
+    """Return a quarter of the engagement, three quarters, and where the pressure is largest."""
     worst = int(np.argmax(_finite(pressure).max(axis=1)))
     count = pressure.roll_deg.size
     return sorted({count // 4, worst, 3 * count // 4})

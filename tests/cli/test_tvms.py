@@ -89,12 +89,6 @@ def test_parts_add_up_to_the_pair_of_the_damaged_tooth(tmp_path: Path) -> None:
     assert (tmp_path / "parts.png").stat().st_size > 10_000
 
 
-def test_pitches_say_how_much_is_computed(tmp_path: Path) -> None:
-    run("configs/paper_a.yaml", "--out", tmp_path / "five.parquet", "--pitches", 5)
-    degrees = pyarrow.parquet.read_table(tmp_path / "five.parquet")["angle_deg"].to_numpy()
-    assert degrees[[0, -1]] == pytest.approx([-20.0, 80.0])
-
-
 def test_limits_of_the_models_are_told_beside_the_table(tmp_path: Path) -> None:
     out = str(tmp_path / "tvms.csv")
     result = runner.invoke(
@@ -184,4 +178,4 @@ def test_parts_of_a_contact_across_the_face_add_up_to_the_pair_that_is_simulated
 
 def test_a_torque_that_no_teeth_carry_is_refused_with_the_largest_of_the_set(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"torque: received 1e\+09 N m; allowed: up to \d+"):
-        run("tests/configs/casing.yaml", "--out", tmp_path / "t.csv", "--torque", 1e9, "--pitches", 1)
+        run("tests/configs/casing.yaml", "--out", tmp_path / "t.csv", "--torque", 1e9)

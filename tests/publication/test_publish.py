@@ -8,11 +8,9 @@ from typing import Any
 
 import pytest
 import yaml
-from typer.testing import CliRunner
 
 import siggen
 from siggen.checks.loading import load_config
-from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.publication.dataset_info import class_names
 from siggen.publication.physics_sections import assumed_numbers_section, physics_section
@@ -104,16 +102,6 @@ def test_a_published_folder_is_a_set_that_opens_and_verifies(kept: Path, publish
     (published / "croissant.json").write_bytes((published / "croissant.json").read_bytes() + b" ")
     assert [mismatch.what for mismatch in verify(published, 0).mismatches] == ["croissant.json"]
     (published / "croissant.json").write_bytes((published / "croissant.json").read_bytes()[:-1])
-
-
-def test_a_dry_run_writes_nothing_and_a_folder_in_use_is_refused(kept: Path, tmp_path: Path) -> None:
-    facts = str(facts_file(tmp_path))
-    result = CliRunner().invoke(app, ["publish", str(kept), "--dry-run", "--facts", facts])
-    assert (result.exit_code, result.stdout) == (0, "nothing was written\n")
-    assert "there is no audit" in result.stderr
-    assert [path.name for path in tmp_path.iterdir()] == ["publication.yaml"]
-    with pytest.raises(UsageError, match="is not empty"):
-        publish(kept, tmp_path, Path(facts))
 
 
 def test_the_card_says_what_is_on_what_was_assumed_and_who_says_so(published: Path) -> None:

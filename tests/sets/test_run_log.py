@@ -15,10 +15,8 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import app
 from siggen.cli.run_display import RunDisplay, run_shown
-from siggen.dataset.seal import unsealed
-from siggen.errors import DatasetError, EngineError, UsageError
+from siggen.errors import EngineError, UsageError
 from siggen.sets.run_journal import EVENTS, stamped
-from siggen.sets.run_report import read_run
 from tests.dataset.fake_set import simulate_with_a_bug, simulate_with_failures, write_fake_set
 
 ROOT = Path(__file__).parents[2]
@@ -163,14 +161,3 @@ def test_a_pipe_without_a_reader_and_a_folder_are_refused_at_once(tmp_path: Path
     for path in (tmp_path / "pipe", tmp_path, Path("/dev/null")):
         with pytest.raises(UsageError, match="is no regular file"), run_shown(str(path)):
             pass
-
-
-def test_the_report_names_every_stage_and_refuses_a_folder_without_one(tmp_path: Path) -> None:
-    write_fake_set(tmp_path / "set")
-    result = CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set")])
-    assert "30 records, 0 failed in " in result.stdout
-    assert all(f"\n{name} " in result.stdout for name in ("planning", "waiting", "closing", "rows", "files", "sum"))
-    shown = CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set"), "--json"]).stdout
-    assert json.loads(shown) == unsealed("run.json", (tmp_path / "set" / "run.json").read_bytes())
-    with pytest.raises(DatasetError, match=r"has no run\.json"):
-        read_run(tmp_path)

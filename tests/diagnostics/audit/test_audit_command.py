@@ -13,8 +13,6 @@ from planted_set import Plant, PlantedSet, planted
 from diagnostics.audit import signal_attackers
 from diagnostics.cli.app import main
 from siggen.dataset import reading
-from siggen.sets.verification import verify
-from tests.dataset.fake_set import fake_config, write_fake_set
 
 
 @pytest.fixture(scope="module")
@@ -117,15 +115,3 @@ def test_a_folder_without_a_set_is_a_usage_error(
 def test_help_has_an_example(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(monkeypatch, "-h") == 0
     assert "Example: siggen-diagnostics audit" in capsys.readouterr().out
-
-
-def test_the_card_of_a_set_on_disk_is_written_and_the_set_still_verifies(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    folder = tmp_path / "set"
-    # noise over 0.1 s: nearly everything is undefined, and nothing breaks
-    write_fake_set(folder, fake_config(specimens=3))
-    assert run(monkeypatch, str(folder), "--out", str(tmp_path / "report"), "--write-card") == 0
-    card = (folder / "README.md").read_text()
-    assert card.count("## What this set was measured to teach") == 1
-    assert verify(folder).mismatches == ()
