@@ -78,7 +78,7 @@ def read_rig(file: Path) -> Rig:
     Raises
     ------
     UsageError
-        If its model has no bearings or no accelerometers, it is a planetary set, or its gears are drawn.
+        If it has no accelerometers, it is a planetary set, or its gears are drawn.
     """
     config = siggen.load_config(file)
     if config.planetary is not None:
@@ -89,11 +89,9 @@ def read_rig(file: Path) -> Rig:
         )
     if config.gears.pairs:
         raise UsageError(f"{file}: gears differ within the set; a calibration is of one machine of known teeth")
-    if not (forces := config.places.pressed):
-        raise UsageError(f"{file}: dynamics.model torsional has no bearing forces; allowed: 6dof, 8dof or casing")
     names = config.names
     drive = drivetrain(configured_train(file), [own for _, own in names.shafts], [own for _, own in names.meshes])
-    found = Rig(file, config.canonical(), drive, tuple(map(names.force, forces)))
+    found = Rig(file, config.canonical(), drive, tuple(map(names.force, config.places.pressed)))
     if not found.sensors:
         raise UsageError(f"{file}: sensors: received {', '.join(found.left_out)}; allowed: at least one accelerometer")
     return found

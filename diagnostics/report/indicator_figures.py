@@ -29,7 +29,7 @@ from diagnostics.statistics.judged_records import JudgedRecords
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-AXES = ("vertical", "horizontal", "tangential", "axial")
+AXES = ("vertical", "horizontal", "axial")
 """As channels of simulated sensors end."""
 
 CROWDED = 8

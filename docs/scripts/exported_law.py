@@ -95,7 +95,7 @@ class LinearLaw:
 
 
 class PairLaw:
-    """`law: pairs`: every pair with its own spring, damper, film and friction."""
+    """`law: pairs`: every pair with its own spring, damper and friction."""
 
     def __init__(self, model):
         self.model = {
@@ -104,23 +104,19 @@ class PairLaw:
             if name.startswith("law.")
         }
         self.lead = self.model["contact.lead_m"]
-        self.alone = 0 if self.model["film_n_s_per_m"] > 0.0 else 1
         self.before = {}
         self.nodes = [self.model["contact.unit_m"] * k**2 for k in range(len(self.model["contact.curves"][0]))]
 
     def forces(self, state, pitches):
         """Return the forces of a state at a pinion angle in base pitches."""
         pairs = self.pairs(state, pitches)
-        # One pair alone has nobody to share with, but its force widens the gaps in which others squeeze oil.
-        if "coupling_m_per_n" in self.model and sum(pair.side != 0 for pair in pairs) > self.alone:
+        if "coupling_m_per_n" in self.model and sum(pair.side != 0 for pair in pairs) > 1:
             self.share(pairs, state.tilt)
         springs = [self.spring(pair, pair.penetration, state.tilt) for pair in pairs]
         total = sum(spring.slope for spring in springs if spring.force != 0.0)
         sums = Forces()
         for pair, spring in zip(pairs, springs, strict=True):
-            if spring.force == 0.0:
-                sums.normal += self.film(pair, state.rate)
-            else:
+            if spring.force != 0.0:
                 self.add(sums, pair, spring, state, 1.0 / math.sqrt(total) if total > 0.0 else 0.0)
         self.before = {pair.number: spring.force for pair, spring in zip(pairs, springs, strict=True)}
         return sums
@@ -309,16 +305,6 @@ class PairLaw:
         share = ratios[0] if len(ratios) == 1 else ratios[0] * (1.0 - spring.rough) + ratios[1] * spring.rough
         boundary = law["friction.boundary"]
         return share, share * boundary + (1.0 - share) * min(read(fluids), boundary)
-
-    def film(self, pair, rate):
-        """Return the force of the oil that a pair squeezes out before it touches."""
-        law = self.model
-        along = (pair.position - law["start_m"]) / law["base_pitch_m"]
-        if law["film_n_s_per_m"] == 0.0 or rate <= 0.0 or not 0.0 <= along <= law["contact_ratio"]:
-            return 0.0
-        gap = self.touch(pair) - pair.penetration
-        radius = pair.position * (law["line_of_action_m"] - pair.position) / law["line_of_action_m"]
-        return law["film_n_s_per_m"] * (0.5 * radius / max(gap, law["film_floor_m"])) ** 1.5 * rate
 
 
 RAYS = [-1.0 - math.sqrt(2.0), -1.5, -0.8, -0.3, 0.0, 0.3, 0.8, 1.5, 1.0 + math.sqrt(2.0)]

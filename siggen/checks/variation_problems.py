@@ -83,5 +83,4 @@ def _driven_inertias_kg_m2(sections: Mapping[str, Any], pairs: Sequence[GearPair
 def _driven_inertia_kg_m2(dynamics: Dynamics, pair: GearPair) -> float:
     own = dynamics.gear.inertia_kg_m2
     gear = disc_inertia_kg_m2(pair.gear, pair.face_width_m) if own is None else bounds(own)[1]
-    load = 0.0 if dynamics.model == "6dof" else bounds(dynamics.load_inertia_kg_m2)[1]
-    return (gear + load) * (pair.pinion.teeth / pair.gear.teeth) ** 2
+    return (gear + bounds(dynamics.load_inertia_kg_m2)[1]) * (pair.pinion.teeth / pair.gear.teeth) ** 2

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -48,7 +47,6 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         helical_problems,
         _flank_shapes,
         _manufacture,
-        _forces_at_bearings,
         _housing,
         _background,
         _splits,
@@ -88,11 +86,8 @@ def carried_mesh_harmonics(fs_hz: float, teeth: float, speed_hz: float) -> int:
     return math.floor((fs_hz / (SAMPLES_PER_PERIOD * speed_hz) - SIDEBANDS) / teeth)
 
 
-WITH_BEARINGS = "6dof, 8dof, casing"
-OF_BEARINGS = re.compile(r"dynamics\.(pinion|gear)\.bearing")
-AT_BEARINGS = ("rubbing", "bearings", "machines", "shafts", "belt")
 ON_BODY = ("base", "second_stage", "auxiliary_drive")
-"""Parts of the background that press on bearings, and those that press on what carries them."""
+"""Parts of the background that press on what carries the bearings."""
 
 
 def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -149,15 +144,11 @@ def _housing(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[P
 
 
 def _background(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield forces without a bearing to act at, and a base without a casing on it."""
+    """Yield a base without a casing on it, and forces on a casing without one."""
     section = sections.get("background")
     if section is None or "dynamics" not in sections:
         return
     model = sections["dynamics"].model
-    for part in AT_BEARINGS if model == "torsional" else ():
-        if getattr(section, part) is not None:
-            allowed = f"allowed: null, or a model with bearings: {WITH_BEARINGS} (dynamics.model: torsional)"
-            yield Problem(f"background.{part}", "a section", allowed)
     for part in ON_BODY if model != "casing" else ():
         if getattr(section, part) is not None:
             yield Problem(
@@ -177,9 +168,6 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "linear" and dynamics.friction.model not in {"auto", "off"}:
         allowed = "allowed: auto or off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.friction.model", f"'{dynamics.friction.model}'", allowed)
-    if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
-        allowed = "allowed: off, or dynamics.mesh.law: pairs"
-        yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
     if dynamics.mesh.damping == "asperity_share" and dynamics.rubbing != "mixed_ehl":
         allowed = "allowed: constant, or dynamics.friction.model: mixed_ehl, which the asperity share comes from"
         yield Problem("dynamics.mesh.damping", "'asperity_share'", allowed)
@@ -209,26 +197,6 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     if sections["dynamics"].mesh.law == "linear":
         allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"
         yield Problem("manufacture", "errors of single teeth", allowed)
-
-
-def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    if "dynamics" not in sections or sections["dynamics"].model != "torsional":
-        return
-    dynamics = sections["dynamics"]
-    grade, model = dynamics.unbalance.grade_mm_s, f"a model with bearings: {WITH_BEARINGS} (dynamics.model: torsional)"
-    if bounds(grade)[1] > 0.0:
-        yield Problem("dynamics.unbalance.grade_mm_s", str(grade), f"allowed: 0, or {model}")
-    for which in ("pinion", "gear"):
-        if getattr(dynamics, which).bearing is not None:
-            yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null, or {model}")
-    for index, state in sections.get("states", {}).items():
-        for where, one in state.placed(f"states.{index}"):
-            if one.needs_bearings:
-                yield Problem(f"{where}.kind", f"'{one.kind_word()}'", f"allowed: {model}")
-        for change in state.changes:
-            if OF_BEARINGS.match(change.path):
-                allowed = f"allowed: keys that rotations alone feel, or {model}"
-                yield Problem(f"states.{index}.changes.{change.path}", change.text, allowed)
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

@@ -93,9 +93,8 @@ class OutputCoupling(Coupling):
 class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
-    model: Literal["8dof", "6dof", "torsional", "casing"] = Field(
-        default="casing",
-        description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the `housing` too",
+    model: Literal["8dof", "casing"] = Field(
+        default="casing", description="which bodies move; 8dof: gears, motor and load, casing: the `housing` too"
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
         default=4, description="integration steps per sample with the law linear"

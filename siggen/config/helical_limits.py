@@ -15,13 +15,7 @@ def helical_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> It
     """Yield what helical teeth are asked for that only spur teeth can do."""
     if "gears" not in sections or bounds(sections["gears"].helix_deg) == (0.0, 0.0):
         return
-    if "dynamics" in sections:
-        yield from _of_dynamics(sections["dynamics"])
-    yield from _of_states(sections)
-
-
-def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
-    """Yield what slices, which find damage of flanks each at its own place, do not do."""
+    # slices find damage of flanks each at its own place
     mesh = sections["dynamics"].mesh if "dynamics" in sections else None
     sliced = mesh is None or (mesh.law == "pairs" and mesh.damage == "geometry")
     for index, state in sections.get("states", {}).items():
@@ -34,8 +28,3 @@ def _of_states(sections: Mapping[str, Any]) -> Iterator[Problem]:
             elif not sliced:
                 allowed = f"allowed: with helical teeth, dynamics.mesh.law: pairs and damage: geometry; {SPUR}"
                 yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
-
-
-def _of_dynamics(dynamics: Any) -> Iterator[Problem]:
-    if dynamics.mesh.squeeze_film != "off":
-        yield Problem("dynamics.mesh.squeeze_film", "'on'", f"allowed: off with helical teeth; {SPUR}")

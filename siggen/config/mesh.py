@@ -28,9 +28,6 @@ class Mesh(Section):
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
         default=8.0, description="parabolic relief at the tips of both gears, over a quarter of a base pitch"
     )
-    squeeze_film: Literal["off", "on"] = Field(
-        default="off", description="whether oil damps flanks that approach without touching"
-    )
     damage: Literal["all", "geometry"] = Field(
         default="all",
         description="how damage acts with law: pairs; geometry: lands carry, flanks sink where none is left, "

@@ -65,10 +65,9 @@ class Names:
 
     @property
     def places(self) -> dict[str, str]:
-        """Places of sensors: bearings, ends of the casing, rims and all that turns."""
+        """Places of sensors: bearings, ends of the casing and all that turns."""
         of_shafts = {f"{short}_{what}": f"{own}_{what}" for short, own in self.shafts for what in ("bearing", "end")}
-        rims = {f"{short}_rim": f"{own}_rim" for short, own in self.gears[:2]}
-        return {**of_shafts, **rims, **dict(self.gears)}
+        return {**of_shafts, **dict(self.gears)}
 
     def place(self, word: str) -> str:
         """Return where a sensor stands in the user's words."""

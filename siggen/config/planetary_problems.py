@@ -58,9 +58,6 @@ def _of_gears(gears: Gears, section: Planetary) -> Iterator[Problem]:
 
 
 def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
-    if dynamics.model not in {"8dof", "casing"}:
-        allowed = f"allowed: 8dof (on the ground) or casing (in a housing) {BESIDE}"
-        yield Problem("dynamics.model", f"'{dynamics.model}'", allowed)
     if dynamics.model == "casing" and isinstance(housing, PlateHousing):
         allowed = f"allowed: rigid or modal {BESIDE}, since plates have seats for two shafts beside each other"
         yield Problem("housing.kind", "'plates' (by default)", f"{allowed}; or dynamics.model: 8dof")

@@ -95,8 +95,6 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def _of_dynamics(dynamics: Dynamics, housing: object, *, named: bool) -> Iterator[Problem]:
-    if dynamics.model not in {"8dof", "casing"}:
-        yield Problem("dynamics.model", f"'{dynamics.model}'", f"allowed: 8dof or casing {BESIDE}")
     kinds = {"rigid"} if named else {"rigid", "modal"}  # columns of modes are called in words of the program
     if dynamics.model == "casing" and getattr(housing, "kind", "rigid") not in kinds:
         kind, allowed = getattr(housing, "kind", ""), " or ".join(sorted(kinds, reverse=True))

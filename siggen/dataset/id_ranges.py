@@ -49,11 +49,6 @@ def id_ranges(ids: Iterable[int]) -> tuple[Range, ...]:
     return tuple(_ranges(ids))
 
 
-def in_ranges(i: int, ranges: Sequence[Sequence[int]]) -> bool:
-    """Tell whether an id lies in inclusive ranges."""
-    return any(first <= i <= last for first, last in ranges)
-
-
 def _ranges(ids: Iterable[int]) -> Iterator[Range]:
     first: int | None = None
     last = 0

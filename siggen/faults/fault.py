@@ -46,7 +46,7 @@ class Fault(Section):
     """A sentence of the card on how it acts, where it is anything else."""
 
     needs_bearings: ClassVar[bool] = False
-    """Whether it acts on bearings, which a model of rotations alone has not."""
+    """Whether it acts on balls of bearings, which a planetary set has not."""
 
     columns: ClassVar[tuple[Column, ...]] = ()
     """Columns that its rows of the table of damage have beyond those of all kinds; 0 or empty in others' rows."""

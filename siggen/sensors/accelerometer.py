@@ -64,14 +64,14 @@ class Accelerometer(SourceKeys, Sensor):
     place: Annotated[str, IN_MOTION] = Field(
         default="pinion_bearing",
         description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
-        "modal or a path, rims with the model torsional, NAME_bearing with several meshes",
+        "modal or a path, NAME_bearing with several meshes",
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,
         description="casing: horizontal and vertical from its centre of gravity; from the middle of a plate: lid: "
         "horizontal and axial, wall: horizontal and vertical, ends: vertical and axial; null: up to 15 mm, drawn",
     )
-    axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential", "axial"], ...], Field(min_length=1)] = Field(
+    axes: Annotated[tuple[Literal["vertical", "horizontal", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="what it measures, one channel each"
     )
     noise: Annotated[NoiseFloor | None, AllowedText("null, or a mapping with floor_m_s2")] = Field(
@@ -116,20 +116,15 @@ class Accelerometer(SourceKeys, Sensor):
             yield Problem("mass_g", received_text(self.mass_g), allowed)
         if self.position_mm is not None and not has_position:
             yield Problem("position_mm", received_text(self.position_mm), f"allowed: null at place {self.place}")
-        if self.place.endswith("_rim") and self.cross_axis != 0.0:
-            yield Problem("cross_axis", str(self.cross_axis), f"allowed: 0 at place {self.place}, which has one axis")
-        axes = ("tangential",) if self.place.endswith("_rim") else DIRECTIONS
-        if any(axis not in axes for axis in self.axes):
-            yield Problem("axes", ", ".join(self.axes), f"allowed: {', '.join(axes)} at place {self.place}")
 
     def model_problems(self, places: Places) -> Iterator[Problem]:
         """Yield what does not go with the model: its place, or what its path leaves out or has in it."""
-        if self.path is None or places.model == "torsional":
+        if self.path is None:
             yield from super().model_problems(places)
             if "axial" in self.axes and self.place not in places.moved_along:
                 allowed = (
                     "allowed: vertical, horizontal; axial needs housing.kind: plates or modal, a path, or helical "
-                    "teeth with dynamics.model: 8dof or 6dof"
+                    "teeth with dynamics.model: 8dof"
                 )
                 yield Problem("axes", ", ".join(self.axes), allowed)
             yield from self._position_problems(places.model)

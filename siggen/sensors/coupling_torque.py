@@ -27,7 +27,7 @@ class TorqueSensor(Sensor):
     kind: Literal["coupling_torque"] = Field(description="torque that a coupling passes on")
     place: Literal["input_coupling", "output_coupling"] = Field(
         default="input_coupling",
-        description="motor to pinion, or last gear to load; not with dynamics.model: 6dof",
+        description="motor to pinion, or last gear to load",
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
         default=("rotation",), description="what it measures, one channel each"

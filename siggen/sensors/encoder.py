@@ -43,7 +43,7 @@ class Encoder(Sensor):
     kind: Literal["encoder"] = Field(description="angular speed of a shaft, from the pulses of a disc")
     place: Annotated[str, TURNING] = Field(
         default="pinion",
-        description="what it turns with, a gear of any mesh; motor and load not with dynamics.model: 6dof",
+        description="what it turns with, a gear of any mesh",
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
         default=("rotation",), description="what it measures, one channel each"

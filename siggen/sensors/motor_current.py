@@ -40,7 +40,7 @@ class MotorCurrent(Sensor):
     plausible: ClassVar[tuple[float, float, str]] = (0.1, 1e5, "is it in A?")
 
     kind: Literal["motor_current"] = Field(description="current of a phase of the induction motor that drives")
-    place: Literal["motor"] = Field(default="motor", description="the motor; not with dynamics.model: 6dof")
+    place: Literal["motor"] = Field(default="motor", description="the motor")
     axes: Annotated[tuple[Literal["phase_a", "phase_b", "phase_c"], ...], Field(min_length=1)] = Field(
         default=("phase_a",), description="what it measures, one channel each"
     )

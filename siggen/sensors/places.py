@@ -22,7 +22,6 @@ PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end
 """Place -> plate of the housing."""
 GEARS = ("pinion", "gear")
 BEARINGS = tuple(f"{gear}_bearing" for gear in GEARS)
-RIMS = tuple(f"{gear}_rim" for gear in GEARS)
 ON_CASING = {"casing": ("casing",), PLATES: tuple(PLATE_OF), MODAL: ("casing", *PLATE_OF)}
 """Places on the housing of a model."""
 OF_SET = ("ring", "sun_bearing", "carrier_bearing")
@@ -50,7 +49,7 @@ class PlaceText:
 
 
 AT_BEARINGS = PlaceText(BEARINGS, ("NAME_bearing",))
-IN_MOTION = PlaceText((*BEARINGS, *PLATE_OF, "casing", *RIMS, *OF_SET), ("NAME_bearing",))
+IN_MOTION = PlaceText((*BEARINGS, *PLATE_OF, "casing", *OF_SET), ("NAME_bearing",))
 TURNING = PlaceText(("motor", *GEARS, "load"), tuple(f"NAME.{gear}" for gear in GEARS))
 
 
@@ -79,11 +78,7 @@ class Places:
     @property
     def bearings(self) -> tuple[str, ...]:
         """The bearings of every shaft."""
-        return (
-            ()
-            if self.model == "torsional" or self.planetary
-            else (*BEARINGS, *(f"{stage}_bearing" for stage in self.stages))
-        )
+        return () if self.planetary else (*BEARINGS, *(f"{stage}_bearing" for stage in self.stages))
 
     @property
     def pressed_along(self) -> tuple[str, ...]:
@@ -99,7 +94,7 @@ class Places:
     @property
     def moved_along(self) -> tuple[str, ...]:
         """Places that move along the shafts: on a housing that gives way, and shafts on the ground."""
-        on_ground = self.pressed_along if self.model in {"6dof", "8dof"} else ()
+        on_ground = self.pressed_along if self.model == "8dof" else ()
         return self.motions if self.model in {PLATES, MODAL} else on_ground
 
     @property
@@ -107,14 +102,12 @@ class Places:
         """Places whose motion the model has."""
         if self.planetary:
             return (*ON_CASING.get(self.model, ()), *OF_SET)
-        return RIMS if self.model == "torsional" else (*ON_CASING.get(self.model, ()), *self.bearings)
+        return (*ON_CASING.get(self.model, ()), *self.bearings)
 
     @property
     def shafts(self) -> tuple[str, ...]:
         """What turns and can carry a sensor."""
-        if self.planetary:
-            return ()
-        return self.gears if self.model == "6dof" else ("motor", *self.gears, "load")
+        return () if self.planetary else ("motor", *self.gears, "load")
 
     @property
     def ends_of_meshes(self) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]:
@@ -128,7 +121,7 @@ class Places:
     @property
     def couplings(self) -> tuple[str, ...]:
         """Couplings at both ends of the gearbox."""
-        return () if self.model == "6dof" or self.planetary else ("input_coupling", "output_coupling")
+        return () if self.planetary else ("input_coupling", "output_coupling")
 
     def problems(self, place: str, allowed: Sequence[str]) -> Iterator[Problem]:
         """Yield a place that is none of those that the gearbox has for a sensor."""

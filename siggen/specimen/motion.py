@@ -14,7 +14,7 @@ from siggen.dynamics.friction.contact_kinematics import effective_modulus
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_internals import PairContact
-from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.structure.back_flanks import on_back_flanks
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.shaft_lines import frame_turns
@@ -39,11 +39,6 @@ from siggen.planning.stages import stage_point
 from siggen.specimen.contact import solves_across_the_face, tip_relief
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh, specimen_friction
-
-FILM_VISCOSITY_PA_S = 0.112
-"""Of the squeezed film: ISO VG 220 at 50 °C."""
-FILM_FLOOR_M = 0.8e-6
-"""Thinnest squeezed film: of the size of the flanks' roughness (assumed)."""
 
 
 class TeethUnderTorque(Protocol):
@@ -192,15 +187,12 @@ def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairC
 
 
 def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, mass_kg: float) -> PairLaw:
-    section = dynamics.mesh
-    film = SqueezeFilm(FILM_VISCOSITY_PA_S, mesh.pair.face_width_m, FILM_FLOOR_M)
     return pair_law(
         mesh.tables,
         mesh.missing.under(point.torque_nm),
         MeshConstants(mesh.pair.line_of_action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um), _spread(mesh)),
         damping_ratio=_damping_ratio(dynamics),
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
-        film=film if section.squeeze_film == "on" else None,
         contact=mesh.contact,
         coupling_m_per_n=mesh.coupling_m_per_n,
     )

@@ -12,12 +12,12 @@ from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.axial_motion import axial_bearings
 from siggen.dynamics.structure.body import Body, modal_body
-from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
+from siggen.dynamics.structure.casing_structure import carried_structure, casing_body
 from siggen.dynamics.structure.gear_stage import Coupling, GearStage
 from siggen.dynamics.structure.gear_stage import Rotor as RotorNumbers
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.planetary import planetary_structure
-from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof, vector
+from siggen.dynamics.structure.structure import Structure, eight_dof, vector
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
@@ -32,8 +32,6 @@ from siggen.specimen.rotors import rotor_numbers
 from siggen.specimen.specimen_housing import coupled_modes
 from siggen.specimen.staged_structure import staged_casing, staged_structure
 
-ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
-
 
 def structure(config: Config, specimen: Specimen) -> Structure:
     """Return the structure of a drawn specimen; a gear without given mass is a steel disc with its bore.
@@ -47,7 +45,7 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     if specimen.stages:
         found = staged_structure(stage, specimen, body)
     elif body is None:
-        return ASSEMBLIES[dynamics.model](stage)
+        return eight_dof(stage)
     else:
         found = carried_structure(stage, body, _shafts(dynamics, stage, pair))
     if specimen_housing(config, specimen) is None:
@@ -59,7 +57,7 @@ def structure(config: Config, specimen: Specimen) -> Structure:
 
 def moved_along(specimen: Specimen) -> tuple[str, ...]:
     """Return the motions along the shafts that sensors on them see: of helical teeth on bearings on the ground."""
-    grounded = specimen.dynamics.model in {"6dof", "8dof"} and not specimen.stages and specimen.planetary is None
+    grounded = specimen.dynamics.model == "8dof" and not specimen.stages and specimen.planetary is None
     return tuple(axial_bearings(gear_stage(specimen.dynamics, gear_pair(specimen.gears)))) if grounded else ()
 
 

@@ -37,7 +37,7 @@ from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import history_s
 from siggen.specimen.step_choice import stepped_motion
 
-FORMAT_VERSION = 5
+FORMAT_VERSION = 6
 """Raised when a key changes its meaning or goes away; new keys leave it."""
 
 ENDING = ".npz"

@@ -62,7 +62,7 @@ CHANGES = [
     ("gears__module_mm", {"kind": "uniform", "low": 3, "high": 3.5}),
     ("gears__gear__teeth", 48),
     ("stiffness__beam", "base_circle"),
-    ("dynamics__model", "6dof"),
+    ("dynamics__model", "8dof"),
     ("dynamics__pinion__mass_kg", 0.4),
     ("operating_points__0__torque_nm", 61),
     ("states__1__name", "mild"),

@@ -214,7 +214,7 @@ OTHERS: dict[str, tuple[dict[str, Any], str, str]] = {
     "place": ({"sensors": [{"name": "a", "place": "pinion_bearing"}]}, "sensors.0.place", "input_bearing"),
     "beside": ({"stages": [SLOW]}, "stages", "either this section or machine"),
     "rotor": ({"dynamics": {"model": "8dof", "gear": {"mass_kg": 1.0}}}, "dynamics.gear", "machine.shafts"),
-    "casing": ({"dynamics": {"model": "6dof"}}, "dynamics.model", "8dof or casing"),
+    "casing": ({"dynamics": {"model": "6dof"}}, "dynamics.model", "8dof, casing"),
 }
 
 

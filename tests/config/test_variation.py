@@ -52,15 +52,6 @@ def test_mesh_harmonics_must_fit_the_band_at_the_highest_speed_of_a_run_up():
     assert paths(variation={"speed": {"end_ratio": 6.79, "random_rms": 0.005}}) == ["fs_hz"]
 
 
-def test_forces_of_shafts_need_bearings():
-    changes = {
-        "dynamics__model": "torsional",
-        "sensors": [{"name": "rim", "place": "pinion_rim", "axes": ["tangential"]}],
-        "dynamics__unbalance": {"grade_mm_s": 2.5},
-    }
-    assert paths(**changes) == ["dynamics.unbalance.grade_mm_s"]
-
-
 def test_a_run_down_that_the_load_would_drive_is_refused_by_name():
     (said,) = physical(variation={"speed": {"end_ratio": 0.1}}, operating_points__0__torque_nm=0.1)
     assert said.startswith("variation.speed.end_ratio: received -0.9 of 30 Hz in 1 s")

@@ -9,7 +9,7 @@ import numpy as np
 from siggen.dynamics.structure.body import Bolts, Casing
 from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.gear_stage import Bearing, Coupling, GearStage, Rotor
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.structure import Structure, eight_dof, vector
 
 PRESSURE_ANGLE = np.radians(20.0)
 BASE_RADIUS_1 = 0.5 * 3e-3 * 18 * np.cos(PRESSURE_ANGLE)
@@ -60,4 +60,24 @@ def grounded_structure() -> Structure:
     return casing_structure(
         make_stage(),
         make_casing(mass_kg=2e7, inertia_kg_m2=2.5e5, bolts=Bolts(8e13, 1.5e14, 0.04, BOLT_PLACES)),
+    )
+
+
+def torsional(stage: GearStage) -> Structure:
+    """Return the rotations alone, q = [θ_m, θ_1, θ_2, θ_L]: the limit of rigid supports."""
+    whole = eight_dof(stage)
+    turning = [i for i, name in enumerate(whole.coordinates) if name.startswith("theta")]
+    mesh, square = whole.mesh, np.ix_(turning, turning)
+    coordinates = tuple(whole.coordinates[i] for i in turning)
+    return replace(
+        whole,
+        coordinates=coordinates,
+        mass=whole.mass[square],
+        damping=whole.damping[square],
+        stiffness=whole.stiffness[square],
+        meshes=(replace(mesh, vector=mesh.vector[turning], sliding=np.ascontiguousarray(mesh.sliding[:, turning])),),
+        torque_vector=whole.torque_vector[turning],
+        motions={"pinion_rim/tangential": vector(coordinates, {"theta_1": BASE_RADIUS_1})},
+        bearing_forces={},
+        bearing_directions={},
     )

@@ -10,7 +10,7 @@ import numpy as np
 from siggen.dynamics.friction.friction import FrictionLaw
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
@@ -77,7 +77,6 @@ def law(
     backlash_m: float = 80e-6,
     mass: float = 0.2124,
     friction: FrictionLaw | None = None,
-    film: SqueezeFilm | None = None,
     contact: ContactTable | None = None,
     coupling_m_per_n: np.ndarray | None = None,
 ) -> PairLaw:
@@ -87,7 +86,6 @@ def law(
         MeshConstants(gear_pair().line_of_action_m, mass, backlash_m),
         damping_ratio=damping_ratio,
         friction=friction,
-        film=film,
         contact=contact,
         coupling_m_per_n=coupling_m_per_n,
     )

@@ -238,7 +238,6 @@ def test_its_row_tells_the_slip_that_its_cage_has_in_this_record() -> None:
         ({"length_mm": 12.0}, {"dynamics__pinion__bearing": {"balls": 14}}, "length_mm", "the spacing of the balls"),
         ({"geometry": {"balls": 8}}, {}, "geometry", "known keys: "),
         ({"element": "cage"}, {}, "element", "outer"),
-        ({}, {"dynamics__model": "torsional", "sensors": [{"name": "rim", "place": "pinion_rim"}]}, "kind", "casing"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_with_what_is_allowed(

@@ -185,7 +185,6 @@ def test_a_belt_needs_a_shaft_that_can_be_pulled_and_is_longer_than_round_its_pu
     for changes, path in (
         ({"belt": {"order": 1.2}}, "background.belt.order"),
         ({"belt": {"shaft": "motor"}}, "background.belt.shaft"),
-        ({"belt": {}, "dynamics__model": "torsional"}, "background.belt"),
     ):
         with pytest.raises(ConfigError) as refused:
             belted(changes.pop("belt"), **changes)

@@ -20,7 +20,7 @@ HOT = {"name": "hot", "fault": "lubrication", "severity": "moderate"}
 
 
 def config(*states: dict[str, Any], **more: Any) -> Config:
-    dynamics = {"model": "6dof", "mesh_damping_ratio": SPREAD, "mesh": {"law": "linear"}, "friction": {"model": "off"}}
+    dynamics = {"model": "8dof", "mesh_damping_ratio": SPREAD, "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     raw = minimal(specimens=2, duration_s=0.05, fs_hz=20480.0, mesh_harmonics=3, dynamics=dynamics)
     sensors = [{"name": "bearing", "gain": {"kind": "uniform", "low": 0.95, "high": 1.05}}, {"name": "other"}]
     return load_config(raw | {"sensors": sensors, "states": [{"name": "healthy"}, *states]} | more)
@@ -61,7 +61,7 @@ def test_a_patch_is_the_set_whose_healthy_gearbox_has_these_numbers() -> None:
     found = config(changed(patch), {"name": "last"})
     half = {"kind": "uniform", "low": 0.025, "high": 0.05}
     dynamics = {
-        "model": "6dof", "mesh_damping_ratio": half, "mesh": {"law": "linear"}, "friction": {"model": "off"},
+        "model": "8dof", "mesh_damping_ratio": half, "mesh": {"law": "linear"}, "friction": {"model": "off"},
         "pinion": {"mass_kg": 2},
     }  # fmt: skip
     sensors = [{"name": "bearing", "gain": 0.5}, {"name": "other"}]

@@ -23,7 +23,7 @@ SPALL = {"kind": "spall", "gear": "gear", "teeth": [20], **SIZE}
 
 
 def config(*states: dict[str, Any]) -> Config:
-    dynamics = {"model": "6dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
+    dynamics = {"model": "8dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     small = {"specimens": 1, "duration_s": 0.2, "fs_hz": 20480.0, "mesh_harmonics": 3, "dynamics": dynamics}
     sensors = [{"name": "bearing", "noise": None, "bits": None}]
     return load_config(minimal(**small, sensors=sensors, states=[{"name": "healthy"}, *states]))
@@ -94,7 +94,7 @@ def test_a_state_may_name_its_primary_fault_itself() -> None:
 def test_each_fault_has_its_rows_in_one_table() -> None:
     chosen = load_config(
         minimal(
-            dynamics={"model": "6dof", "mesh": {"law": "pairs"}},
+            dynamics={"model": "8dof", "mesh": {"law": "pairs"}},
             states=[
                 {"name": "healthy"},
                 state(

@@ -140,7 +140,6 @@ def test_what_is_added_does_not_depend_on_the_state() -> None:
     ("sensor", "changes", "path", "said"),
     [
         (UP, {"dynamics__model": "8dof"}, "sensors.0.place", "pinion_bearing, gear_bearing (dynamics.model: 8dof)"),
-        (UP, {"dynamics__model": "torsional"}, "sensors.0.place", "pinion_rim"),
         (UP, {"housing": {"kind": "rigid"}}, "sensors.0.place", "casing, pinion_bearing, gear_bearing"),
         ({**RIGID, "axes": ["axial"]}, {}, "sensors.0.axes", "axial needs housing.kind: plates or modal"),
         (RIGID, {"housing": {}}, "sensors.0.place", "one of lid, wall"),
@@ -153,11 +152,6 @@ def test_contradictions_are_named(sensor: dict, changes: dict, path: str, said: 
     found = problems(sensor, **changes)
     assert list(found) == [path]
     assert said in found[path]
-
-
-def test_a_rim_has_no_axis_across() -> None:
-    rim = {"name": "rim", "place": "pinion_rim", "axes": ["tangential"], "cross_axis": 0.04}
-    assert "sensors.0.cross_axis" in problems(rim, dynamics__model="torsional")
 
 
 @pytest.mark.slow  # a set without sensors of its own: tests/sets/test_generation.py

@@ -33,7 +33,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
 
 def config(*states: dict[str, Any], law: str = "pairs") -> Config:
     small = {"specimens": 1, "duration_s": 0.05, "fs_hz": 20480.0, "mesh_harmonics": 3}
-    dynamics = {"model": "6dof", "mesh": {"law": law}, "friction": {"model": "off"}}
+    dynamics = {"model": "8dof", "mesh": {"law": law}, "friction": {"model": "off"}}
     return load_config(minimal(**small, dynamics=dynamics, states=[{"name": "healthy"}, *states]))
 
 

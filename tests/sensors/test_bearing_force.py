@@ -37,7 +37,5 @@ def test_it_holds_what_the_model_gives() -> None:
     np.testing.assert_array_equal(record(config).channels["pinion_vertical"], expected)
 
 
-def test_a_model_without_bearings_is_refused() -> None:
-    found = problems(PINION, dynamics__model="torsional")
-    assert found["sensors.0.place"].startswith("'pinion_bearing'; allowed: none")
+def test_a_place_without_bearings_is_refused() -> None:
     assert "pinion_bearing, gear_bearing" in problems({**PINION, "place": "lid"})["sensors.0.place"]

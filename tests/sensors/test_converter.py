@@ -24,7 +24,7 @@ STEP = 2.0**-11
 
 def config(**sensor: Any) -> Config:
     bearing = {"name": "bearing", "bits": "noise", "noise": {"floor_m_s2": FLOOR}, **sensor}
-    dynamics = {"model": "6dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
+    dynamics = {"model": "8dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     states = [
         {"name": "healthy"},
         {"name": "loud", "fault": "sensor", "severity": "slight", "changes": {"sensors.bearing.noise.floor_m_s2": 2.0}},

@@ -49,7 +49,4 @@ def test_noise_range_and_bits_are_those_of_every_sensor() -> None:
 
 
 def test_a_coupling_that_the_model_has_not_is_refused() -> None:
-    found = problems(INPUT, dynamics__model="6dof")
-    said = "'input_coupling'; allowed: none, so no sensor of this kind (dynamics.model: 6dof)"
-    assert found["sensors.0.place"] == said
     assert "input_coupling, output_coupling" in problems({**INPUT, "place": "pinion"})["sensors.0.place"]

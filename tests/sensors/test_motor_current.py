@@ -51,6 +51,5 @@ def test_a_speed_that_no_motor_follows_at_one_line_frequency_says_why() -> None:
     assert "sensor clamp: the slip would pass 0.15" in failure.reason
 
 
-def test_a_model_without_a_motor_is_refused() -> None:
-    assert problems(CLAMP, dynamics__model="6dof")["sensors.0.place"].startswith("'motor'; allowed: none")
+def test_a_slip_beyond_reason_is_refused() -> None:
     assert problems({**CLAMP, "rated_slip": 0.5})["sensors.0.rated_slip"].startswith("0.5; allowed: a number")

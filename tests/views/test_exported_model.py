@@ -160,15 +160,6 @@ def largest(own: list, other: list) -> float:
     return max(float(np.abs(a - b).max() / np.ptp(a)) for a, b in zip(own, other, strict=True))
 
 
-def with_spikes(own: list, other: list) -> tuple[float, float]:
-    """Return the largest difference of the approach over its swing, and the share of samples of the force beyond 1e-3.
-
-    A film that is squeezed out gives a spike of the force shorter than a sample, whose height is that of one instant.
-    """
-    beyond = np.abs(own[1] - other[1]) > 1e-3 * np.ptp(own[1])
-    return largest(own[:1], other[:1]), float(beyond.mean())
-
-
 def test_scipy_gives_the_motion_of_a_damaged_misaligned_record_of_bench_from_its_file_alone() -> None:
     # As shipped, with varying speed and torque, unbalance, tones, coupling, friction and tilt; record 5 is spalled over
     # 80 % of the face, and its tooth 16 comes after 8 ms. Eight steps per sample leave 6e-4 of the mesh force.
@@ -180,7 +171,7 @@ def test_scipy_gives_the_motion_of_a_damaged_misaligned_record_of_bench_from_its
 
 
 FINE = 1e-6
-"""Tolerance of scipy where springs and films begin with a step. It starts at rest, where rounding alone is the error
+"""Tolerance of scipy where springs begin with a step. It starts at rest, where rounding alone is the error
 that chooses its steps: the last bits decide where its steps pass those of the force. With 1e-5 they moved one sample,
 under an impact of 250 N, by up to 5e-3 of the mesh force, with 1e-6 by 2e-4."""
 
@@ -246,29 +237,11 @@ def test_the_model_starts_where_its_record_does() -> None:
             assert np.abs(own - found).max() < 1e-6 * np.ptp(own)
 
 
-def begun_with_film(coupling: str, samples: int = 300, change: Change = np.array) -> tuple[dict, list]:
-    overrides = (f"stiffness.coupling={coupling}", "dynamics.mesh.squeeze_film=on")
-    return beginning("tests/configs/casing.yaml", 12, samples, 32, *overrides, change=change)
-
-
 @pytest.mark.parametrize("coupling", ["none", "body"])
-def test_scipy_gives_the_motion_with_film_and_damping_by_asperity_share(coupling: str) -> None:
-    model, own = begun_with_film(coupling)
+def test_scipy_gives_the_motion_with_damping_by_asperity_share(coupling: str) -> None:
+    model, own = beginning("tests/configs/casing.yaml", 12, 300, 32, f"stiffness.coupling={coupling}")
     assert {"mesh.0.law.contact.touch_m", "mesh.0.law.damping_film_root_kg"} <= set(model)
-    assert model["mesh.0.law.film_n_s_per_m"] > 0.0
-    motion, spikes = with_spikes(own, by_scipy(model, own, FINE))
-    assert motion < 1e-3
-    assert spikes < 0.01
-
-
-def test_last_bits_of_the_matrices_move_neither_the_motion_nor_what_scipy_makes_of_it() -> None:
-    _, own = begun_with_film("none", 120)  # the impact is at sample 100
-    for seed in range(3):
-        model, changed = begun_with_film("none", 120, last_bits(seed))
-        assert 0.0 < largest(own, changed) < 1e-9
-        motion, spikes = with_spikes(own, by_scipy(model, own, FINE))
-        assert motion < 1e-3
-        assert spikes < 0.03  # three of 121 samples lie on spikes
+    assert largest(own, by_scipy(model, own, FINE)) < 1e-3
 
 
 @pytest.mark.parametrize(

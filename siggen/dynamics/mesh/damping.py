@@ -2,7 +2,7 @@
 
 Ratio by asperity share: ζ = ζ_s + ζ_f (1 - La) + ζ_a La. Derived (ours): literature gives mesh damping ratios of 0.03
 to 0.17 and names structure, film and asperities as sources, but no law that was read relates them. What follows from
-the ratio, and the squeezed film of flanks apart: `pair_law`.
+the ratio: `pair_law`.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 What `write_node_forces` writes, with the same bytes, since places, springs and loads are the same code; only springs
 are taken one after the other. It stays the way of all laws and steps that lanes do not take: these take contacts across
-the face without film, while the same pairs are in reach at all nodes and no back flank comes near. What passes from one
+the face, while the same pairs are in reach at all nodes and no back flank comes near. What passes from one
 step to the next stands in the table of pairs, so that both ways may follow each other.
 """
 

@@ -55,7 +55,7 @@ def lane_table(law: PairLaw, nodes: FloatArray) -> FloatArray:
     head, first = law.places, law.places[layout.STIFFNESS_AT]
     rows = int(head[head[layout.TABLE_AT] :][: head[layout.TEETH_1] * head[layout.TEETH_2]].max()) + 1
     stiffness = law.numbers[first : first + rows * head[layout.POINTS]]
-    plain = law.scalars[layout.FILM] == 0.0 and head[layout.SHARE_DAMPS] == 0 and head[layout.SPREAD_AT] == 0
+    plain = head[layout.SHARE_DAMPS] == 0 and head[layout.SPREAD_AT] == 0
     applies = plain and law.slots == SLOTS and len(nodes) == 3 and head[layout.CONTACT_NODES] > 0
     table[APPLIES] = float(applies and bool((stiffness > 0.0).all()))
     table[NODES_AT, : len(nodes)] = nodes

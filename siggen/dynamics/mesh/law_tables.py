@@ -21,8 +21,6 @@ NUMBERS = {
     "base_pitch_m": layout.PITCH_M,
     "line_of_action_m": layout.LINE_M,
     "backlash_m": layout.BACKLASH_M,
-    "film_n_s_per_m": layout.FILM,
-    "film_floor_m": layout.FILM_FLOOR_M,
 }
 DAMPING = {
     "damping_structure_root_kg": layout.DAMPING_STRUCTURE,

@@ -1,4 +1,4 @@
-"""Forces of all tooth pairs at the nodes of one step with their tangents, compiled: springs, dampers, film, friction.
+"""Forces of all tooth pairs at the nodes of one step with their tangents, compiled: springs, dampers, friction.
 
 Any law, any number of slots and nodes, one pair after the other; a state by itself is a step of one node
 (`pair_forces`). What a pair answers with is the same code as in lanes (`lane_forces`): places, springs, loads. The
@@ -16,7 +16,6 @@ from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import Spring
 from siggen.dynamics.mesh.load_spread import Part, spread
 from siggen.dynamics.mesh.pair_columns import (
-    ALONE,
     ARM,
     ASPERITY_SHARE,
     CARRYING,
@@ -26,7 +25,6 @@ from siggen.dynamics.mesh.pair_columns import (
     FLANK,
     FRICTION,
     MOMENT,
-    MOST_APART,
     NODE_APPROACH,
     NODE_ARM,
     NODE_FRICTION,
@@ -49,14 +47,13 @@ from siggen.dynamics.mesh.pair_columns import (
     SLIDING,
     STIFFNESS,
     TILT,
-    TOUCH,
     TURNING,
     WHOLE,
     YIELD,
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_loads import LEAST_CARRYING, damped, film_force, lubricated, rubbed
-from siggen.dynamics.mesh.pair_springs import coupling_of, write_springs
+from siggen.dynamics.mesh.pair_loads import LEAST_CARRYING, damped, lubricated, rubbed
+from siggen.dynamics.mesh.pair_springs import write_springs
 
 
 @entry(cache=True, _nrt=False, error_model="numpy")
@@ -119,10 +116,8 @@ def _write_root(law: PairLaw, weights: FloatArray, pairs: FloatArray, slot: int,
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _load(law: PairLaw, pairs: FloatArray, q: int, slots: int, node: FloatArray) -> None:
-    """Add springs, dampers and films of all pairs at a node; NORMAL becomes the whole force."""
-    rate, tilt_rate, total, films = node[NODE_RATE, q], node[NODE_TILT_RATE, q], 0.0, law.scalars[layout.FILM] > 0.0
-    if films and law.places[layout.APART] > 0:
-        _widen(law, pairs, q * slots, slots)
+    """Add springs and dampers of all pairs at a node; NORMAL becomes the whole force."""
+    rate, tilt_rate, total = node[NODE_RATE, q], node[NODE_TILT_RATE, q], 0.0
     for i in range(q * slots, (q + 1) * slots):
         total += pairs[i, STIFFNESS]
         pairs[i, SLIDING], pairs[i, PLACE] = 0.0, pairs[i, POSITION]
@@ -141,11 +136,6 @@ def _load(law: PairLaw, pairs: FloatArray, q: int, slots: int, node: FloatArray)
             node[NODE_NORMAL, q] += found.force
             node[NODE_SLOPE, q] += pairs[i, YIELD]
             node[NODE_SLOPE_RATE, q] += found.damping
-        elif films and pairs[i, FLANK] == 0.0 and pairs[i, WHOLE] > 0.0:
-            film = film_force(law, pairs[i, POSITION], pairs[i, TOUCH] - pairs[i, PENETRATION], rate)
-            pairs[i, NORMAL] = film
-            node[NODE_NORMAL, q] += film
-            node[NODE_SLOPE_RATE, q] += film / rate if film > 0.0 else 0.0
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
@@ -154,20 +144,6 @@ def _spring(pairs: FloatArray, i: int) -> Spring:
         pairs[i, NORMAL], pairs[i, STIFFNESS], pairs[i, YIELD], pairs[i, PENETRATION], pairs[i, MOMENT],
         pairs[i, CROSS], pairs[i, TURNING], pairs[i, CARRYING], pairs[i, ROUGH],
     )  # fmt: skip
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def _widen(law: PairLaw, pairs: FloatArray, base: int, slots: int) -> None:
-    """Write how far pairs that do not touch are apart under the forces of the others, which deflect their gear body."""
-    apart = min(law.places[layout.APART], MOST_APART)
-    for i in range(base, base + slots):
-        if pairs[i, FLANK] != 0.0 or pairs[i, WHOLE] == 0.0:
-            continue
-        depth = pairs[i, ALONE]
-        for j in range(base, base + slots):
-            if j != i and pairs[j, FLANK] != 0.0:
-                depth -= coupling_of(law, pairs, apart, i, j) * pairs[j, NORMAL]
-        pairs[i, PENETRATION] = depth
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")

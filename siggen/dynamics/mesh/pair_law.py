@@ -18,15 +18,12 @@ line, where these touch, and are sound.
 
 f_n(p) is the force of the contact solved across the face (`contact_spring`), or k_n p without a table of it. c_nm is
 the deflection at one pair per unit force at another, through the gear bodies that they share; 0 without coupling.
-Between flanks that approach without touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders,
-iso-viscous; derived); its force jumps where the flanks touch, from that of the thinnest film to the mesh damper's,
-since a film in closed contact is as good as rigid. Positions are in base pitches, as in `mesh_force`; outside the path
+Positions are in base pitches, as in `mesh_force`; outside the path
 of contact the stiffness is that of its end. Load sharing is N_n/ΣN and needs no formula of its own.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -56,8 +53,6 @@ LINE_M = next(_scalar)  # line of action
 DAMPING_ROOT = next(_scalar)  # 2 ζ √m_e; where its parts count, their mean
 BACKLASH_M = next(_scalar)
 LEAD_M = next(_scalar)  # missing material of all pairs by their lead
-FILM = next(_scalar)  # 12 π η L, 0 without film
-FILM_FLOOR_M = next(_scalar)
 DAMPING_STRUCTURE = next(_scalar)  # parts of the damper by the share that asperities carry
 DAMPING_FILM = next(_scalar)
 DAMPING_ASPERITIES = next(_scalar)
@@ -151,15 +146,6 @@ class PairLaw(NamedTuple):
         return float(self.scalars[DAMPING_ROOT])
 
 
-@dataclass(frozen=True, slots=True)
-class SqueezeFilm:
-    """Oil that is pressed out between flanks that approach each other; thinner films than the floor do not occur."""
-
-    viscosity_pa_s: float
-    face_width_m: float
-    floor_m: float
-
-
 class MeshConstants(NamedTuple):
     """Length T of the line of action, mass that the mesh feels, total normal backlash.
 
@@ -179,7 +165,6 @@ def pair_law(
     *,
     damping_ratio: float | DampingLaw,
     friction: FrictionLaw | None = None,
-    film: SqueezeFilm | None = None,
     contact: ContactTable | None = None,
     coupling_m_per_n: FloatArray | None = None,
 ) -> PairLaw:
@@ -193,7 +178,7 @@ def pair_law(
     mesh : MeshConstants
     damping_ratio : float or DampingLaw
         ζ, or its parts by the share of the load that asperities carry, which needs a friction law with such a table.
-    friction, film : FrictionLaw, SqueezeFilm or None
+    friction : FrictionLaw or None
     contact : ContactTable or None
         On the grid of `tables`: forces of all pairs with the contact solved across the face; None: springs.
     coupling_m_per_n : (apart, points) or None
@@ -205,7 +190,7 @@ def pair_law(
     ValueError
         If a number is negative or not finite, or tables do not fit together.
     """
-    _check(tables, missing, damping_ratio, mesh.backlash_m, film)
+    _check(tables, missing, damping_ratio, mesh.backlash_m)
     packed = PackedTables(HEAD)
     scalars = np.zeros(SCALARS)
     pitch, ratio = tables.base_pitch_m, (tables.end_m - tables.start_m) / tables.base_pitch_m
@@ -216,8 +201,6 @@ def pair_law(
     scalars[REACH_AFTER] = max(0.0, (missing.end_m - tables.end_m) / pitch)
     scalars[START_M], scalars[PITCH_M], scalars[LINE_M] = tables.start_m, pitch, mesh.line_of_action_m
     scalars[BACKLASH_M] = mesh.backlash_m
-    scalars[FILM] = 0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m
-    scalars[FILM_FLOOR_M] = 1.0 if film is None else film.floor_m
     _pack_teeth(packed, tables, missing)
     if contact is not None:
         _pack_contact(packed, scalars, contact, tables)
@@ -234,17 +217,9 @@ def pair_law(
     return PairLaw(scalars, packed.numbers, packed.index)
 
 
-def _check(
-    tables: MeshTables,
-    missing: MissingMaterial,
-    damping_ratio: float | DampingLaw,
-    backlash_m: float,
-    film: SqueezeFilm | None,
-) -> None:
+def _check(tables: MeshTables, missing: MissingMaterial, damping_ratio: float | DampingLaw, backlash_m: float) -> None:
     ratios = (damping_ratio,) if isinstance(damping_ratio, (int, float)) else tuple(damping_ratio)
     numbers = [("damping_ratio", value) for value in ratios] + [("backlash_m", backlash_m)]
-    if film is not None:
-        numbers += [("film viscosity_pa_s", film.viscosity_pa_s)]
     for name, value in numbers:
         if not (np.isfinite(value) and value >= 0.0):
             raise ValueError(f"{name}: received {value}; allowed are finite values from 0")

@@ -1,4 +1,4 @@
-"""Forces of a pair by its spring and its motion, compiled: damper, film, friction; for one value or for lanes of them.
+"""Forces of a pair by its spring and its motion, compiled: damper, friction; for one value or for lanes of them.
 
 Equations: `pair_law`.
 """
@@ -56,20 +56,6 @@ def damped(law: PairLaw, root: Value, rate: Value, tilt_rate: Value, spring: Spr
         moment = select(driven & (force > 0.0), moment, 0.0)
     carries = (driven & (force > 0.0)) | (back & (force < 0.0))
     return Damped(select(carries, force, 0.0), damping, moment, carries)
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def film_force(law: PairLaw, position_m: float, gap_m: float, rate_m_s: float) -> float:
-    """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
-    scalars = law.scalars
-    place = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M]
-    if rate_m_s <= 0.0 or place < 0.0 or place > scalars[layout.CONTACT_RATIO]:
-        return 0.0
-    curvature_m = position_m * (scalars[layout.LINE_M] - position_m) / scalars[layout.LINE_M]
-    force_n: float = (
-        scalars[layout.FILM] * (0.5 * curvature_m / max(gap_m, scalars[layout.FILM_FLOOR_M])) ** 1.5 * rate_m_s
-    )
-    return force_n
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)

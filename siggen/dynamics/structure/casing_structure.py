@@ -1,6 +1,6 @@
-"""Structures with other bodies than two gears: shafts alone, or gears that run in a casing on bolts.
+"""Structures of gears that run in a casing on bolts.
 
-Equations: 4-DOF torsional model and 11-DOF model with a casing of two translations and rocking (reference: standard
+Equations: 11-DOF model with a casing of two translations and rocking (reference: standard
 literature; the casing as in paper B: Luo, Baddour, Liang, MSSP 119 (2019) 155-181, whose equations were not available);
 directions of the elements derived. With a casing, y runs along the line of action from pinion to gear, x across it, and
 the casing turns from x to y. Given and measured quantities are horizontal (from gear to pinion) and vertical (along the
@@ -39,21 +39,6 @@ from siggen.dynamics.structure.structure import (
 from siggen.dynamics.structure.tilting_shaft import Shaft, crossed_ends, tilting_ends
 
 AXES = ("vertical", "horizontal")
-
-
-def torsional(stage: GearStage) -> Structure:
-    """Return the rotations alone, q = [θ_m, θ_1, θ_2, θ_L]; what can be seen are the gears' base circles.
-
-    Source: standard literature (torsional spur gear model).
-    """
-    inertias = _rotations(stage)
-    coordinates = tuple(inertias)
-    stiffness, damping = assemble(coordinates, shafts(stage))
-    rims = {
-        "pinion_rim/tangential": vector(coordinates, {"theta_1": stage.pinion.base_radius_m}),
-        "gear_rim/tangential": vector(coordinates, {"theta_2": stage.gear.base_radius_m}),
-    }
-    return _structure(stage, inertias, stiffness, damping, {}, rims, {})
 
 
 def casing_structure(stage: GearStage, casing: Casing, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:

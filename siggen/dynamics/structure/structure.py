@@ -147,15 +147,7 @@ def eight_dof(stage: GearStage) -> Structure:
     Source: standard literature (8-DOF spur gear model), see the module.
     """
     inertias = {"theta_m": stage.motor_inertia_kg_m2, **_gear_inertias(stage), "theta_l": stage.load_inertia_kg_m2}
-    return _grounded(stage, inertias, shafts(stage), driven_at="theta_m", loaded_at="theta_l")
-
-
-def six_dof(stage: GearStage) -> Structure:
-    """Return pinion and gear alone, q = [x_1, y_1, θ_1, x_2, y_2, θ_2], with the torques applied to the gears.
-
-    Source: standard literature (6-DOF spur gear model), see the module.
-    """
-    return _grounded(stage, _gear_inertias(stage), (), driven_at="theta_1", loaded_at="theta_2")
+    return _grounded(stage, inertias, shafts(stage))
 
 
 def _gear_inertias(stage: GearStage) -> dict[str, float]:
@@ -229,9 +221,7 @@ def _mixed(stage: GearStage, place: str) -> float:
     return 0.0 if place.endswith("axial") else rotor.bearing.stiffness_xy_n_per_m
 
 
-def _grounded(
-    stage: GearStage, inertias: Mapping[str, float], couplings: Sequence[Element], *, driven_at: str, loaded_at: str
-) -> Structure:
+def _grounded(stage: GearStage, inertias: Mapping[str, float], couplings: Sequence[Element]) -> Structure:
     """Assemble grounded bearings, shafts and the gear mesh over the coordinates of `inertias` and along the axes."""
     inertias = {**inertias, **axial_inertias(stage)}
     coordinates = tuple(inertias)
@@ -254,7 +244,7 @@ def _grounded(
             ),
         ),
         shaft_lines=stage_lines(coordinates),
-        torque_vector=vector(coordinates, {driven_at: 1.0, loaded_at: -stage.ratio}),
+        torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -stage.ratio}),
         motions=directions,
         bearing_forces={
             place: (

@@ -15,7 +15,6 @@ from siggen.dynamics.drive.external_forces import (
 )
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.varying_drive import VaryingDrive
-from siggen.dynamics.structure.casing_structure import torsional
 from siggen.dynamics.structure.gear_stage import Bearing, GearStage
 from siggen.dynamics.structure.structure import Structure, eight_dof, vector
 from siggen.dynamics.time.linear_motion import LinearMotion
@@ -103,8 +102,3 @@ def test_a_bearing_pushes_shaft_and_casing_apart_with_equal_forces(place: str, a
         assert direction[f"{way}_{index}"] + direction[f"{way}_c"] == pytest.approx(0.0, abs=1e-12)
     along = shaft_directions(structure, place)
     np.testing.assert_allclose(along @ along.T, np.eye(2), atol=1e-12)
-
-
-def test_rotations_alone_have_no_bearings() -> None:
-    with pytest.raises(ValueError, match="allowed are none"):
-        bearing_direction(torsional(make_stage()), "pinion_bearing", "vertical")

@@ -10,7 +10,7 @@ import pytest
 from siggen.dynamics.friction.asperity_table import asperity_table
 from siggen.dynamics.friction.friction import composite_friction
 from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
-from siggen.dynamics.mesh.lane_table import APPLIES, lane_table
+from siggen.dynamics.mesh.lane_table import lane_table
 from siggen.dynamics.mesh.node_forces import write_node_forces
 from siggen.dynamics.mesh.pair_columns import (
     NODE_APPROACH,
@@ -25,7 +25,7 @@ from siggen.dynamics.mesh.pair_columns import (
     SPRUNG,
     STIFFNESS,
 )
-from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
+from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.two_springs import SMOOTH_CHANGE
 from siggen.dynamics.time.exponential_scheme import NODES
@@ -108,8 +108,3 @@ def test_forces_in_lanes_are_those_of_the_scalar_law_to_the_bit(tilts: bool, cou
     assert 0.85 * STEPS < taken < STEPS  # the others met a back flank, or a pair that enters or leaves
     assert {0, 1, 3, 4} < alike  # no pair, either one, both; and steps in which that changes
     assert min(alike) < 0
-
-
-def test_lanes_leave_films_to_the_scalar_law() -> None:
-    chosen = spalled(3, tilts=False, film=SqueezeFilm(0.1, 20e-3, 1e-6))
-    assert lane_table(chosen, GAUSS)[APPLIES, 0] == 0.0

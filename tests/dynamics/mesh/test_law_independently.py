@@ -31,7 +31,7 @@ from siggen.dynamics.mesh.pair_columns import (
     NODE_TURN,
 )
 from siggen.dynamics.mesh.pair_forces import write_forces
-from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
+from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.two_springs import EXACT_CHANGE, SMOOTH_CHANGE
 from tests.dynamics.mesh.test_lane_forces import spalled
@@ -86,7 +86,6 @@ LAWS = {
     "coupled, tilting": {"tilts": True},
     "coupled, parallel": {"tilts": False},
     "alone, tilting": {"tilts": True, "coupled": False},
-    "coupled, with film": {"tilts": False, "film": SqueezeFilm(0.1, 20e-3, 1e-6)},
     "dampers by asperity share": {"tilts": True, "damping_ratio": DampingLaw(0.04, 0.02, 0.05)},
 }
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS, WHOLE
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m
-from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
+from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from tests.dynamics.pair_runs import constant_tables, exact_involutes, gear_pair, law, tables
@@ -146,28 +146,13 @@ def test_friction_turns_at_the_pitch_point_and_takes_power() -> None:
     assert (back[:, FRICTION] != 0.0).any()
 
 
-def test_a_squeezed_film_acts_only_between_flanks_that_approach_apart() -> None:
-    film = SqueezeFilm(0.112, 0.02, 0.8e-6)
-    wet, dry = law(exact(), film=film), law(exact())
-    for approach, rate in ((5e-6, 1e-3), (5e-6, -1e-3), (-5e-6, -1e-3)):
-        assert np.array_equal(loaded(wet, approach, SINGLE, rate), loaded(dry, approach, SINGLE, rate))
-    row = next(row for row in loaded(wet, -5e-6, SINGLE, 1e-3) if row[WHOLE] > 0.0)
-    s, length = row[POSITION], gear_pair().line_of_action_m
-    expected = 12.0 * np.pi * 0.112 * 0.02 * (s * (length - s) / length / (2.0 * 5e-6)) ** 1.5 * 1e-3
-    assert row[NORMAL] == pytest.approx(expected, rel=1e-9)
-    # About 2e4 N s/m at the floor of 0.8 µm for the curvature at the pitch point.
-    assert loaded(wet, -1e-9, SINGLE, 1.0)[:, NORMAL].max() == pytest.approx(2e4, rel=0.2)
-
-
 def test_tables_that_end_inside_the_path_of_contact_are_refused() -> None:
     short = replace(exact(), end_m=tables().end_m - 1e-4)
     with pytest.raises(ValueError, match="missing material: received"):
         law(short)
 
 
-@pytest.mark.parametrize(
-    "wrong", [{"damping_ratio": -0.1}, {"backlash_m": float("nan")}, {"film": SqueezeFilm(-0.1, 0.02, 1e-6)}]
-)
+@pytest.mark.parametrize("wrong", [{"damping_ratio": -0.1}, {"backlash_m": float("nan")}])
 def test_impossible_numbers_are_refused(wrong: dict) -> None:
     with pytest.raises(ValueError, match="allowed are finite values from 0"):
         law(**wrong)

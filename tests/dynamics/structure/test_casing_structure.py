@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.structure.body import Bolts, bolt_elements
-from siggen.dynamics.structure.casing_structure import casing_structure, torsional
+from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import eight_dof, vector
 from siggen.dynamics.time.modes import natural_modes
@@ -19,6 +19,7 @@ from tests.dynamics.casing_stage import (
     make_casing,
     make_stage,
     make_structure,
+    torsional,
 )
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 

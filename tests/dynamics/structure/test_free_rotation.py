@@ -3,17 +3,23 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.casing_structure import casing_structure, torsional
+from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.free_rotation import elastic_basis, free_rotations, static_solution
 from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof
+from siggen.dynamics.structure.structure import Structure, eight_dof
 from siggen.dynamics.time.equations import equations_about
 from siggen.dynamics.time.modes import slowest_decay_per_s
-from tests.dynamics.casing_stage import BASE_RADIUS_1, MEAN_STIFFNESS, make_casing, make_stage, make_structure
+from tests.dynamics.casing_stage import (
+    BASE_RADIUS_1,
+    MEAN_STIFFNESS,
+    make_casing,
+    make_stage,
+    make_structure,
+    torsional,
+)
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 STRUCTURES = {
-    "6dof": six_dof(make_stage()),
     "8dof": eight_dof(make_stage()),
     "torsional": torsional(make_stage()),
     "casing": make_structure(),

@@ -12,7 +12,7 @@ from siggen.dynamics.friction.contact_kinematics import relative_radius
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import CARRYING, FLANK, NORMAL
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, static_force
-from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
+from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.time.response import SampleGrid, response_of
 from tests.dynamics.casing_stage import make_structure
@@ -133,13 +133,3 @@ def test_the_casing_over_a_spall_through_the_face_shakes_as_computed_independent
     # 11.1 m/s² of a prototype whose layout and sensor were not recorded in full; found are 10.7.
     assert runs[1] == pytest.approx(11.1, rel=0.05)
     assert runs[0] == pytest.approx(runs[1], rel=1e-3)
-
-
-def test_a_film_between_a_sunk_flank_and_its_edges_is_as_thick_as_their_distance() -> None:
-    film = SqueezeFilm(0.112, 0.02, 0.8e-6)
-    wet = contact_law(WIDE, film=film)
-    radius = relative_radius(PITCH_POINT, PAIR.line_of_action_m)
-    force = loaded(wet, 5e-6, ALONE, 1e-3)[0, NORMAL]
-    gap = float(contact_of(WIDE).touch_m.max()) - 5e-6
-    # The position lies within a cell of the deepest one: 1 % of the sink, 1.5 % of the force.
-    assert force == pytest.approx(12.0 * np.pi * 0.112 * 0.02 * (0.5 * radius / gap) ** 1.5 * 1e-3, rel=0.03)

@@ -10,7 +10,6 @@ from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, SLIDING
-from siggen.dynamics.structure.casing_structure import torsional
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import eight_dof
 from siggen.dynamics.time.equations import no_inputs
@@ -18,7 +17,7 @@ from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
-from tests.dynamics.casing_stage import grounded_structure, make_stage, make_structure
+from tests.dynamics.casing_stage import grounded_structure, make_stage, make_structure, torsional
 from tests.dynamics.pair_runs import (
     MESHES,
     RELIEF,
