@@ -27,7 +27,6 @@ KEPT = ROOT / "tests" / "golden.json"
 PRESETS = (
     "paper_a",
     "paper_b",
-    "ideal",
     "quickstart",
     "bench",
     "families",

@@ -1,4 +1,4 @@
-"""The configurations that the benchmarks run: those that are shipped, some with values replaced."""
+"""The configurations that the benchmarks run: shipped ones and the quickest of the tests, some with values replaced."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from siggen.checks.loading import load_config
 from siggen.config import Config
 
 ROOT = Path(__file__).resolve().parents[1]
-QUICKSTART = ROOT / "configs" / "linear_pits.yaml"
+QUICKSTART = ROOT / "tests" / "configs" / "linear_pits.yaml"
 PAPER_A = ROOT / "configs" / "paper_a.yaml"
 PAPER_B = ROOT / "configs" / "paper_b.yaml"
 

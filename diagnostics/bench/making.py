@@ -29,7 +29,8 @@ from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
 
-PRESET = "siggen_bench"
+LEARNT = str(Path(__file__).with_name("siggen_bench.yaml"))
+"""The part of siggen-bench to learn from."""
 SECRET_FILE, SIMULATED, CARD = "secret", "simulated", "README.md"
 
 
@@ -53,7 +54,7 @@ class Wanted:
 
     tier: str = "tiny"
     size: Tier = TIERS["tiny"]
-    config: str | Mapping[str, Any] = PRESET
+    config: str | Mapping[str, Any] = LEARNT
     overrides: tuple[str, ...] = ()
     conditions: Mapping[str, Mapping[str, Any]] | None = None
     facts: Path | None = None

@@ -59,8 +59,13 @@ def make(
         ),
     ] = None,
     config: Annotated[
-        str, typer.Option(metavar="FILE", help="Configuration to learn from; one of lives asks how long they last.")
-    ] = "siggen_bench",
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Configuration to learn from, that of siggen-bench unless told; one of lives asks how long they last.",
+            show_default=False,
+        ),
+    ] = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE", help="Replace a value in all parts.", show_default=False),
@@ -83,7 +88,7 @@ def make(
     from diagnostics.base.progress import terminal_stage
     from diagnostics.bench.conditions import TIERS, Tier
     from diagnostics.bench.derived_secret import read_secret
-    from diagnostics.bench.making import SECRET_FILE, Wanted, make_benchmark
+    from diagnostics.bench.making import LEARNT, SECRET_FILE, Wanted, make_benchmark
     from diagnostics.scoring.benchmark import SECRET
     from siggen.errors import UsageError
 
@@ -93,7 +98,7 @@ def make(
     chosen = Tier(size.learn or usual.learn, size.test or usual.test)
     numbers = f" ({chosen.learn} gearboxes to learn from, {chosen.test} in a test part)" if chosen != usual else ""
     named = f"{size.tier}{numbers}"
-    wanted = Wanted(named, chosen, config, tuple(overrides or ()), facts=facts)
+    wanted = Wanted(named, chosen, config or LEARNT, tuple(overrides or ()), facts=facts)
     found = make_benchmark(out, folder, read_secret(folder / SECRET_FILE), wanted, workers, terminal_stage)
     typer.echo(str(found))
     typer.echo(f"publish {out}; never {folder}", err=True)

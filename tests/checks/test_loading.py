@@ -187,7 +187,7 @@ def test_every_configuration_that_ships_is_usable(path):
     assert load_config(loaded.canonical()) == loaded
 
 
-@pytest.mark.parametrize(("name", "records"), [("quickstart", 120), ("linear_pits", 240)])
+@pytest.mark.parametrize(("name", "records"), [("quickstart", 120), ("../tests/configs/linear_pits", 240)])
 def test_a_first_set_has_few_records_of_4_severities_that_grow(name, records):
     loaded = load_config(CONFIGS / f"{name}.yaml")
     assert plan(loaded).count == records

@@ -11,6 +11,7 @@ from siggen.checks.plausibility import implausible
 from siggen.config import yaml_text
 from siggen.errors import ConfigError
 
+PLAIN = str(Path(__file__).parents[1] / "configs" / "linear_pits.yaml")
 SOUND = "{teeth: [18, 47], module_mm: 3, face_width_mm: 20}"
 WRONG = [
     # (pair, what is told)
@@ -23,7 +24,7 @@ WRONG = [
 @pytest.mark.parametrize(("pair", "told"), WRONG)
 def test_a_pair_that_cannot_be_is_refused_by_name_and_the_others_are_not(pair: str, told: str) -> None:
     with pytest.raises(ConfigError) as refused:
-        load_config("linear_pits", [f"gears.pairs=[{SOUND}, {pair}]"])
+        load_config(PLAIN, [f"gears.pairs=[{SOUND}, {pair}]"])
     (problem,) = refused.value.problems
     assert problem.path == ("fs_hz" if told == "fs_hz" else "gears.pairs.1")
     assert told in f"{problem.path}: {problem.received}"
@@ -31,26 +32,26 @@ def test_a_pair_that_cannot_be_is_refused_by_name_and_the_others_are_not(pair: s
 
 def test_an_empty_list_is_refused_where_someone_wrote_it_and_not_in_a_stored_configuration(tmp_path: Path) -> None:
     own = tmp_path / "own.yaml"
-    own.write_text("extends: linear_pits\ngears:\n  pairs: []\n")
-    for source, overrides, where in ((own, [], "line 3"), ("linear_pits", ["gears.pairs=[]"], "--set gears.pairs")):
+    own.write_text(f"extends: {PLAIN}\ngears:\n  pairs: []\n")
+    for source, overrides, where in ((own, [], "line 3"), (PLAIN, ["gears.pairs=[]"], "--set gears.pairs")):
         with pytest.raises(ConfigError, match="a list without a pair; allowed: one pair at least, or null") as refused:
             load_config(source, overrides)
         assert refused.value.problems[0].where == where
-    plain = load_config("linear_pits", ["gears.pairs=null"])
+    plain = load_config(PLAIN, ["gears.pairs=null"])
     stored = tmp_path / "config.yaml"
     stored.write_text(yaml_text(plain.canonical()))
     assert "pairs: []" in stored.read_text()
-    assert load_config(stored).identity == load_config("linear_pits").identity
+    assert load_config(stored).identity == load_config(PLAIN).identity
 
 
 def test_damage_that_may_be_on_either_gear_is_checked_on_both() -> None:
     layered = "states.1.damage={{kind: layered, gear: {}, layers: 1, pits_per_layer: 1, first_height_mm: 1.2, \
 semi_axis_face_mm: 0.2, semi_axis_profile_mm: 0.2, depth_mm: 0.1}}"
-    load_config("linear_pits", [layered.format("pinion")])
+    load_config(PLAIN, [layered.format("pinion")])
     found = {}
     for gear in ("gear", "either"):
         with pytest.raises(ConfigError) as refused:
-            load_config("linear_pits", [layered.format(gear)])
+            load_config(PLAIN, [layered.format(gear)])
         found[gear] = [str(problem) for problem in refused.value.problems]
     assert found["gear"] == found["either"]
 

@@ -66,14 +66,14 @@ def test_a_record_is_measured_by_the_turns_of_the_slowest_shaft_which_is_called_
 
 
 def test_idealised_sets_say_what_they_lack() -> None:
-    found = "\n".join(implausible(load_config("ideal")))
+    found = "\n".join(implausible(load_config("tests/configs/ideal.yaml")))
     assert "perfect gears" in found
     assert "no noise at all" in found
 
 
 def test_pink_noise_alone_is_noise() -> None:
     pink = "sensors.0.pink_noise={density_m_s2_per_sqrt_hz: 0.001}"
-    assert "no noise at all" not in "\n".join(implausible(load_config("ideal", [pink])))
+    assert "no noise at all" not in "\n".join(implausible(load_config("tests/configs/ideal.yaml", [pink])))
 
 
 def test_one_gear_pair_cannot_be_split_by_pairs_and_all_can() -> None:
@@ -84,7 +84,7 @@ def test_one_gear_pair_cannot_be_split_by_pairs_and_all_can() -> None:
 def test_only_sensors_of_which_nothing_is_drawn_are_called_identical() -> None:
     def said(*sensors: str) -> bool:
         silent = [f"sensors=[{', '.join(sensors)}]", "background=null"]
-        return "identical, bit by bit" in "\n".join(implausible(load_config("ideal", silent)))
+        return "identical, bit by bit" in "\n".join(implausible(load_config("tests/configs/ideal.yaml", silent)))
 
     accelerometers = "{{name: one{0}}}, {{name: two{0}}}"
     assert said(accelerometers.format(""))

@@ -119,11 +119,11 @@ def test_an_unexpected_error_is_raised_where_details_are_wanted(monkeypatch):
 
 
 def test_a_wrong_configuration_is_reported_on_stderr_without_a_traceback():
-    result = siggen_command("plan", "configs/linear_pits.yaml", "--set", "gears.modul_mm=3", "--set", "seed=x")
+    result = siggen_command("plan", "tests/configs/linear_pits.yaml", "--set", "gears.modul_mm=3", "--set", "seed=x")
     assert result.returncode == 2
     assert result.stdout == ""
     assert "Traceback" not in result.stderr
-    assert "configs/linear_pits.yaml with overrides: 2 problems" in result.stderr
+    assert "tests/configs/linear_pits.yaml with overrides: 2 problems" in result.stderr
     assert "gears.modul_mm: received 3; there is no such key here; did you mean 'module_mm'?" in result.stderr
 
 

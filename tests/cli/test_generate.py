@@ -77,7 +77,7 @@ def test_another_set_in_the_folder_is_a_usage_error(config: Path, tmp_path: Path
 
 
 SCRIPT = str(Path(sys.executable).parent / "siggen")
-QUICKSTART = str(Path(__file__).parents[2] / "configs/linear_pits.yaml")
+QUICKSTART = str(Path(__file__).parents[2] / "tests/configs/linear_pits.yaml")
 SMALL = ["--set", "specimens=2", "--set", "duration_s=0.2", "--set", "fs_hz=20480", "--set", "mesh_harmonics=2"]
 
 

@@ -16,7 +16,7 @@ runner = CliRunner()
 
 
 def healthy_set(folder: Path) -> Path:
-    content = yaml.safe_load(Path("configs/ideal.yaml").read_text())
+    content = yaml.safe_load(Path("tests/configs/ideal.yaml").read_text())
     content["states"], content["specimens"] = [{"name": "healthy"}], 1
     content["splits"] = {"train": 20, "validation": 0, "test": 0}
     content["mesh_harmonics"] = 8
@@ -53,7 +53,10 @@ def test_what_helical_teeth_cannot_do_yet_is_refused_by_its_path() -> None:
 
 def test_only_spur_teeth_enter_a_spall_along_a_whole_line() -> None:
     options = ["--trial", "0", "--set", "dynamics.friction.model=off", "--set", "gears.helix_deg="]
-    spur, helical = (runner.invoke(app, ["plan", "ideal", *options[:-1], options[-1] + helix]) for helix in ("0", "15"))
+    spur, helical = (
+        runner.invoke(app, ["plan", "tests/configs/ideal.yaml", *options[:-1], options[-1] + helix])
+        for helix in ("0", "15")
+    )
     assert spur.exit_code == helical.exit_code == 0, helical.output
     assert "whole contact line" in " ".join(spur.output.split())
     assert "whole contact line" not in " ".join(helical.output.split())

@@ -43,6 +43,6 @@ def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> N
 
 
 def test_a_set_without_paths_says_how_to_add_one() -> None:
-    result = runner.invoke(app, ["inspect", "path", "configs/linear_pits.yaml"])
+    result = runner.invoke(app, ["inspect", "path", "tests/configs/linear_pits.yaml"])
     assert isinstance(result.exception, UsageError)
     assert "housing that gives way" in str(result.exception)

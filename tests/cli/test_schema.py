@@ -84,14 +84,14 @@ def _mappings(part):
         yield from _mappings(inner)
 
 
-@pytest.mark.parametrize("name", ["linear_pits", "quickstart", "paper_a"])
+@pytest.mark.parametrize("name", ["helical", "quickstart", "paper_a"])
 def test_an_editor_with_the_schema_accepts_the_shipped_configurations(schema, name):
     jsonschema.Draft202012Validator.check_schema(schema)
     jsonschema.validate(read_yaml(f"configs/{name}.yaml"), schema)
 
 
 def test_an_editor_with_the_schema_marks_a_misspelt_key(schema):
-    wrong = {**read_yaml("configs/linear_pits.yaml"), "specimen": 3}
+    wrong = {**read_yaml("tests/configs/linear_pits.yaml"), "specimen": 3}
     with pytest.raises(jsonschema.ValidationError, match="specimen"):
         jsonschema.validate(wrong, schema)
 

@@ -26,9 +26,9 @@ def run(*arguments: object) -> None:
 
 
 def test_the_table_holds_the_stored_signal_and_what_no_sensor_sees(tmp_path: Path) -> None:
-    run("configs/linear_pits.yaml", "--record", 6, "--out", tmp_path / "record.parquet")
+    run("tests/configs/linear_pits.yaml", "--record", 6, "--out", tmp_path / "record.parquet")
     table = pyarrow.parquet.read_table(tmp_path / "record.parquet")
-    config = load_config("configs/linear_pits.yaml", SET[1::2])
+    config = load_config("tests/configs/linear_pits.yaml", SET[1::2])
     record = next(simulate_specimen(config, [6]))
     for channel, signal in record.channels.items():
         assert np.array_equal(table[f"accel_{channel}_m_s2"].to_numpy(), signal)
@@ -42,10 +42,10 @@ def test_the_table_holds_the_stored_signal_and_what_no_sensor_sees(tmp_path: Pat
 
 def test_a_record_that_the_set_does_not_have_is_refused_with_the_range(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="has 8 records, 0 to 7"):
-        run("configs/linear_pits.yaml", "--record", 8, "--out", tmp_path / "record.parquet")
+        run("tests/configs/linear_pits.yaml", "--record", 8, "--out", tmp_path / "record.parquet")
 
 
-@pytest.mark.parametrize("file", ["configs/linear_pits.yaml", "tests/configs/casing.yaml"])
+@pytest.mark.parametrize("file", ["tests/configs/linear_pits.yaml", "tests/configs/casing.yaml"])
 def test_the_transmission_error_is_the_deflection_of_the_teeth_under_load(tmp_path: Path, file: str) -> None:
     run(file, "--record", 0, "--out", tmp_path / "record.parquet")
     table = pyarrow.parquet.read_table(tmp_path / "record.parquet")
@@ -57,8 +57,8 @@ def test_the_transmission_error_is_the_deflection_of_the_teeth_under_load(tmp_pa
 
 
 def test_internals_can_be_left_out(tmp_path: Path) -> None:
-    run("configs/linear_pits.yaml", "--record", 0, "--signals", "--out", tmp_path / "signals.parquet")
-    run("configs/linear_pits.yaml", "--record", 0, "--internals", "--out", tmp_path / "all.parquet")
+    run("tests/configs/linear_pits.yaml", "--record", 0, "--signals", "--out", tmp_path / "signals.parquet")
+    run("tests/configs/linear_pits.yaml", "--record", 0, "--internals", "--out", tmp_path / "all.parquet")
     signals, everything = (pyarrow.parquet.read_table(tmp_path / f"{name}.parquet") for name in ("signals", "all"))
     assert signals.column_names == [
         "time_s",

@@ -48,7 +48,7 @@ def test_the_stiffness_is_the_same_until_the_contact_reaches_the_pits(tmp_path: 
 
 
 def test_the_interpolation_error_of_the_tables_is_told(tmp_path: Path) -> None:
-    said = run("configs/linear_pits.yaml", "--out", tmp_path / "tvms.csv")
+    said = run("tests/configs/linear_pits.yaml", "--out", tmp_path / "tvms.csv")
     found = re.search(r"tables of (\d+) points, .* within ([\d.e-]+) %", said)
     assert found is not None
     assert int(found[1]) == TABLE_POINTS
@@ -58,7 +58,13 @@ def test_the_interpolation_error_of_the_tables_is_told(tmp_path: Path) -> None:
 def test_coupled_teeth_are_softer_in_double_contact_and_the_same_in_single_contact(tmp_path: Path) -> None:
     curves = []
     for coupling in ("none", "body"):
-        run("configs/linear_pits.yaml", "--out", tmp_path / "tvms.parquet", "--set", f"stiffness.coupling={coupling}")
+        run(
+            "tests/configs/linear_pits.yaml",
+            "--out",
+            tmp_path / "tvms.parquet",
+            "--set",
+            f"stiffness.coupling={coupling}",
+        )
         curves.append(pyarrow.parquet.read_table(tmp_path / "tvms.parquet")["healthy_n_per_m"].to_numpy())
     ratio = curves[1] / curves[0]
     # About a third of a pitch is single contact (contact ratio 1.64); elsewhere the teeth share two bodies.
@@ -92,7 +98,7 @@ def test_parts_add_up_to_the_pair_of_the_damaged_tooth(tmp_path: Path) -> None:
 def test_limits_of_the_models_are_told_beside_the_table(tmp_path: Path) -> None:
     out = str(tmp_path / "tvms.csv")
     result = runner.invoke(
-        app, ["inspect", "tvms", "configs/linear_pits.yaml", "--out", out, "--set", "gears.gear.bore_radius_mm=8"]
+        app, ["inspect", "tvms", "tests/configs/linear_pits.yaml", "--out", out, "--set", "gears.gear.bore_radius_mm=8"]
     )
     assert result.exit_code == 0
     assert "gear (47 teeth): calibration: h_f" in result.stderr
@@ -109,7 +115,7 @@ def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
     spall = "{kind: spall, teeth: 1, profile_length_mm: 1.5, face_length_mm: 20.0, depth_mm: 0.2}"
     states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"
     arguments = ("--parts", "--potential-energy", "--torque", 45, "--png", tmp_path / "tvms.png", "--set", states)
-    said = run("configs/ideal.yaml", "--out", tmp_path / "tvms.csv", *arguments)
+    said = run("tests/configs/ideal.yaml", "--out", tmp_path / "tvms.csv", *arguments)
     assert "quasi-static mesh stiffness at 45\u00a0N\u00a0m: force over approach, as simulated" in said
     table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
     columns = {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
@@ -139,7 +145,7 @@ def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
 
 
 def test_where_damage_takes_stiffness_the_curve_is_the_potential_energy_and_has_no_sink(tmp_path: Path) -> None:
-    said = run("configs/linear_pits.yaml", "--out", tmp_path / "tvms.parquet", "--potential-energy")
+    said = run("tests/configs/linear_pits.yaml", "--out", tmp_path / "tvms.parquet", "--potential-energy")
     assert "mesh stiffness by potential energy" in said
     names = pyarrow.parquet.read_table(tmp_path / "tvms.parquet").column_names
     assert not [name for name in names if "sink" in name or "potential" in name]

@@ -39,7 +39,7 @@ def test_a_file_of_that_name_goes_first_and_a_folder_does_not(monkeypatch: pytes
     ("unknown", "meant"),
     [
         ("quikstart", "; did you mean 'quickstart'?"),
-        ("configs" + "/idael.yaml", "; did you mean 'ideal'?"),
+        ("configs" + "/helcial.yaml", "; did you mean 'helical'?"),
         ("sub/quickstart", ";"),
     ],
 )

@@ -87,11 +87,13 @@ def test_the_loading_example_of_the_card_runs(folder: Path, monkeypatch: pytest.
 
 
 def shipped(name: str, *overrides: str) -> Config:
-    return load_config(f"configs/{name}.yaml", overrides)
+    return load_config(name, overrides)
 
 
 def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
-    stiffness, geometry, both = (damage_text(shipped(name)) for name in ("linear_pits", "quickstart", "paper_b"))
+    stiffness, geometry, both = (
+        damage_text(shipped(name)) for name in ("tests/configs/linear_pits.yaml", "quickstart", "paper_b")
+    )
     assert "remove material from the tooth's sections" in stiffness
     assert "sinks" not in stiffness
     assert "the mating flank sinks" in geometry
@@ -103,7 +105,7 @@ def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
 
 
 def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
-    plain, rich = (making(shipped(name)) for name in ("linear_pits", "quickstart"))
+    plain, rich = (making(shipped(name)) for name in ("tests/configs/linear_pits.yaml", "quickstart"))
     longest = max(map(len, [*plain.splitlines(), *rich.splitlines()]))
     plain, rich = (" ".join(text.split()) for text in (plain, rich))
     assert "no friction between the flanks" in plain
@@ -113,7 +115,7 @@ def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
     assert "Within a record speed and torque vary" in rich
     assert "through a box of plates on bolts" in rich
     assert "box of plates" not in plain
-    torque = shipped("linear_pits", "variation.torque.random_rms=0.01")
+    torque = shipped("tests/configs/linear_pits.yaml", "variation.torque.random_rms=0.01")
     assert drive_text(torque) == "Within a record torque varies (`variation`); the speed is constant."
     assert "Shafts bend" not in plain
     assert "healthy machine adds" not in plain

@@ -25,9 +25,9 @@ from siggen.specimen.structure import structure
 SHORT = ["duration_s=0.05", "specimens=2"]
 
 
-@pytest.mark.parametrize("name", ["linear_pits", "paper_b"])
+@pytest.mark.parametrize("name", ["tests/configs/linear_pits.yaml", "configs/paper_b.yaml"])
 def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None:
-    config = load_config(f"configs/{name}.yaml", [*SHORT, "internals.records=all"])
+    config = load_config(name, [*SHORT, "internals.records=all"])
     names = {column.name for column in stored_quantities(config)}
     last = config.records_per_specimen * 2 - 1
     for record in simulate(config, [0, last]):
@@ -37,7 +37,7 @@ def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None
 
 
 def test_stored_series_are_those_of_the_command(tmp_path) -> None:
-    config = load_config("configs/linear_pits.yaml", [*SHORT, "internals.records=first_of_state"])
+    config = load_config("tests/configs/linear_pits.yaml", [*SHORT, "internals.records=first_of_state"])
     stored, unchosen = simulate(config, [2, 3])
     table = internals_table(config, 2)
     assert unchosen.internals is None
@@ -50,7 +50,7 @@ def test_stored_series_are_those_of_the_command(tmp_path) -> None:
 
 def test_signals_do_not_depend_on_whether_internals_are_stored() -> None:
     with_them, without = (
-        simulate(load_config("configs/linear_pits.yaml", [*SHORT, *extra]), [1])[0]
+        simulate(load_config("tests/configs/linear_pits.yaml", [*SHORT, *extra]), [1])[0]
         for extra in (["internals.records=all"], [])
     )
     for channel, signal in without.channels.items():
@@ -71,7 +71,7 @@ def test_units_follow_from_the_names() -> None:
 def test_quantities_that_the_model_lacks_are_refused_at_load_beside_the_nearest_names() -> None:
     asked = "internals.quantities=[mesh_force_n, mesh_stifness, all, x_c_m]"
     with pytest.raises(ConfigError) as caught:
-        load_config("configs/linear_pits.yaml", [*SHORT, asked])
+        load_config("tests/configs/linear_pits.yaml", [*SHORT, asked])
     first, second = caught.value.problems
     assert (first.path, first.received) == ("internals.quantities.1", "'mesh_stifness'")
     assert "nearest: mesh_stiffness_n_per_m, " in first.allowed
@@ -80,7 +80,9 @@ def test_quantities_that_the_model_lacks_are_refused_at_load_beside_the_nearest_
 
 
 def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_stored() -> None:
-    parsed = parse(parse_yaml(Path("configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_c_m]}\n"))
+    parsed = parse(
+        parse_yaml(Path("tests/configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_c_m]}\n")
+    )
     with pytest.raises(ConfigError, match=r"internals\.quantities\.0: received 'x_c_m'"):
         stored_quantities(parsed.config)
 
@@ -119,7 +121,9 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
 STREAMED = ["specimens=1", "internals.records=all"]
 
 
-@pytest.mark.parametrize("name", ["configs/linear_pits.yaml", "configs/quickstart.yaml", "tests/configs/casing.yaml"])
+@pytest.mark.parametrize(
+    "name", ["tests/configs/linear_pits.yaml", "configs/quickstart.yaml", "tests/configs/casing.yaml"]
+)
 def test_streamed_internals_are_those_of_the_whole_response_to_the_last_bit(name: str) -> None:
     config = load_config(name, [*STREAMED, "duration_s=0.2"])  # more than two blocks
     planned, specimen = planned_record(config, 1), draw_specimen(config, 0)
@@ -151,7 +155,7 @@ def test_memory_of_internals_grows_by_what_is_delivered() -> None:
         4.0,
         8.0,
     ):  # the first one fills caches; from a filter's block of 2.6 s on nothing else grows
-        config = load_config("configs/linear_pits.yaml", [*STREAMED, few, f"duration_s={duration_s}"])
+        config = load_config("tests/configs/linear_pits.yaml", [*STREAMED, few, f"duration_s={duration_s}"])
         tracemalloc.start()
         (record,) = simulate(config, [0])
         peaks.append(tracemalloc.get_traced_memory()[1])

@@ -21,15 +21,17 @@ THREADS = (1, 3, 16)
 
 SHORT = ["duration_s=0.02", "specimens=1"]
 CONFIGS = {
-    "linear_pits": [*SHORT, "internals.records=all"],  # product integration
-    "bench": SHORT,  # tooth pairs across the face, 47 teeth with errors and waves, coupling, the linearised gearbox
+    "tests/configs/linear_pits.yaml": [*SHORT, "internals.records=all"],  # product integration
+    "configs/bench.yaml": SHORT,  # tooth pairs across the face, 47 teeth with errors and waves, coupling
 }
 
 
-@pytest.mark.parametrize("name", ["bench", pytest.param("linear_pits", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name", ["configs/bench.yaml", pytest.param("tests/configs/linear_pits.yaml", marks=pytest.mark.slow)]
+)
 def test_a_record_has_the_same_bits_for_any_number_of_numeric_threads(name: str) -> None:
     threadpoolctl = pytest.importorskip("threadpoolctl")
-    config = load_config(f"configs/{name}.yaml", CONFIGS[name])
+    config = load_config(name, CONFIGS[name])
     record_id = config.records_per_specimen - 1
     found = []
     for threads in THREADS:

@@ -20,7 +20,7 @@ SMALL = ["specimens=2", "duration_s=0.1", "dynamics.input_coupling.damping_nm_s_
 
 @pytest.fixture(scope="module")
 def config() -> Config:
-    return load_config("configs/linear_pits.yaml", SMALL)
+    return load_config("tests/configs/linear_pits.yaml", SMALL)
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,7 @@ def test_tacho_times_are_whole_turns_of_the_angle(specimen: list[Record]) -> Non
 def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_records() -> None:
     # Wide pits cover the face together: no contact length is left, which only the draw can show.
     config = load_config(
-        "configs/linear_pits.yaml",
+        "tests/configs/linear_pits.yaml",
         [*SMALL, "states.3.damage.semi_axis_face_mm=6.0"],
     )
     results = list(simulate_specimen(config, range(config.records_per_specimen)))
@@ -107,14 +107,14 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
 
 def test_a_torque_that_no_teeth_carry_is_a_failure_of_the_records_with_the_reason() -> None:
     law = ["dynamics.mesh.law=pairs", *(f"operating_points.{i}.torque_nm=2.0e+4" for i in range(2))]
-    results = list(simulate_specimen(load_config("configs/linear_pits.yaml", [*SMALL, *law]), [0, 2]))
+    results = list(simulate_specimen(load_config("tests/configs/linear_pits.yaml", [*SMALL, *law]), [0, 2]))
     assert [r.status for r in results if isinstance(r, RecordFailure)] == ["outside_model"] * 2
     assert all("forces that teeth carry" in r.reason for r in results if isinstance(r, RecordFailure))
 
 
 def test_bearings_may_be_as_good_as_rigid() -> None:
     stiff = [f"dynamics.{g}.bearing_stiffness_{axis}_n_per_m=1.0e+15" for axis in "xy" for g in ("pinion", "gear")]
-    (record,) = simulate_specimen(load_config("configs/linear_pits.yaml", [*SMALL, *stiff]), [0])
+    (record,) = simulate_specimen(load_config("tests/configs/linear_pits.yaml", [*SMALL, *stiff]), [0])
     assert isinstance(record, Record)
     # 4 kN on 1e15 N/m: nothing is left but half a step of the converter and the noise.
     assert max(signal.std() for signal in record.channels.values()) < 25.0
@@ -136,7 +136,7 @@ PAIRS = (
 
 
 def test_gearboxes_of_a_set_of_pairs_are_those_of_sets_of_one_pair_with_labels_that_tell_the_pair() -> None:
-    config = load_config("configs/linear_pits.yaml", [*SMALL, PAIRS])
+    config = load_config("tests/configs/linear_pits.yaml", [*SMALL, PAIRS])
     last = config.records_per_specimen - 1
     for specimen_id in range(2):
         index = pair_of(config, specimen_id)

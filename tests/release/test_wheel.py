@@ -66,7 +66,7 @@ def test_the_steps_of_the_container_file_give_a_siggen_that_runs(tmp_path: Path)
     (root / "sets").mkdir()
     small = [
         "generate",
-        "linear_pits",
+        "paper_a",
         "--set",
         "specimens=1",
         "--set",

@@ -26,7 +26,7 @@ FORCES = ["dynamics.unbalance.grade_mm_s=6.3"]
 
 
 def load(*overrides: str) -> Config:
-    return load_config("configs/linear_pits.yaml", [*SMALL, *overrides])
+    return load_config("tests/configs/linear_pits.yaml", [*SMALL, *overrides])
 
 
 def drive_of(config: Config, record_id: int, start_rad: float = 0.5) -> RecordDrive:

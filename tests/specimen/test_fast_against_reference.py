@@ -23,7 +23,7 @@ from siggen.specimen.motion import specimen_motion
 from siggen.specimen.step_choice import stepped_motion
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-PRESETS = ("bench", "confusers", "families", "ideal", "paper_b", "quickstart", "two_stage")
+PRESETS = ("bench", "confusers", "families", "paper_b", "quickstart", "two_stage")
 """Those with the law pairs; `industrial` is `bench` with longer records."""
 REFERENCE_STEPS = 64
 WINDOW_S, STARTING_S = 0.04, 0.01
@@ -85,8 +85,8 @@ def test_a_random_record_of_every_preset_meets_the_stated_error(preset: str) -> 
 
 def test_every_preset_that_takes_the_exponential_integrator_is_drawn_from() -> None:
     methods = {path.stem: siggen.load_config(path).dynamics.method for path in CONFIGS.glob("*.yaml")}
-    # industrial and siggen_bench are bench, fleets quickstart; helical and planetary have references of their own
-    others = {"industrial", "siggen_bench", "fleet", "fleet_500", "helical", "planetary"}
+    # industrial is bench, fleet quickstart; helical and planetary have references of their own
+    others = {"industrial", "fleet", "helical", "planetary"}
     assert {name for name, method in methods.items() if method == "exponential"} == {*PRESETS, *others}
 
 

@@ -33,7 +33,7 @@ def test_what_the_model_does_not_give_is_refused_by_the_name_of_the_sensor(monke
         return {Input("angle", "pinion"): 1.0}
 
     monkeypatch.setattr(Accelerometer, "shows", shows)
-    config = siggen.load_config("ideal")
+    config = siggen.load_config("tests/configs/ideal.yaml")
     with pytest.raises(ValueError, match=f"sensor {config.sensors[0].name}: shows angle pinion"):
         siggen.simulate(config, [0])
 

@@ -248,7 +248,7 @@ def test_scipy_gives_the_motion_with_damping_by_asperity_share(coupling: str) ->
     ("file", "record", "overrides"),
     [
         ("configs/paper_a.yaml", 0, []),
-        ("configs/linear_pits.yaml", 0, []),
+        ("tests/configs/linear_pits.yaml", 0, []),
         ("configs/paper_b.yaml", 0, []),
         ("tests/configs/casing.yaml", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
         ("configs/bench.yaml", 5, []),
@@ -277,7 +277,7 @@ def described(model: Mapping, meshes: int) -> None:
 def test_the_archive_is_the_same_whenever_it_is_written_and_needs_no_pickle(tmp_path: Path) -> None:
     files = [tmp_path / "a.npz", tmp_path / "b.npz"]
     for file in files:
-        arguments = ["configs/linear_pits.yaml", "--record", "5", "--out", str(file), "--set", "duration_s=0.1"]
+        arguments = ["tests/configs/linear_pits.yaml", "--record", "5", "--out", str(file), "--set", "duration_s=0.1"]
         result = runner.invoke(app, ["export-model", *arguments], catch_exceptions=False)
         assert result.output.strip() == str(file)
     assert files[0].read_bytes() == files[1].read_bytes()

@@ -19,7 +19,7 @@ PITS = {
     "spread_profile_mm": 0.3, "semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3,
 }  # fmt: skip
 CONFIG = {
-    "extends": "linear_pits",
+    "extends": "tests/configs/linear_pits.yaml",
     "fs_hz": 12_800,
     "duration_s": 0.3,
     "mesh_harmonics": 3,

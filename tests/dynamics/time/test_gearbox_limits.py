@@ -169,14 +169,16 @@ def test_a_perfect_pair_repeats_after_every_mesh() -> None:
         assert np.abs(signal - signal[0]).max() < 1e-8 * signal.std(), name  # what is left of the transient
 
 
-@pytest.mark.parametrize("name", ["paper_a", "linear_pits", "paper_b", "quickstart"])
+@pytest.mark.parametrize(
+    "name", ["configs/paper_a", "tests/configs/linear_pits", "configs/paper_b", "configs/quickstart"]
+)
 def test_halving_the_step_of_a_shipped_set_changes_its_signals_by_less_than_a_thousandth(name: str) -> None:
-    config = load_config(f"configs/{name}.yaml", ["duration_s=0.1", "specimens=1"])
+    config = load_config(f"{name}.yaml", ["duration_s=0.1", "specimens=1"])
     steps = config.dynamics.steps_per_sample
     levels = []
     for factor in (1, 2):
         chosen = load_config(
-            f"configs/{name}.yaml",
+            f"{name}.yaml",
             ["duration_s=0.1", "specimens=1", f"dynamics.steps_per_sample={factor * steps}"],
         )
         record = planned_record(chosen, chosen.records_per_specimen - 1)
