@@ -27,7 +27,7 @@ MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
 PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"
 OILS = "dynamics.friction.oil=[ISO VG 100, ISO VG 220]"
 AROUND = (
-    "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, belt: {}, second_stage: {order: 7}, "
+    "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, second_stage: {order: 7}, "
     "auxiliary_drive: {order: 20}}"
 )
 SHAM = (

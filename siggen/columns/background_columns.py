@@ -30,12 +30,6 @@ SHAFTS = tuple(
     (f"coupling_force_{shaft}_n", "N", f"once per turn, of the misaligned coupling on the {shaft}'s shaft")
     for shaft in ("pinion", "gear")
 )
-BELT = (
-    ("belt_order", "", "passes of the belt, per turn of the pinion"),
-    ("belt_pull_n", "N", "mean pull of both strands of the belt on its shaft"),
-    ("belt_force_n", "N", "first line of the belt's passes"),
-    ("belt_runout_force_n", "N", "once per turn of its shaft, of the belt's pulley that runs out"),
-)
 
 
 def background_columns(config: Config) -> tuple[Column, ...]:
@@ -43,7 +37,7 @@ def background_columns(config: Config) -> tuple[Column, ...]:
     section = config.background
     if section is None:
         return ()
-    parts = {"bearings": BEARINGS, "machines": MACHINES, "rubbing": RUBBING, "shafts": SHAFTS, "belt": BELT}
+    parts = {"bearings": BEARINGS, "machines": MACHINES, "rubbing": RUBBING, "shafts": SHAFTS}
     numbers = [one for part, columns in parts.items() if getattr(section, part) is not None for one in columns]
     for name in ("second_stage", "auxiliary_drive"):
         if getattr(section, name) is not None:

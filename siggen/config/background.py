@@ -8,7 +8,7 @@ a published number, "assumed" an engineering judgement.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
@@ -72,24 +72,6 @@ class ShaftLines(Section):
     )
 
 
-class Belt(Section):
-    """A belt that drives a shaft or is driven by it: lines of its passes and of its pulley's run-out."""
-
-    shaft: Literal["pinion", "gear"] = Field(default="pinion", description="which shaft carries the pulley")
-    order: Annotated[Number, Within(above=0, below=1)] = Field(
-        default=Uniform(low=0.2, high=0.7),
-        description="passes of the belt per turn of that shaft: the pulley's circumference over the belt's length "
-        "(source: centre distance 0.7 to 2 sums of both diameters, ratio up to 2)",
-    )
-    pull_n: Annotated[Number | None, Within(least=0, most=1_000_000, words=(None,))] = Field(
-        default=None, description="mean pull of both strands on the shaft; null: of a belt tensioned for the torque"
-    )
-    force_share: Annotated[Number, Within(least=0, most=1)] = Field(
-        default=LogUniform(low=0.01, high=0.05),
-        description="line of the passes over the pull (derived: pitch line uneven by 0.05 to 0.15 mm)",
-    )
-
-
 class ForeignMesh(Section):
     """Lines of an undamaged mesh that is not simulated, with sidebands of a shaft; presses on the housing."""
 
@@ -112,6 +94,5 @@ class Background(Section):
     bearings: Bearings | None = Field(default=None, description="null: none")
     machines: Machines | None = Field(default=None, description="null: none")
     shafts: ShaftLines | None = Field(default=None, description="null: none")
-    belt: Belt | None = Field(default=None, description="null: none")
     second_stage: ForeignMesh | None = Field(default=None, description="a stage that shares a shaft; null: none")
     auxiliary_drive: ForeignMesh | None = Field(default=None, description="a pump or other drive; null: none")

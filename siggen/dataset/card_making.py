@@ -37,7 +37,6 @@ BACKGROUND = {
     "bearings": "noise of its rolling bearings",
     "machines": "noise of motor and load",
     "shafts": "lines of its shafts",
-    "belt": "lines of a belt on one of them",
     "second_stage": "a second gear stage",
     "auxiliary_drive": "an auxiliary drive",
 }

@@ -19,7 +19,6 @@ from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course, course_at
 from siggen.record.bearing_noise import BearingVelocities
-from siggen.record.belt import belt_force
 from siggen.record.rubbing import RubbingForce
 from siggen.record.set_rubbing import SetRubbing
 from siggen.sensing.force_density import contact_filter, rising_floor
@@ -125,10 +124,6 @@ def line_forces(
         for name, force in _shaft(drawn, course, shaft):
             add(name, force)
         labels[f"coupling_force_{shaft}_n"] = _coupling_force_n(drawn)
-    if section.belt is not None:
-        force, of_belt = belt_force(section.belt, course)
-        add("belt", force)
-        labels |= of_belt
     for name, mesh in (("second_stage", section.second_stage), ("auxiliary_drive", section.auxiliary_drive)):
         if mesh is not None:
             comb = _foreign(mesh, course, name)

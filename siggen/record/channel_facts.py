@@ -13,7 +13,6 @@ from siggen.noise.source import Draws
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import noise_levels
 from siggen.seeding import Stage, named_generator, named_uniforms
-from siggen.sensing.dropout import Gaps, dropout_gaps
 from siggen.sensing.measurement import Measurement
 from siggen.sensors.path import MeasuredPath
 from siggen.specimen.drive import record_owner
@@ -38,13 +37,6 @@ def white_noise(
     rng = named_generator(config.seed, Stage.NOISE, *record_owner(record), name=channel.name)
     floor, u = channel.sensor.noise_floor, draws.level("noise", rng)
     return rng, None if floor is None else at(floor, u)
-
-
-def lost_gaps(config: Config, channel: ChannelInstrument, draws: Draws) -> Gaps:
-    """Return the samples that its cable loses."""
-    rng = draws.record("dropout")
-    share = at(channel.sensor.dropout_share, float(rng.random()))
-    return dropout_gaps(config.samples, config.fs_hz, share, rng)
 
 
 def _named(seed: int, owner: tuple[int, ...], channel: str, part: str) -> np.random.Generator:

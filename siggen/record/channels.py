@@ -20,7 +20,7 @@ from siggen.noise.source import Draws, NoisyChannel
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.block_inputs import BlockInputs
-from siggen.record.channel_facts import channel_draws, channel_labels, lost_gaps, white_noise
+from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
@@ -164,7 +164,6 @@ def _disturbances(
             bits=channel.sensor.converter_bits,
             rng=rng,
             noise_floor=floor,
-            gaps=lost_gaps(config, channel, draws),
         )
     return found
 

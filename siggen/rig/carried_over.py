@@ -94,7 +94,6 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
             "machines.density_n_per_sqrt_hz": scales.load,
             "shafts.coupling_stiffness_n_per_um": scales.load,
             "shafts.rotor_mass_kg": mass,
-            "belt.pull_n": scales.load,
             "second_stage.order": scales.gear_order,
         },
     }

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
-
-from siggen.arrays import ComplexArray
+from typing import NamedTuple
 
 MOTION, FORCE, SHAFT, BACKGROUND = "motion", "force", "shaft", "background"
 
@@ -14,7 +12,3 @@ class Input(NamedTuple):
 
     kind: str
     name: str
-
-
-Weight: TypeAlias = float | ComplexArray
-"""How much of an input a channel shows: at all frequencies alike, or a factor (k,) at each."""

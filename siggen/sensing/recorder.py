@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.sensing.dropout import silence
 from siggen.sensing.measurement import Measurement, converted, ratio_db
 from siggen.sensing.spread import Spread
 
@@ -42,7 +39,6 @@ class Recorder:
         bits: int | None,
         rng: np.random.Generator,
         noise_floor: float | None,
-        gaps: Sequence[tuple[int, int]] = (),
     ) -> None:
         """Say how `convert` turns what was taken into what is stored.
 
@@ -56,10 +52,8 @@ class Recorder:
             Of the white noise.
         noise_floor : float or None
             Its standard deviation; None without.
-        gaps : sequence of (first, end)
-            Samples that are lost.
         """
-        self._limit, self._bits, self._rng, self._gaps = limit, bits, rng, gaps
+        self._limit, self._bits, self._rng = limit, bits, rng
         self._rms = self._spread.std
         self._floor = noise_floor
         self._clipped, self._step, self._done = 0, 0.0, 0
@@ -72,7 +66,6 @@ class Recorder:
             noisy += self._floor * self._rng.standard_normal(count)
         if added is not None:
             noisy += added
-        silence(noisy, self._done, self._gaps)
         part[:], clipped, self._step = converted(noisy, self._limit, self._bits)
         self._clipped += clipped
         self._done += count

@@ -86,9 +86,6 @@ class Accelerometer(SourceKeys, Sensor):
     high_pass_hz: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="corner of the coupling capacitor (first order); null: none"
     )
-    mass_g: Annotated[Number, Within(least=0, most=10_000)] = Field(
-        default=0.0, description="of the sensor with its stud or magnet, which its place carries"
-    )
     mounting: Resonance | None = Field(default=None, description="of the sensor on its stud or magnet; null: rigid")
     resonance: Resonance | None = Field(default=None, description="of the sensor itself; null: none")
     cross_axis: Annotated[Number, Within(least=0, most=0.2)] = Field(
@@ -109,11 +106,6 @@ class Accelerometer(SourceKeys, Sensor):
             return
         if self.path is not None and self.place != "casing":
             yield Problem("path", f"a path at place {self.place}", "allowed: null, or place: casing")
-        if self.path is not None and self.mass_g != 0.0:
-            allowed = (
-                "allowed: 0; a measured response has its sensor's mass in it, and says not what a force there moves"
-            )
-            yield Problem("mass_g", received_text(self.mass_g), allowed)
         if self.position_mm is not None and not has_position:
             yield Problem("position_mm", received_text(self.position_mm), f"allowed: null at place {self.place}")
 
@@ -172,11 +164,6 @@ class Accelerometer(SourceKeys, Sensor):
     def noise_floor(self) -> Number | None:
         """Standard deviation of its white noise [m/s²]."""
         return None if self.noise is None else self.noise.floor_m_s2
-
-    @property
-    def added_mass_g(self) -> Number:
-        """Its own mass."""
-        return self.mass_g
 
     @property
     def through(self) -> MeasuredPath | None:

@@ -13,7 +13,7 @@ from pydantic import Field
 from siggen.arrays import FloatArray
 from siggen.errors import Problem, SolverFailure
 from siggen.keys.number import Number, Within
-from siggen.keys.section import Real, Whole
+from siggen.keys.section import Real
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.stator_current import InductionMotor, active_current, phase_current
 from siggen.sensors.places import Places
@@ -22,6 +22,8 @@ from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.sensors.transducer import Running, Transducer
 
 PHASES = ("phase_a", "phase_b", "phase_c")
+POLE_PAIRS, RATED_SLIP = 2, 0.03
+"""Of the motor: four poles, and the slip at the rated torque (usual)."""
 BREAKDOWN_OVER_RATED = 5.0
 """Slip of the largest torque over that of the rated one (assumed): the largest torque is 2.6 times the rated one."""
 MAGNETISING_OVER_ACTIVE = 0.5
@@ -44,11 +46,7 @@ class MotorCurrent(Sensor):
     axes: Annotated[tuple[Literal["phase_a", "phase_b", "phase_c"], ...], Field(min_length=1)] = Field(
         default=("phase_a",), description="what it measures, one channel each"
     )
-    pole_pairs: Annotated[Whole, Field(ge=1, le=50)] = Field(default=2, description="of the motor")
     rated_torque_nm: Annotated[Number, Within(above=0)] = Field(description="torque at the rated slip")
-    rated_slip: Annotated[Number, Within(above=0, most=0.2)] = Field(
-        default=0.03, description="slip at the rated torque; slip follows torque"
-    )
     active_a: Annotated[Number, Within(above=0)] = Field(
         default=10.0, description="amplitude of the active current at the rated torque"
     )
@@ -85,16 +83,14 @@ class MotorCurrent(Sensor):
 
     def transducer(self, axis: str, draw: AxisDraws) -> Transducer:
         """Return the winding of a phase; all phases are those of one motor."""
-        numbers = {
-            key: draw.of_sensor(getattr(self, key), key) for key in ("rated_torque_nm", "rated_slip", "active_a")
-        }
+        active_a = draw.of_sensor(self.active_a, "active_a")
         motor = InductionMotor(
-            pole_pairs=self.pole_pairs,
-            rated_torque_nm=numbers["rated_torque_nm"],
-            rated_slip=numbers["rated_slip"],
-            rated_active_a=numbers["active_a"],
-            breakdown_slip=BREAKDOWN_OVER_RATED * numbers["rated_slip"],
-            magnetising_a=MAGNETISING_OVER_ACTIVE * numbers["active_a"],
+            pole_pairs=POLE_PAIRS,
+            rated_torque_nm=draw.of_sensor(self.rated_torque_nm, "rated_torque_nm"),
+            rated_slip=RATED_SLIP,
+            rated_active_a=active_a,
+            breakdown_slip=BREAKDOWN_OVER_RATED * RATED_SLIP,
+            magnetising_a=MAGNETISING_OVER_ACTIVE * active_a,
         )
         return Winding(self.name, motor, 2.0 * pi / 3.0 * PHASES.index(axis))
 
@@ -126,7 +122,7 @@ class Winding:
         if not (steady + added < largest).all():
             raise SolverFailure(
                 "unreadable",
-                f"sensor {self.sensor}: the slip would pass {motor.breakdown_slip:g}, five times rated_slip, where a "
+                f"sensor {self.sensor}: the slip would pass {motor.breakdown_slip:g}, five times the rated, where a "
                 "motor stalls; lower the torque or the variation of the speed in a record, or raise rated_torque_nm",
             )
         return phase_current(motor, steady + added, 2.0 * pi * line_hz * seconds + running.line_rad, self.behind_rad)

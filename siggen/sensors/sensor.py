@@ -88,11 +88,6 @@ class Sensor(Section):
         default=1.0,
         description="reading per true value, drawn per specimen and axis; a list: one number per axis",
     )
-    dropout_share: Annotated[Number, Within(least=0, below=1)] = Field(
-        default=0.0,
-        description="of a record that a bad contact of the cable loses, drawn per record and axis: gaps of 1 to 50 ms "
-        "of zeros (assumed)",
-    )
     bits: Bits = Field(default=16, description=BITS_TEXT)
 
     @classmethod
@@ -139,11 +134,6 @@ class Sensor(Section):
     def converter_step(self) -> float:
         """Step of its converter, in its unit; 0: not quantised."""
         return converter_step(self.limit, self.converter_bits)
-
-    @property
-    def added_mass_g(self) -> Number:
-        """Mass that the place of its motions carries for it, drawn per gearbox."""
-        return 0.0
 
     @property
     def sources(self) -> tuple[Source, ...]:

@@ -202,9 +202,6 @@ def _directions(
             rows = _on_rotor(assembled, shaft) - _on_base(assembled)
             found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
         found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
-    if section.belt is not None:  # between its shaft and a machine on the base
-        rows = _on_rotor(assembled, section.belt.shaft) - _on_base(assembled)
-        found["belt"] = _turned(rows, _angle(uniform, "belt"))
     if section.second_stage is not None:
         found["second_stage"] = _entry(assembled, body, "second_stage")
     if section.auxiliary_drive is not None:

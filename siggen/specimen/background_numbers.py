@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, TypeVar
 
-from siggen.config import Background, Base, Bearings, Belt, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
+from siggen.config import Background, Base, Bearings, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
@@ -108,27 +108,6 @@ class ShaftNumbers(ShaftLines):
     rated_speed_hz: Drawn = 50.0
 
 
-class BeltNumbers(Belt):
-    """Of a belt: its lines at 2x to 4x over 1x, the line of the pulley's run-out over the pull, and the pull itself.
-
-    A belt shows up to four multiples of its passing, the second often the largest (source: charts of vibration
-    diagnosis; sizes assumed about that). What is uneven by e, pitch line or pulley, stretches both strands: on fixed
-    centres the pull changes by the share 2 e/(L ε) (derived). A pulley runs out by 0.25 mm in all at most (source:
-    tolerance of sheaves up to 250 mm), belts have L 0.6 to 1.6 m and ε 0.5 to 1 % of stretch (memory).
-
-    The pull is (r + 1)/(r - 1) of what the pulley transmits, r = exp(μ α) with μ 0.45 to 0.65 in grooves and wraps α of
-    120 to 180 degrees (source); a pulley is about as large as the gears (assumed: its diameter over their centre
-    distance).
-    """
-
-    second_db: Drawn = Uniform(low=-6.0, high=6.0)
-    third_db: Drawn = Uniform(low=-14.0, high=0.0)
-    fourth_db: Drawn = Uniform(low=-20.0, high=-4.0)
-    runout_share: Drawn = LogUniform(low=0.004, high=0.08)
-    pull_over_effective: Drawn = Uniform(low=1.3, high=2.3)
-    pulley_over_centres: Drawn = Uniform(low=0.8, high=1.6)
-
-
 class ForeignNumbers(ForeignMesh):
     """Line h has h to minus `decay_exponent` of the first, and two sidebands beside it (measured).
 
@@ -153,7 +132,6 @@ class BackgroundNumbers(Background):
     bearings: BearingNumbers | None
     machines: MachineNumbers | None
     shafts: ShaftNumbers | None
-    belt: BeltNumbers | None
     second_stage: ForeignNumbers | None
     auxiliary_drive: ForeignNumbers | None
 
@@ -170,7 +148,6 @@ def background_numbers(section: Background) -> BackgroundNumbers:
         bearings=_completed(BearingNumbers, section.bearings, **bands),
         machines=_completed(MachineNumbers, section.machines),
         shafts=_completed(ShaftNumbers, section.shafts),
-        belt=_completed(BeltNumbers, section.belt),
         second_stage=_completed(ForeignNumbers, section.second_stage),
         auxiliary_drive=_completed(ForeignNumbers, section.auxiliary_drive),
     )

@@ -15,7 +15,7 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
 from siggen.dynamics.structure.structure import Structure
-from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input, Weight
+from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input
 from siggen.specimen.measured_path import INPUTS
 
 BLOCK = 8192
@@ -35,7 +35,7 @@ class ChannelWay:
     entries : (`ENTRIES`, k) the same from where other machines press on the housing
     """
 
-    shown: Mapping[Input, Weight]
+    shown: Mapping[Input, float]
     accelerance: ComplexArray | None
     entries: ComplexArray | None
     forces: tuple[str, ...] = INPUTS
@@ -103,7 +103,7 @@ def _response(
     total = np.zeros_like(next(iter(forced.bearing_force.values())))
     found = {FORCE: forced.bearing_force, MOTION: forced.acceleration, SHAFT: forced.shaft}
     for one, weight in way.shown.items():
-        total += (weight if isinstance(weight, float) else weight[block]) * found[one.kind][one.name]
+        total += weight * found[one.kind][one.name]
     if way.accelerance is not None:
         for name, row in zip(way.forces, way.accelerance[:, block], strict=True):
             total += row * forced.bearing_force[name]

@@ -17,7 +17,7 @@ from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.block_filter import TOGETHER, BlockGrid, block_grid, limited
-from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input, Weight
+from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input
 from siggen.sensing.spectral_filter import frequencies
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.sensor import AxisDraws, Sensor
@@ -31,7 +31,6 @@ from siggen.specimen.background import (
 from siggen.specimen.forced_ways import ChannelWay
 from siggen.specimen.housing import housing_settle_s, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
-from siggen.specimen.sensor_mass import Loading, sensor_loading
 from siggen.specimen.set_on_housing import forces_through_housing
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import moved_along
@@ -87,7 +86,7 @@ class ChannelInstrument:
     name: str
     sensor: Sensor
     gain: float
-    seen: Mapping[Input, Weight]
+    seen: Mapping[Input, float]
     accelerance: ComplexArray | None
     sensor_response: ComplexArray | None
     path_modes: int
@@ -100,8 +99,7 @@ class ChannelInstrument:
     @property
     def is_plain(self) -> bool:
         """Whether it stores one quantity of the model as it is."""
-        whole = [weight for weight in self.seen.values() if isinstance(weight, float)] == [1.0]
-        return self.accelerance is None and self.sensor_response is None and whole and len(self.seen) == 1
+        return self.accelerance is None and self.sensor_response is None and list(self.seen.values()) == [1.0]
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -147,8 +145,8 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     along = moved_along(specimen)
     in_file = {force: config.names.force(force) for force in config.places.pressed}
     channels, ways = [], {}
+    paths = _Paths(housing, grid, along, in_file)
     for sensor in specimen.sensors:
-        paths = _Paths(housing, grid, sensor_loading(config, specimen, housing, sensor, grid), along, in_file)
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
             channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, paths)
@@ -199,14 +197,13 @@ def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
 
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing, a grid of frequencies (k,), what the mass of a sensor does to its place, motions along the shafts.
+    """A housing, a grid of frequencies (k,), motions along the shafts.
 
     `in_file`: bearing forces -> their names in files of measured responses.
     """
 
     housing: SpecimenHousing | None
     grid: FloatArray
-    loading: Loading | None
     along: tuple[str, ...]
     in_file: Mapping[str, str]
 
@@ -215,8 +212,7 @@ def _channel(
     sensor: Sensor, axis: str, gain: float, draw: AxisDraws, paths: _Paths
 ) -> tuple[ChannelInstrument, ChannelWay]:
     """Return a channel and what it sees of forces that the model does not make."""
-    housing, grid, plain = paths.housing, paths.grid, sensor.shows(axis, draw)
-    shown: Mapping[Input, Weight] = plain if paths.loading is None else paths.loading.weights(plain)
+    housing, grid, shown = paths.housing, paths.grid, sensor.shows(axis, draw)
     motions = {one.name: weight for one, weight in shown.items() if one.kind == MOTION}
     accelerance, beyond, entries = None, None, None
     forces = INPUTS if housing is None else housing.forces
@@ -247,8 +243,8 @@ def _channel(
 
 
 def _of_model(
-    shown: Mapping[Input, Weight], housing: SpecimenHousing | None, along: tuple[str, ...]
-) -> dict[Input, Weight]:
+    shown: Mapping[Input, float], housing: SpecimenHousing | None, along: tuple[str, ...]
+) -> dict[Input, float]:
     """Return what of the model's motion is shown as it is: nothing that the modes of a housing give.
 
     `along` are the motions along the shafts that the model has.

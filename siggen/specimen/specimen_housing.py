@@ -16,7 +16,6 @@ from siggen.dynamics.housing.box import Box
 from siggen.dynamics.housing.modes import ALL, Modes
 from siggen.dynamics.housing.motion import Motion
 from siggen.dynamics.structure.body import ModalBody, Point
-from siggen.sensing.inputs import Weight
 
 MODES_ON_BOLTS = 6
 COUPLED_HZ, MOST = 1500.0, 9
@@ -74,23 +73,14 @@ class SpecimenHousing:
         return np.asarray(self.modes.accelerance([seen], motions, frequency_hz, self.damping_ratio, which)[0])
 
     def shown_accelerance(
-        self, weights: Mapping[str, Weight], inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
+        self, weights: Mapping[str, float], inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
     ) -> ComplexArray:
-        """Return the accelerance (inputs, k) of what a channel sees: motions times factors, numbers or all (k,)."""
-        fixed = {name: weight for name, weight in weights.items() if isinstance(weight, float)}
-        if fixed:
-            return self.accelerance(self._sum(fixed), inputs, frequency_hz, which)
-        total = np.zeros((len(inputs), frequency_hz.size), dtype=np.complex128)
-        for name, weight in weights.items():
-            total += weight * self.accelerance(self.motions[name], inputs, frequency_hz, which)
-        return total
-
-    def _sum(self, weights: Mapping[str, float]) -> Motion:
+        """Return the accelerance (inputs, k) of what a channel sees: motions times factors."""
         (name, weight), *others = weights.items()
         total = Motion(weight * self.motions[name].even, weight * self.motions[name].odd)
         for name, weight in others:
             total = total.plus(self.motions[name], weight)
-        return total
+        return self.accelerance(total, inputs, frequency_hz, which)
 
 
 def modes_settle_s(frequency_hz: FloatArray, damping_ratio: FloatArray) -> float:

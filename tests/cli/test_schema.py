@@ -84,7 +84,7 @@ def _mappings(part):
         yield from _mappings(inner)
 
 
-@pytest.mark.parametrize("name", ["helical", "quickstart", "paper_a"])
+@pytest.mark.parametrize("name", ["paper_b", "quickstart", "paper_a"])
 def test_an_editor_with_the_schema_accepts_the_shipped_configurations(schema, name):
     jsonschema.Draft202012Validator.check_schema(schema)
     jsonschema.validate(read_yaml(f"configs/{name}.yaml"), schema)

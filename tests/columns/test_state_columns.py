@@ -13,7 +13,7 @@ from siggen.keys.distributions import Uniform
 
 OVERRIDES = (
     "manufacture={accuracy_class: 6}",
-    "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, belt: {}, second_stage: {order: 7}}",
+    "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, second_stage: {order: 7}}",
     "sensors.0.mounting={frequency_hz: 8000, damping_ratio: 0.05}",
     "variation={}",
 )

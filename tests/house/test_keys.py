@@ -9,7 +9,7 @@ import pytest
 
 from tests.house.source_tree import ROOT
 
-MOST_KEYS = 221
+MOST_KEYS = 212
 """Keys of docs/reference/yaml.md. A new key is worth more than one that can go: lower this with every one that goes."""
 KEY_LINE = re.compile(r"\* `(?P<key>[^`]+)`(?:, `[^`]+`)*(?P<expert> \(expert\))?: ")
 PAGES = [path for path in (ROOT / "docs").rglob("*.md") if path.parent.name != "reference"]
@@ -42,7 +42,7 @@ def rows(page: str) -> Iterator[tuple[list[str], str]]:
 
 def test_every_key_stands_in_a_preset_or_together_with_its_section_in_a_guide_or_test(page: str) -> None:
     texts = [path.read_text(encoding="utf-8") for path in (*PAGES, *TESTS)]
-    assert len(list(rows(page))) > 200
+    assert len(list(rows(page))) > 150
     nowhere = [".".join(words) for words, use in rows(page) if not use and not named_together(words, texts)]
     assert nowhere == []
 

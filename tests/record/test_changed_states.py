@@ -103,23 +103,6 @@ def test_a_sensors_fault_is_in_its_channel_alone() -> None:
     assert found.labels["fault"] == "sensor"
 
 
-def test_a_bad_contact_loses_its_share_to_the_sample_and_leaves_all_else() -> None:
-    lossy = config(changed({"sensors.bearing.dropout_share": 0.2}, fault="sensor"), {"name": "again"})
-    whole = config({"name": "same"}, {"name": "again"})
-    lost = []
-    for one in (1, 4):  # both gearboxes
-        found, same = record(lossy, one), record(whole, one)
-        assert found.channels["other_vertical"].tobytes() == same.channels["other_vertical"].tobytes()
-        signal, full = found.channels["bearing_vertical"], same.channels["bearing_vertical"]
-        lost.append(signal != full)
-        assert (signal[lost[-1]] == 0.0).all()
-        # samples that are zero anyway are lost without a trace
-        assert lost[-1].sum() + (full == 0.0).sum() >= round(0.2 * signal.size) >= lost[-1].sum()
-    assert (lost[0] != lost[1]).any()
-    for other in (0, 2, 3, 5):
-        assert signals(record(lossy, other)) == signals(record(whole, other))
-
-
 def test_a_state_at_the_end_moves_no_other() -> None:
     alone, more = config(), config(changed({"dynamics.pinion.mass_kg": 2}))
     for one, other in ((0, 0), (1, 2)):  # the healthy state of both gearboxes

@@ -7,7 +7,7 @@ import pytest
 
 from siggen.columns.record import RecordFailure
 from siggen.record.simulation import simulate
-from tests.sensors.runs import line, loaded, problems, record
+from tests.sensors.runs import line, loaded, record
 from tests.sensors.test_encoder import OFF, PERFECT
 
 CLAMP = {"kind": "motor_current", "name": "clamp", "rated_torque_nm": 80.0, "bits": None}
@@ -49,7 +49,3 @@ def test_a_speed_that_no_motor_follows_at_one_line_frequency_says_why() -> None:
     (failure,) = simulate(config, [0])
     assert isinstance(failure, RecordFailure)
     assert "sensor clamp: the slip would pass 0.15" in failure.reason
-
-
-def test_a_slip_beyond_reason_is_refused() -> None:
-    assert problems({**CLAMP, "rated_slip": 0.5})["sensors.0.rated_slip"].startswith("0.5; allowed: a number")
