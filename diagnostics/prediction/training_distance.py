@@ -325,6 +325,6 @@ def distance_from_facts(facts: dict[str, Any]) -> TrainingDistance:
         If shapes do not fit or something is missing.
     """
     parts = tuple(part_from_facts(part) for part in facts["parts"])
-    largest = facts.get("largest_spreads")  # models of earlier versions have none
+    largest = facts["largest_spreads"]
     known = np.inf if largest is None else float(largest)
     return TrainingDistance(parts, float(facts["threshold"]), int(facts["held_out_specimens"]), known)
