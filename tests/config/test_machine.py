@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any
 
@@ -114,10 +113,8 @@ def test_a_machine_that_cannot_be_is_refused_at_the_users_line(mistake: str, tmp
     machine, path, words = MISTAKES[mistake]
     text = yaml_text(mill(machine=machine))
     (tmp_path / "mill.yaml").write_text(text)
-    begun = time.process_time()
     with pytest.raises(ConfigError) as refused:
         load_config(tmp_path / "mill.yaml")
-    assert time.process_time() - begun < 2.0
     found = {one.path: one for one in refused.value.problems}
     assert path in found, str(refused.value)
     assert words in str(found[path])
@@ -171,10 +168,8 @@ OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {
 @pytest.mark.parametrize("mistake", OF_IDLERS)
 def test_an_idler_that_cannot_be_is_refused_with_the_users_names(mistake: str) -> None:
     changes, path, words = OF_IDLERS[mistake]
-    begun = time.process_time()
     with pytest.raises(ConfigError) as refused:
         load_config(idler(**changes))
-    assert time.process_time() - begun < 2.0
     found = {one.path: str(one) for one in refused.value.problems}
     assert path in found, str(refused.value)
     assert words in found[path]

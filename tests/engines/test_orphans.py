@@ -94,7 +94,7 @@ def assert_workers_end_with_their_driver(code: str, engine: str, tmp_path: Path)
         workers = [int(file.name) for file in (tmp_path / "busy").iterdir()]
         assert all(is_alive(pid) for pid in workers)
         driver.kill()
-        assert wait_until(lambda: not any(is_alive(pid) for pid in workers), 2.0)
+        assert wait_until(lambda: not any(is_alive(pid) for pid in workers), 60)
     finally:
         with suppress(ProcessLookupError):
             os.killpg(driver.pid, signal.SIGKILL)  # with two processes of Ray's own, which outlive what they served

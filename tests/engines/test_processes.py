@@ -98,8 +98,8 @@ def test_workers_end_when_their_parent_is_killed() -> None:
     pids = {int(parent.stdout.readline()) for _ in range(200)}
     parent.send_signal(signal.SIGKILL)
     parent.communicate()
-    # they notice at their next answer, milliseconds away; 10 s for a machine under load
-    deadline = time.monotonic() + 10
+    # they notice at their next answer, milliseconds away; a minute for a machine under load
+    deadline = time.monotonic() + 60
     while any(is_alive(pid) for pid in pids) and time.monotonic() < deadline:
         time.sleep(0.02)
     assert not [pid for pid in pids if is_alive(pid)]

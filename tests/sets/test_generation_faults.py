@@ -96,7 +96,7 @@ def test_a_signal_ends_with_130_committed_shards_and_a_hint(
     process = start(tmp_path, workers)
     wait_for(lambda: len(sidecars(tmp_path)) >= 1, process)
     process.send_signal(number)
-    _, said = process.communicate(timeout=30)
+    _, said = process.communicate()
     assert process.returncode == EXIT_INTERRUPTED
     kept = len(sidecars(tmp_path))
     # nothing but the one message: no traceback of a worker, no complaint of the interpreter
@@ -115,7 +115,7 @@ def test_ctrl_c_for_the_whole_process_group_is_quiet_too(tmp_path: Path) -> None
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
     wait_for(lambda: len(sidecars(tmp_path)) >= 1, process)
     os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=30)
+    _, said = process.communicate()
     assert process.returncode == EXIT_INTERRUPTED
     assert said.count("\n") == 1
     assert said.startswith("stopped: ")

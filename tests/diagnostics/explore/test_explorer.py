@@ -157,7 +157,7 @@ def test_a_server_gives_every_sample_to_this_machine_alone() -> None:
     threading.Thread(target=server.serve_forever, daemon=True).start()
 
     def answer(path: str, host: str = "") -> tuple[int, bytes]:
-        line = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=10)
+        line = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=120)
         line.request("GET", path, headers={"Host": host or f"127.0.0.1:{server.server_port}"})
         found = line.getresponse()
         body = found.read()

@@ -124,7 +124,7 @@ def opened(page: str, tmp_path: Path, width: int = 1200) -> str:
     (tmp_path / "page.html").write_text(page, encoding="utf-8")
     flags = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
     command = [BROWSER, *flags, f"--window-size={width},900", "--dump-dom", (tmp_path / "page.html").as_uri()]
-    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=500).stdout
 
 
 def with_script(page: str, script: str) -> str:
