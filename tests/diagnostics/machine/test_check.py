@@ -15,6 +15,9 @@ from diagnostics.machine.check import past_checks
 from siggen.errors import SiggenError, UsageError
 
 FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0
+RIG = ("--fs", FS_HZ, "--teeth", "20,31")
+SEARCHED, TOLD = (*RIG, "--speed-range", "20,30"), (*RIG, "--tacho", "pulse")
+"""Without a tacho the search for the speed takes nine tenths of a check: it is done where it is the subject."""
 
 
 def write_recording(
@@ -26,8 +29,9 @@ def write_recording(
     knock: float = 0.0,
     jitter: float = 1e-3,
     moved: bool = False,
+    tacho: bool = False,
 ) -> Path:
-    """Mesh lines, weak sidebands, noise; one knock per turn where a tooth is damaged."""
+    """Mesh lines, weak sidebands, noise; one knock per turn where a tooth is damaged; with `tacho` a pulse per turn."""
     rng = np.random.default_rng(seed)
     turn = speed_hz * (1.0 + jitter * rng.normal()) * np.arange(round(seconds * FS_HZ)) / FS_HZ + rng.uniform()
     signal = sum(np.cos(2 * np.pi * TEETH * h * turn + h) / h for h in (1, 2, 3))
@@ -39,7 +43,8 @@ def write_recording(
     time = np.arange(turn.size) / FS_HZ
     lid, side = signal + noise[0], other + noise[1]
     lid = np.gradient(lid) if moved else lid  # a place that favours high frequencies
-    np.savez(file, t=time, lid=gain * lid, side=gain * side)
+    pulse = {"pulse": np.where(phase < 0.1, 5.0, 0.0)} if tacho else {}
+    np.savez(file, t=time, lid=gain * lid, side=gain * side, **pulse)
     return file
 
 
@@ -52,8 +57,7 @@ def run(*arguments: object) -> tuple[int, str]:
 def machine(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("machine")
     files = [write_recording(folder / f"healthy_{k}.npz", seed=k) for k in range(6)]
-    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30")
-    code, said = run("baseline", *files, *facts, "--load", "40", "--out", folder / "rig")
+    code, said = run("baseline", *files, *SEARCHED, "--load", "40", "--out", folder / "rig")
     assert code == 0
     assert "6 recordings, 2 channels, pinion at 24.9" in said
     assert "takes 19 references" in said
@@ -97,7 +101,7 @@ def test_another_load_is_not_compared(machine: Path, tmp_path: Path) -> None:
 
 def test_slips_are_named(tmp_path: Path) -> None:
     files = [write_recording(tmp_path / f"{k}.npz", seed=k, seconds=0.8) for k in range(3)]
-    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
+    facts = (*SEARCHED, "--out", tmp_path / "rig")
     for arguments, told in (
         ((*files[:2], *facts), "at least 3"),
         ((*files, files[0], *facts), "give every recording once"),
@@ -138,7 +142,9 @@ def test_teeth_whose_mesh_lines_are_not_there_are_refused(tmp_path: Path) -> Non
 
 def loaded(file: Path, seed: int, load: float, **changed: float) -> Path:
     """Levels follow the load, and an induction motor slips by 0.5 % from none to full."""
-    return write_recording(file, seed, 25.0 * (1.0 - 5e-5 * load), (load / 100.0) ** 0.8, jitter=0.0, **changed)
+    return write_recording(
+        file, seed, 25.0 * (1.0 - 5e-5 * load), (load / 100.0) ** 0.8, jitter=0.0, tacho=True, **changed
+    )
 
 
 @pytest.mark.parametrize("way", ["numbers", "slip"])
@@ -146,7 +152,7 @@ def test_a_load_between_the_references_is_judged_and_one_outside_is_not(way: str
     loads = (20.0, 35.0, 60.0, 80.0, 100.0)
     files = [loaded(tmp_path / f"{k}.npz", k, load) for k, load in enumerate(loads)]
     said = ",".join(str(load) for load in loads) if way == "numbers" else "slip"
-    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--load", said, "--out", tmp_path / "rig")
+    facts = (*TOLD, "--load", said, "--out", tmp_path / "rig")
     assert run("baseline", *files, *facts)[0] == 0
 
     within = [loaded(tmp_path / f"within_{k}.npz", 20 + k, 47.0, knock=2.0 * k) for k in range(2)]
@@ -162,8 +168,8 @@ def test_a_load_between_the_references_is_judged_and_one_outside_is_not(way: str
 
 
 def test_speeds_that_do_not_differ_tell_no_load(tmp_path: Path) -> None:
-    files = [write_recording(tmp_path / f"{k}.npz", seed=k, speed_hz=25.0 + 2.0 * k) for k in range(3)]
-    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,35", "--load", "slip", "--out", tmp_path / "rig")
+    files = [write_recording(tmp_path / f"{k}.npz", seed=k, speed_hz=25.0 + 2.0 * k, tacho=True) for k in range(3)]
+    facts = (*TOLD, "--load", "slip", "--out", tmp_path / "rig")
     with pytest.raises(SiggenError, match="--load slip: speeds of the references differ by 14 %"):
         run("baseline", *files, *facts)
 
@@ -176,11 +182,10 @@ def test_speeds_that_do_not_differ_tell_no_load(tmp_path: Path) -> None:
 def test_a_reference_unlike_the_others_is_named_by_baseline_by_check_and_on_the_page(
     odd: dict[str, Any], off: str, tmp_path: Path
 ) -> None:
-    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=80 + k) for k in range(3)]
-    files.insert(1, write_recording(tmp_path / "odd.npz", seed=90, **odd))
-    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
-    code, said = run("baseline", *files, *facts)
-    _, later = run("check", tmp_path / "rig", write_recording(tmp_path / "new.npz", seed=91))
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=80 + k, tacho=True) for k in range(3)]
+    files.insert(1, write_recording(tmp_path / "odd.npz", seed=90, tacho=True, **odd))
+    code, said = run("baseline", *files, *TOLD, "--out", tmp_path / "rig")
+    _, later = run("check", tmp_path / "rig", write_recording(tmp_path / "new.npz", seed=91, tacho=True))
     named = rf"doubtful: reference 2 of 4, odd\.npz, is unlike the others: third octaves of (lid|side) are {off} off"
     assert code == 0
     for text in (said, later):
@@ -201,7 +206,7 @@ def test_a_load_is_asked_for_where_references_have_one_and_refused_where_they_ha
 ) -> None:
     new = write_recording(tmp_path / "new.npz", seed=53)
     assert "give --load as well" in run("check", machine, new)[1]
-    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=60 + k) for k in range(3)]
-    run("baseline", *files, "--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=60 + k, tacho=True) for k in range(3)]
+    run("baseline", *files, *TOLD, "--out", tmp_path / "rig")
     with pytest.raises(UsageError, match="--load: received 40, but its references have none"):
         run("check", tmp_path / "rig", new, "--load", "40")
