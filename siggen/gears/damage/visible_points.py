@@ -36,7 +36,7 @@ DEEPER = 1e-6
 """By how much of its square a dish must be deeper: its depth varies about the point."""
 
 
-@entry(cache=True)
+@njit(cache=True)
 def strictly_inside(x: float, w: float, row: FloatArray) -> bool:
     """Whether a point lies inside the outline of a row and not near it."""
     if row[TRAPEZOID] == 0.0:
@@ -102,7 +102,7 @@ def strips_of(pits: FloatArray) -> Strips:
     return Strips(rows, strips.first, low, strips.width_m)
 
 
-@entry(cache=True)
+@njit(cache=True)
 def strip_at(strips: Strips, w: float) -> int:
     """Return the strip that holds a place across the face; places beside all strips count to the nearest one."""
     last = strips.first.size - 2
