@@ -70,10 +70,11 @@ NAMES = {
 HEAD = """# Columns of a set
 
 This page is printed by `make reference` from the columns that siggen writes; the files carry the same texts as metadata
-(`unit`, `meaning`, `role`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. In brackets stand unit, type
-(double where a unit stands alone), role and the section of the YAML file that a column needs; without one every set has
-it. Sets with numbers from files have besides `path_number_CHANNEL` (which file of its path a gearbox drew, from 0),
-`noise_spectrum_CHANNEL_m_s2` and `lines_CHANNEL_m_s2` (RMS).
+(`unit`, `meaning`, `role`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. Of a pair the meaning
+is that of the pinion's. In brackets stand unit, type (double where a unit stands alone), role and the section of the
+YAML file that a column needs; without one every set has it. Sets with numbers from files have besides
+`path_number_CHANNEL` (which file of its path a gearbox drew, from 0), `noise_spectrum_CHANNEL_m_s2` and
+`lines_CHANNEL_m_s2` (RMS).
 
 | role | what it is | may a classifier have it | may it tell the state |
 |---|---|---|---|
@@ -127,18 +128,21 @@ def channels(full: pa.Schema) -> list[str]:
 
 def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable[str]) -> Iterator[str]:
     """Yield one line for every column, channels together."""
-    seen = set()
+    fields, seen = list(fields), set()
+    names = {general(field.name, named) for field in fields}
     for field in fields:
         name = general(field.name, named)
-        if name in seen:
+        if name in seen or ("gear" in name and name.replace("gear", "pinion") in names):
             continue
         seen.add(name)
+        both = name.replace("pinion", "gear")
+        shown = f"`{name}`, `{both}`" if both in names - {name} else f"`{name}`"
         facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
         meaning = general(facts.get("meaning", "signal of the channel" if "sensor" in facts else ""), named)
         kind = re.sub(r"<element: (\w+)[^>]*>(\[\d+\])?", r" of \1", str(field.type)).replace("fixed_size_list", "list")
         unit, needed = facts.get("unit", ""), brought.get(field.name, "")
         known = (unit, "" if unit and kind == "double" else kind, facts["role"], f"needs {needed}" if needed else "")
-        yield f"* `{name}`: {meaning} ({'; '.join(part for part in known if part)})"
+        yield f"* {shown}: {meaning} ({'; '.join(part for part in known if part)})"
 
 
 def internals() -> Iterator[str]:

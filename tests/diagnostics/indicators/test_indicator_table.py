@@ -112,17 +112,6 @@ def test_angle_from_the_lines_gives_nearly_the_same_average_or_the_record_is_ref
     assert {2, 5, 8} <= judged
 
 
-def test_angle_comes_from_the_channel_whose_lines_are_clearest(small: Any) -> None:
-    record = next(one for one in recordings(small) if one.labels["state"] == "severe")
-    noise = np.random.default_rng(1).standard_normal(12_800)
-    clear = record.channels["bearing_vertical"]
-    both = record_result(replace(record, channels={"a": noise, "b": clear}), WITHOUT_TACHO)
-    alone = record_result(replace(record, channels={"b": clear}), WITHOUT_TACHO)
-    assert not both.problems
-    value = alone.channels["b"].values["fm4_pinion"]
-    assert both.channels["b"].values["fm4_pinion"] == pytest.approx(value, rel=0.01)
-
-
 def test_record_without_lines_is_a_problem_of_that_record(small: Any) -> None:
     record = next(recordings(small))
     noise = np.random.default_rng(1).standard_normal(12_800)
@@ -256,18 +245,3 @@ def test_two_samples_at_the_peak_are_no_clipping() -> None:
     assert clipped_share(np.sin(np.arange(100.0))) == 0.0
     # runs of three and more at either end, and of two, which does not count
     assert clipped_share(np.array([2.0, 2, 2, 0, 1, 2, 2, 0, 0, 0, 0])) == pytest.approx(7 / 11)
-
-
-def test_named_states_and_the_healthy_one_are_a_ladder_of_their_own(small: Any, table: IndicatorTable) -> None:
-    ladder = indicator_table(small, states=("severe",))
-    assert set(ladder.matrix.labels["state"].tolist()) == {"healthy", "severe"}
-    severe = table.matrix.labels["state"] == "severe"
-    both = [name for name in ladder.matrix.names if not name.startswith(("na4", "nb4"))]
-    of_ladder = ladder.matrix.labels["state"] == "severe"
-    for name in both:
-        np.testing.assert_equal(column(ladder, name)[of_ladder], column(table, name)[severe])
-    # the slight state is not in the history any more
-    name = next(name for name in ladder.matrix.names if name.startswith("na4_pinion"))
-    assert not np.array_equal(column(ladder, name)[of_ladder], column(table, name)[severe])
-    with pytest.raises(UsageError, match="no state rusty; it has healthy, slight, severe"):
-        indicator_table(small, states=("rusty",))
