@@ -19,7 +19,7 @@ PITS = {
     "spread_profile_mm": 0.3, "semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3,
 }  # fmt: skip
 CONFIG = {
-    "extends": "tests/configs/linear_pits.yaml",
+    "extends": str(Path(__file__).parents[2] / "configs" / "linear_pits.yaml"),
     "fs_hz": 12_800,
     "duration_s": 0.3,
     "mesh_harmonics": 3,

@@ -28,7 +28,7 @@ from tests.diagnostics.bench.conftest import SECRET, Made
 from tests.shared import shared_folder
 
 CONFIG: dict[str, Any] = {
-    "extends": "tests/configs/linear_pits.yaml",
+    "extends": str(Path(__file__).parents[2] / "configs" / "linear_pits.yaml"),
     "name": "short_lives",
     "fs_hz": 12_800,
     "duration_s": 0.12,
