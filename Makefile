@@ -31,10 +31,11 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-# Files go whole to one of two processes, since their fixtures are sets that all their tests read. Bytecode is written
-# whatever the environment says: tests start hundreds of processes, each of which would compile the sources anew.
+# Files go whole to one of two processes, since their fixtures are sets that all their tests read, long files first
+# (tests/conftest.py). Bytecode is written whatever the environment says: tests start hundreds of processes, each of
+# which would compile the sources anew.
 test: lint
-	OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist loadfile
+	OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow

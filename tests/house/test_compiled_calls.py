@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -31,7 +32,7 @@ def compiled() -> dict[tuple[str, str], str]:
     """Return (module, function) -> decorator of all functions that the package's compiler compiles."""
     found = {}
     for module, file in files().items():
-        if "siggen.compiled" in imports(file, set()):
+        if "siggen.compiled" in file.read_text(encoding="utf-8") and "siggen.compiled" in imports(file, set()):
             functions = (node for node in ast.walk(tree(file)) if isinstance(node, ast.FunctionDef))
             found |= {(module, node.name): how for node in functions if (how := decorator(node))}
     return found
@@ -63,8 +64,11 @@ def by_python(node: ast.AST) -> Iterator[ast.Name | ast.Attribute]:
 def callers() -> dict[tuple[str, str], set[str]]:
     """Return compiled functions that Python calls or hands on -> where."""
     found: dict[tuple[str, str], set[str]] = {}
+    ends = re.compile(rf"\b({'|'.join(sorted({home.rpartition('.')[2] for home, _ in compiled()}))})\b")
+    homes = {home for home, _ in compiled()}
     for module, file in files().items():
-        names = known(module, file)
+        may_call = module in homes or ends.search(file.read_text(encoding="utf-8"))
+        names = known(module, file) if may_call else {}
         last = {name.rpartition(".")[2] for name in names}
         for node in by_python(tree(file)) if names else ():
             ends_in = node.id if isinstance(node, ast.Name) else node.attr
