@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated
@@ -10,6 +11,9 @@ import typer
 
 from diagnostics.cli.recording_options import Rate, file_rows
 from siggen.cli.json_output import AsJson, echo_json
+
+READ_AS = re.compile(r"(?<![\w-])--(?!fs|load)[a-z]")
+"""Options in messages about files that are not those of `check`, which reads files as the machine's first ones."""
 
 
 def check(
@@ -63,7 +67,7 @@ def check(
             try:
                 found.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
             except UsageError as error:
-                unread[name] = str(error)
+                unread[name] = _in_words_of_check(str(error), machine)
             advance()
     if unread and not found:
         raise UsageError("\n".join(unread.values()))
@@ -86,3 +90,13 @@ def check(
         raise typer.Exit(EXIT_MISMATCH)
     if unread:
         raise typer.Exit(EXIT_USAGE)
+
+
+def _in_words_of_check(message: str, machine: Path) -> str:
+    """Return why a file cannot be read, and whose options are meant by those that `check` has not."""
+    if not READ_AS.search(message):
+        return message
+    return (
+        f"{message.rstrip('.')}. These are options of `siggen-diagnostics baseline`, which says how files of {machine} "
+        "are read: give the file the columns of the healthy ones, or write a new machine with them"
+    )

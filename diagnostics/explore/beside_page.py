@@ -104,7 +104,7 @@ def _check_alike(measured: PageSource, simulated: PageSource) -> None:
     if abs(rates[0] / rates[1] - 1.0) > 1e-6:
         raise UsageError(
             f"--beside: the recordings have {rates[0]:g} Hz, the set {rates[1]:g} Hz; allowed: one rate. Generate the "
-            f"set with --set fs_hz={rates[0]:g}"
+            f"set again: siggen generate CONFIG --set fs_hz={rates[0]:g}"
         )
     teeth = [
         set(zip(side.labels["teeth_pinion"].tolist(), side.labels["teeth_gear"].tolist(), strict=True))

@@ -46,8 +46,8 @@ def missing_parts(
         )
     if not named:
         found.append(
-            "No model: the page does not say what a classifier names each record. `--model` takes the folder of train "
-            "or report."
+            "No model: the page does not say what a classifier names each record. `siggen-diagnostics explore --model` "
+            "takes the folder that `report` wrote."
         )
     return found
 

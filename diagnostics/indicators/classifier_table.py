@@ -124,7 +124,7 @@ def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: boo
     if table.own_problems:
         raise DatasetError(
             f"{dataset.path}: {len(table.own_problems)} values of your indicators failed\n"
-            f"{problem_list(list(table.own_problems))}\nMend the function, or leave --indicator out."
+            f"{problem_list(list(table.own_problems))}\nMend the function, or leave the indicator out."
         )
     return (*notes, table.note) if table.note else notes
 

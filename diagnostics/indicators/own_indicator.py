@@ -125,7 +125,7 @@ def _check_sendable(own: Sequence[OwnIndicator]) -> None:
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             raise UsageError(
                 f"indicator {indicator.name!r} cannot go to other processes ({error}). Define it with `def` at the top "
-                "of its module, or give --workers 1."
+                "of its module, or take one worker."
             ) from error
 
 
@@ -245,7 +245,7 @@ def load_indicator(reference: str) -> OwnIndicator:
     """
     module_name, colon, attribute = reference.partition(":")
     if not colon or not module_name or not attribute:
-        raise UsageError(f"--indicator: received {reference!r}; allowed is package.module:function")
+        raise UsageError(f"indicator: received {reference!r}; allowed is package.module:function")
     here = str(Path.cwd())
     if here not in sys.path:  # an installed command does not look into the folder it is called from
         sys.path.append(here)
@@ -253,13 +253,13 @@ def load_indicator(reference: str) -> OwnIndicator:
         module = importlib.import_module(module_name)
     except (Exception, SystemExit) as error:  # a user's module may fail in any way while it is read
         raise UsageError(
-            f"--indicator {reference}: {type(error).__name__}: {error}. The module must be importable: put it into "
+            f"indicator {reference}: {type(error).__name__}: {error}. The module must be importable: put it into "
             "this folder, install its package, or set PYTHONPATH to its folder."
         ) from error
     if not hasattr(module, attribute):
         place = getattr(module, "__file__", "the interpreter itself")
         raise UsageError(
-            f"--indicator {reference}: module {module_name!r} has no attribute {attribute!r}; it was found at {place}. "
+            f"indicator {reference}: module {module_name!r} has no attribute {attribute!r}; it was found at {place}. "
             "If another file of that name was meant, rename it."
         )
     function = getattr(module, attribute)
@@ -270,14 +270,14 @@ def load_indicator(reference: str) -> OwnIndicator:
 
 def _check_function(function: object, reference: str, attribute: str) -> None:
     if not callable(function):
-        raise UsageError(f"--indicator {reference}: {attribute} is a {type(function).__name__}, not a function")
+        raise UsageError(f"indicator {reference}: {attribute} is a {type(function).__name__}, not a function")
     try:
         inspect.signature(function).bind(None, None, None)
     except ValueError:  # compiled functions may have no signature: the first record tells
         return
     except TypeError as error:
         raise UsageError(
-            f"--indicator {reference}: {error}. It is called as function(signal, tacho, gears): signal (n,) in the "
+            f"indicator {reference}: {error}. It is called as function(signal, tacho, gears): signal (n,) in the "
             "unit of the channel, pulse times (k,) [s], tooth numbers and rates."
         ) from error
 

@@ -133,6 +133,6 @@ def _fault(labels: Mapping[str, np.ndarray], state: str) -> str:
     if len(found) > 1:
         raise DatasetError(
             f"state {state}: its records have the primary faults {', '.join(found)}; allowed is one for each state. "
-            "Give them states of their own, or take states as classes (--classes state)."
+            "Give them states of their own, or take states as classes."
         )
     return found[0] if found else HEALTHY

@@ -153,7 +153,7 @@ def _way_out(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leav
     broken = {channel for channel, _ in found}
     usable = [channel.name for channel in dataset.channels if channel.name not in broken]
     if can_leave_channels and usable and "" not in broken:
-        return f"Leave the channel out: {' '.join(f'--channel {name}' for name in usable)}"
+        return f"Leave the channel out: siggen-diagnostics report {' '.join(f'--channel {name}' for name in usable)}"
     return (
         f"`siggen verify {dataset.path}` tells whether files were changed; else mend the set's config.yaml and "
         "generate it into a new folder. `siggen-diagnostics indicators --leave-out` does without such records."

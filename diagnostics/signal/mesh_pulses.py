@@ -73,7 +73,7 @@ def _uncertain(found: SpeedFound, speed_range_hz: tuple[float, float]) -> str:
     if share > 0.1 * found.certainty and share + found.certainty > CONTESTED:
         return (
             f"speeds of {found.speed_hz:.4g} ({found.certainty:.0%}) and {rival:.4g} Hz ({share:.0%}) are not told "
-            f"apart; allowed is a certainty of {CERTAIN:.0%}. Give a narrower --speed-range, a longer recording or a "
+            f"apart; allowed is a certainty of {CERTAIN:.0%}. Give a narrower range, a longer recording or a "
             "tacho."
         )
     return (

@@ -77,7 +77,7 @@ def averaged_records(table: RecordTable) -> AveragedRecords:
     if short:
         raise DatasetError(
             f"records {short[:5]} hold fewer than two whole pinion revolutions; the network on the average needs them. "
-            "Use longer records (`duration_s`) or leave the networks out (--no-cnn)."
+            "Use longer records (`duration_s`) or leave the networks out: siggen-diagnostics report --no-cnn."
         )
     return AveragedRecords(padded_lines(found), np.asarray(numbers["teeth_pinion"]), table.channels)
 

@@ -84,7 +84,7 @@ def specimen_split(labels: dict[str, np.ndarray], classes: RecordClasses | None 
         if counts[name] == 0:
             raise DatasetError(
                 f"split {name!r} has no specimens: received {_listed(counts)}; training and judging need at least one "
-                "specimen each. Generate more specimens (`--set specimens=N`, new folder) or change `splits`."
+                "specimen each. Generate more (`siggen generate --set specimens=N`, new folder) or change `splits`."
             )
     classes = classes or record_classes(labels)
     _check_classes(labels, classes, masks[TRAIN])
@@ -112,8 +112,8 @@ def _check_classes(labels: dict[str, np.ndarray], classes: RecordClasses, train:
     if single := [name for name, count in specimens.items() if count < FEWEST_SPECIMENS]:
         raise DatasetError(
             f"training has one specimen of {', '.join(single)}; a classifier would learn that gearbox instead of its "
-            f"{classes.kind}. Generate more specimens (`--set specimens=N`, new folder) or give `splits` a larger "
-            "share of train."
+            f"{classes.kind}. Generate more into a new folder (`siggen generate --set specimens=N`) or give `splits` a "
+            "larger share of train."
         )
 
 

@@ -170,7 +170,7 @@ class _Pool:
             raise EngineError(
                 f"{self.unfinished[worker.task]} was lost {losses} times because its worker died "
                 f"({_death(exit_code)}); what is committed stays: "
-                "try again with fewer workers, or --workers 1 to see where it stops"
+                "try again with fewer workers, or with one, to see where it stops"
             )
         self.waiting.appendleft(worker.task)
 

@@ -97,7 +97,8 @@ def _check_recordings(path: Path | str, config: Config, *, with_recordings: bool
     fitted = [s.name for s in config.sensors if s.fitted]
     if fitted and not with_recordings:
         raise UsageError(
-            f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; --with-recordings publishes them"
+            f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; "
+            "`siggen publish --with-recordings` publishes them"
         )
 
 

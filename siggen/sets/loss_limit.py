@@ -86,8 +86,8 @@ class LossLimit:
         first = min(of_state, key=lambda one: one.record_id)
         return (
             f"stopped: of the {counted(each, 'record')} of state {name} {count} could not be simulated; allowed is a "
-            f"share of {self.share:g} (--allowed-loss). Record {first.record_id}: {first.status} ({first.reason}). "
+            f"share of {self.share:g}. Record {first.record_id}: {first.status} ({first.reason}). "
             "What was made stays. `siggen plan` says which share of every state to expect; change what the reason "
-            "names and take a new folder, or give the same command a larger --allowed-loss, with which it goes on "
-            "(1: never stop)"
+            "names and take a new folder, or go on with a larger `siggen generate --allowed-loss` (1: never "
+            "stop)"
         )

@@ -161,7 +161,7 @@ def test_own_indicator_that_fails_stops_the_set_or_is_undefined_and_noted(small:
 
 
 def test_function_that_other_processes_cannot_find_is_refused_before_any_starts(small: Any) -> None:
-    with pytest.raises(UsageError, match=r"'local' cannot go to other processes.*--workers 1"):
+    with pytest.raises(UsageError, match=r"'local' cannot go to other processes.*take one worker"):
         indicator_table(small, [OwnIndicator("local", lambda signal, tacho, gears: 1.0)], workers=2)
 
 

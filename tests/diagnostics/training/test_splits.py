@@ -140,7 +140,7 @@ def test_the_healthy_fault_keeps_its_word_whatever_the_healthy_state_is_called()
 def test_a_state_of_several_primary_faults_is_refused_with_the_way_out() -> None:
     found = labels(["train", "test"])
     found["fault"][1] = "crack"
-    with pytest.raises(DatasetError, match=r"state worn: .* crack, pitting; allowed is one.*--classes state"):
+    with pytest.raises(DatasetError, match=r"state worn: .* crack, pitting; allowed is one.*take states as classes"):
         record_classes(found, FAULT)
 
 
