@@ -302,8 +302,8 @@ def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     (folder / "figures").mkdir(exist_ok=True)
     for name, png in drawn.items():
         (folder / "figures" / f"{name}.png").write_bytes(png)
-    text = json.dumps(audit_numbers(audit, dataset), indent=1, allow_nan=False)
-    (folder / "audit.json").write_text(words(text) + "\n", encoding="utf-8")
+    text = json.dumps(words.document(audit_numbers(audit, dataset)), indent=1, allow_nan=False)
+    (folder / "audit.json").write_text(text + "\n", encoding="utf-8")
     path = folder / "audit.html"
     path.write_text(words(audit_page(audit, dataset, drawn)), encoding="utf-8")
     return path

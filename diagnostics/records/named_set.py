@@ -1,21 +1,22 @@
 """A set whose gears, shafts and meshes have names of the user's own, read in the words that diagnostics counts by.
 
-What is written about such a set goes through `Words`, which says the user's names again.
+What is written about such a set goes through `Words`, which says the user's names again: in columns and in sentences of
+the program alone. Values of labels, names of states, channels, files and sets stay as they are.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import pyarrow as pa
 
 from diagnostics.records.gear_train import GEARS
-from siggen.config.names import NO_NAMES, Names
+from siggen.config.names import BREAK, NO_NAMES, Names, changed_beside
 from siggen.dataset import reading
 from siggen.dataset.reading import Dataset, RowGroup
 from siggen.keys.column import Role
@@ -24,9 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Rows = TypeVar("Rows", pa.Table, pa.RecordBatch)
-BREAK = "<wbr>"
 IDENTIFIER = re.compile(rf"(?:\w|{BREAK})*(?:pinion|gear)(?:\w|{BREAK})*")
 """Names of columns, which pages may break between their parts."""
+PICTURE = re.compile(r"(;base64,[A-Za-z0-9+/=]+)")
 OF_GEAR = re.compile(
     r"\bgear(?= (?:averages?|sidebands?|revolutions?|turns?|tooth|orders)\b)|(?<=, )gear(?=[,<\"]| [0-9])"
 )
@@ -35,25 +36,29 @@ OF_GEAR = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """The user's names in texts, tables and figures about a set, but for channels; without any, nothing changes."""
+    """The user's names in texts, tables and figures about a set, but for data; without any, nothing changes."""
 
     names: Names = NO_NAMES
     channels: frozenset[str] = frozenset()
 
     def __call__(self, text: str) -> str:
-        """Return a text with the user's names."""
+        """Return a text of the program with the user's names; pictures inside a page hold none."""
         if not self.names.gears:
             return text
+        parts, kept = PICTURE.split(text), self.names.kept
+        parts[::2] = [changed_beside(kept, part, self._said) for part in parts[::2]]
+        return "".join(parts)
+
+    def _said(self, text: str) -> str:
         text = IDENTIFIER.sub(self._identifier, text)
-        for short, _ in self.names.meshes[1:]:  # what a sentence says of another mesh than the first
-            about = re.compile(rf"[^<>.;:]*\bmesh {short}\b[^<>.;]*")
-            text = about.sub(partial(self._of_mesh, short), text)
+        for short, _ in self.names.meshes[1:]:
+            text = self._about_mesh(short, text)
         return OF_GEAR.sub(self.names.gear("gear"), self.names.text(text))
 
     def column(self, name: str) -> str:
         """Return the user's name of a column; one that ends in the name of a mesh is about its gears."""
         own, behind, channel = name.partition("__")
-        if "_" not in own or own in self.channels:
+        if "_" not in own or own in self.channels or name in self.names.kept:
             return name
         mesh = self._mesh(own)
         if not mesh or name.startswith("teeth_"):
@@ -76,8 +81,17 @@ class Words:
         own = self.column(found[0].replace(BREAK, ""))
         return own.replace("_", f"_{BREAK}") if BREAK in found[0] else own
 
-    def _of_mesh(self, mesh: str, found: re.Match[str]) -> str:
-        return self._in_mesh(mesh, found[0])
+    def _about_mesh(self, mesh: str, text: str) -> str:
+        """Return a text in which what sentences say of another mesh than the first has the names of its gears."""
+        parts, done = [], 0
+        for found in re.finditer(rf"\bmesh {mesh}\b", text):  # pictures inside pages are long: no search twice
+            if found.start() >= done:
+                start = max(done, *(text.rfind(sign, done, found.start()) + 1 for sign in "<>.;:"))
+                ends = [text.find(sign, found.end()) for sign in "<>.;"]
+                end = min((place for place in ends if place >= 0), default=len(text))
+                parts += [text[done:start], self._in_mesh(mesh, text[start:end])]
+                done = end
+        return "".join([*parts, text[done:]])
 
     def _in_mesh(self, mesh: str, phrase: str) -> str:
         """Return a phrase about one mesh with the names of its gears."""
@@ -86,16 +100,29 @@ class Words:
         return phrase
 
     def table(self, table: pa.Table) -> pa.Table:
-        """Return a table with the user's names of columns and of what columns of texts say."""
+        """Return a table with the user's names of columns, and in the columns that hold words of the program."""
         if not self.names.gears:
             return table
-        columns = [
-            pa.array([None if one is None else self(one) for one in column.to_pylist()], column.type)
-            if pa.types.is_string(column.type)
-            else column
-            for column in table.columns
-        ]
+        columns = []
+        for name, column in zip(table.column_names, table.columns, strict=True):
+            said: Callable[[str], str] | None = {"indicator": self.column, "notes": self.__call__}.get(name)
+            texts = [text and said(text) for text in column.to_pylist()] if said else None
+            columns.append(pa.array(texts, column.type) if texts is not None else column)
         return pa.table(columns, names=[self.column(name) for name in table.column_names])
+
+    def document(self, value: Any) -> Any:
+        """Return a document whose columns and sentences have the user's names; what comes of data stays."""
+        if not self.names.gears:
+            return value
+        if isinstance(value, Mapping):
+            return {self._entry(key): self.document(item) for key, item in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [self.document(item) for item in value]
+        return self._entry(value) if isinstance(value, str) else value
+
+    def _entry(self, text: str) -> str:
+        """Return a column by its name, anything else as a sentence."""
+        return self.column(text) if "_" in text and text.isidentifier() else self(text)
 
     def figure(self, figure: Figure) -> Figure:
         """Return a figure with the user's names in its texts."""
@@ -115,6 +142,18 @@ class NamedSet(Dataset):
         self.own_names, self._short = names, dict(short)
         self._own = {here: there for there, here in short.items()}
         return self
+
+    @cached_property
+    def words(self) -> Words:
+        """What says the user's names, but for all that the set holds."""
+        labels = self.labels()
+        given = [name for name in labels.column_names if name not in self._own]
+        values = (labels.column(name) for name in given if pa.types.is_string(labels.schema.field(name).type))
+        texts = [text for column in values for text in column.unique().to_pylist() if text]
+        channels = frozenset(channel.name for channel in self.channels)
+        titles = (text.replace("_", " ") for name in channels for text in (name, name.rpartition("_")[0]))
+        data = (*given, *texts, *channels, *titles, self.path, self.path.name, self.manifest.get("name", ""))
+        return Words(self.own_names.keeping(data), channels)
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return labels as `Dataset.labels`."""
@@ -162,6 +201,5 @@ def open_set(path: PurePath | str) -> Dataset:
 
 
 def words_of(dataset: Dataset) -> Words:
-    """Return what says the user's names of a set."""
-    channels = frozenset(channel.name for channel in dataset.channels)
-    return Words(dataset.own_names, channels) if isinstance(dataset, NamedSet) else Words()
+    """Return what says the user's names of a set, but for what the set holds."""
+    return dataset.words if isinstance(dataset, NamedSet) else Words()

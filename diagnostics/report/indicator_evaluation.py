@@ -87,8 +87,8 @@ def write_evaluation(dataset: Dataset, found: Evaluated, folder: Path, *, values
     results = words.table(result_table(found.found))
     write_table(results, folder / "evaluation.parquet")
     write_table(results, folder / "evaluation.csv")
-    numbers = report_numbers(dataset, found, findings(dataset, found))
-    (folder / NUMBERS).write_text(words(json.dumps(numbers, indent=1, allow_nan=False)) + "\n", encoding="utf-8")
+    numbers = words.document(report_numbers(dataset, found, findings(dataset, found)))
+    (folder / NUMBERS).write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return folder / "evaluation.csv"
 
 

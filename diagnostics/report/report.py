@@ -158,8 +158,8 @@ def write_report(
     }
     metrics["studies"] = studies_metrics(studies) if studies else None
     yours = _scored(dataset, page, folder if training else None, network)
-    metrics["yours"] = yours.numbers() if yours else None
-    (folder / "metrics.json").write_text(words(json.dumps(metrics, indent=1, allow_nan=False)) + "\n", encoding="utf-8")
+    metrics = {**words.document(metrics), "yours": yours.numbers() if yours else None}
+    (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     look = _look(dataset, records, judged, folder / "models" if training else None, page, own, stage)
     reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, judged, look, yours)
     path = folder / "report.html"

@@ -121,9 +121,10 @@ def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -
     title = f"Diagnostics of {reported.dataset.path.name}"
     sections = {name: blocks for name, blocks in _sections(reported, pictures).items() if any(blocks)}
     parts = [part for name, blocks in sections.items() for part in (html.heading(name), *blocks)]
+    as_they_are = {look.block, *your_scores(reported.yours)}
     origin = html.paragraph(origin_sentence(reported.dataset))
     whole = [html.heading(title, 1), origin, _answer(reported, pictures), html.contents(parts), *parts]
-    return html.page(words(title), [part if part is look.block else words(part) for part in whole], look.live)
+    return html.page(words(title), [part if part in as_they_are else words(part) for part in whole], look.live)
 
 
 def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:

@@ -36,7 +36,7 @@ def own_labels(config: Config, labels: Mapping[str, object]) -> dict[str, object
     known = {column.name for column in (*common_columns(config), *background_columns(config))}
     found = {names.column(name) if name in known else name: value for name, value in labels.items()}
     if CHANGED_COLUMN.name in found:
-        found[CHANGED_COLUMN.name] = [names.text(str(path)) for path in _listed(found[CHANGED_COLUMN.name])]
+        found[CHANGED_COLUMN.name] = [names.own_path(str(path)) for path in _listed(found[CHANGED_COLUMN.name])]
     return {**found, "faulty_gear": names.gear(str(labels["faulty_gear"]))}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -179,7 +179,10 @@ class Config(Section):
     @property
     def names(self) -> Names:
         """The user's own names of gears, shafts and meshes; without a machine those of the short form."""
-        return NO_NAMES if self.machine is None else names_of(self.machine)
+        if self.machine is None:
+            return NO_NAMES
+        sensors = (name for sensor in self.sensors for name in (sensor.name, *(name for name, _ in sensor.channels)))
+        return _keeping(self.machine, (self.name, *(state.name for state in self.states), *sensors))
 
     def grown_from(self, state_id: int) -> int | None:
         """Return the index of the state whose damage a state contains, or None."""
@@ -213,6 +216,11 @@ class Config(Section):
         del content["specimens"]
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+@cache
+def _keeping(machine: Machine, texts: tuple[str, ...]) -> Names:
+    return names_of(machine).keeping(texts)
 
 
 def _identity_content(value: Any) -> Any:

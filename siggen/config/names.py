@@ -1,15 +1,17 @@
 """Names: the user's own words for gears, shafts and meshes, in place of those of the short form.
 
 The short form calls the gears of a mesh pinion and gear, those of a mesh SLOW behind the first one SLOW.pinion and
-SLOW.gear. All code counts by these words. What leaves it, a label, a column, a message, a page, says `Names`' own ones.
+SLOW.gear. All code counts by these words. Columns, messages and pages that leave it say `Names`' own ones.
+What the user wrote, such as the name of a state, is no word of the program and stays as it is.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from html import escape
 from typing import Any, TypeAlias
 
 from siggen.errors import Problem
@@ -29,6 +31,8 @@ COORDINATE = re.compile(r"(?P<axis>[xyz]|theta|phi|phi_x|phi_y)_(?P<body>\d+|[ml
 BODIES = {"m": "motor", "l": "load", "c": "casing", "b": "base"}
 CHANGED = re.compile(r"states\.\d+\.changes\.")
 """In front of a key that a state changes."""
+BREAK = "<wbr>"
+"""Where pages may break a name."""
 NAMED_GEAR = re.compile(r"\b[Tt]he (?=[a-z0-9_]+\.(?:pinion|gear)\b(?! shaft))")
 """An article that a name has not."""
 
@@ -43,12 +47,20 @@ class Names:
     shafts : pinion, gear, SLOW (the shaft of SLOW.gear) and the user's names
     meshes : the empty name of the first mesh, SLOW, ... and the user's names
     paths : keys of the short form, such as stages.0.gears.pinion, and where the user wrote them
+    kept : texts of the user, such as names of states, that stay as they are wherever they stand alone
     """
 
     gears: Table = ()
     shafts: Table = ()
     meshes: Table = ()
     paths: Table = ()
+    kept: tuple[str, ...] = ()
+
+    def keeping(self, texts: Iterable[object]) -> Names:
+        """Return these names with further texts of the user; of those that would change, since few do."""
+        plain = replace(self, kept=())
+        more = {one for one in map(str, texts) if plain.text(one) != one or plain.column(one) != one}
+        return replace(self, kept=tuple(sorted({*self.kept, *more})))
 
     def gear(self, word: str) -> str:
         """Return the user's name of a gear as damage and labels name it."""
@@ -85,6 +97,13 @@ class Names:
                 return f"{short}{path.removeprefix(own)}"
         return path
 
+    def own_path(self, path: str) -> str:
+        """Return a key of the short form as the user wrote it."""
+        for short, own in sorted(self.paths, key=lambda one: -len(one[0])):
+            if path.startswith(f"{short}.") or (path == short and not short.endswith("gears")):
+                return f"{own}{path.removeprefix(short)}"
+        return path
+
     def column(self, name: str) -> str:
         """Return the user's name of a column or a quantity that the program has."""
         if not self.gears or name in {"gear", "faulty_gear"}:
@@ -98,8 +117,9 @@ class Names:
 
     def text(self, text: str, mesh: str = "") -> str:
         """Return a text of the program in the user's words; `mesh` is that whose gears it calls pinion and gear."""
-        if not self.gears:
-            return text
+        return changed_beside(self.kept, text, lambda part: self._text(part, mesh)) if self.gears else text
+
+    def _text(self, text: str, mesh: str) -> str:
         for short, own in sorted(self.paths, key=lambda one: -len(one[0])):
             text = re.sub(
                 rf"{START}{re.escape(short)}(?=\.[a-z]{'' if short.endswith('gears') else '|' + END})", own, text
@@ -121,11 +141,12 @@ class Names:
         if not self.gears:
             return problem
         mesh = self._mesh_at(problem.path)
-        path, received, allowed = (self.text(one, mesh) for one in (problem.path, problem.received, problem.allowed))
+        path = self.own_path(problem.path)
+        received, allowed = (self.text(one, mesh) for one in (problem.received, problem.allowed))
         keys = {short: own for short, own in KEYS if short not in {DRIVER, DRIVEN}}
         path = ".".join(keys.get(part, part) for part in path.split("."))
         if changed := CHANGED.match(path):
-            path = changed[0] + self.text(path.removeprefix(changed[0]))
+            path = changed[0] + self.own_path(path.removeprefix(changed[0]))
         return replace(problem, path=path, received=received, allowed=allowed)
 
     def _body(self, code: str) -> str:
@@ -140,12 +161,27 @@ NO_NAMES = Names()
 """Of files in the short form."""
 
 
+def changed_beside(kept: tuple[str, ...], text: str, change: Callable[[str], str]) -> str:
+    """Return a text that is changed but for the kept words; a page may break those behind `_`."""
+    if not kept:
+        return change(text)
+    parts = _standing_alone(kept).split(text)
+    return "".join(part if place % 2 else change(part) for place, part in enumerate(parts))
+
+
 def renamed_keys(value: Any, *, own: bool) -> Any:
     """Return mappings and lists with the keys of the other form: the user's `own`, or those of the short form."""
     table = dict(KEYS) if own else {to: key for key, to in KEYS}
     if isinstance(value, dict):
         return {table.get(key, key): renamed_keys(item, own=own) for key, item in value.items()}
     return [renamed_keys(item, own=own) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+@cache
+def _standing_alone(words: tuple[str, ...]) -> re.Pattern[str]:
+    longest = sorted({form for word in words for form in (word, escape(word))}, key=len, reverse=True)
+    broken = (re.escape(form).replace("_", f"_(?:{BREAK})?") for form in longest)
+    return re.compile(rf"((?<!\w)(?:{'|'.join(broken)})(?!\w))")
 
 
 def _in(mesh: str, gear: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
@@ -57,11 +57,20 @@ def parse(raw: Mapping[str, object]) -> ParsedConfig:
     machine, wrong = _validated(_adapter("machine"), raw["machine"], ("machine",))
     if wrong := wrong or machine_problems(machine):
         return ParsedConfig(None, MappingProxyType({}), tuple(wrong))  # words of all else are those of its names
-    names = names_of(machine)
+    names = names_of(machine).keeping(_texts({key: value for key, value in raw.items() if key != "machine"}))
     short, wrong = short_form(raw, machine, names)
     parsed, told = _parsed(short, machine), {problem.path for problem in wrong}
     problems = [*wrong, *(one for one in map(names.problem, parsed.problems) if one.path not in told)]
     return ParsedConfig(None if wrong else parsed.config, parsed.sections, tuple(problems), names)
+
+
+def _texts(value: object) -> Iterator[str]:
+    """Yield all texts of a file."""
+    if isinstance(value, str):
+        yield value
+    items = value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ()
+    for item in items:
+        yield from _texts(item)
 
 
 def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:

@@ -76,7 +76,7 @@ def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
     for section, key, table in _words(names):
         own[section] = _replaced(own[section], key, table)
     states = [
-        {**one, "changes": {names.text(path): to for path, to in one["changes"].items()}} for one in own["states"]
+        {**one, "changes": {names.own_path(path): to for path, to in one["changes"].items()}} for one in own["states"]
     ]
     return {**own, "states": states}
 

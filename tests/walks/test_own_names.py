@@ -1,10 +1,12 @@
 """A machine of three shafts by command, its gears, shafts and meshes named by its user: nobody says pinion.
 
-The set is the one of the short form, renamed: signals are equal to the bit.
+The set is the one of the short form, renamed: signals are equal to the bit. Its state and its sensor have the program's
+own word in their names: these are data, which no table, document or page may rewrite.
 """
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -31,8 +33,15 @@ COMMON: dict[str, Any] = {
 }  # fmt: skip
 
 
+STATE, SENSOR = "pinion_spalled", "pinion_end"
+CHANNEL = f"{SENSOR}_vertical"
+OF_THE_USER = re.compile(rf"{STATE.replace('_', '_(<wbr>)?')}|{SENSOR}|pinion end, vertical")
+"""Data that hold the program's word for a gear, as they stand in files and on pages."""
+
+
 def states(gear: str) -> list[dict[str, Any]]:
-    return [{"name": "healthy"}, {"name": "severe", "damage": {**SPALL, "gear": gear, "teeth": 1}}]
+    damage = {**SPALL, "gear": gear, "teeth": 1}
+    return [{"name": "healthy"}, {"name": STATE, "severity": "severe", "damage": damage}]
 
 
 def run(app: str, *arguments: object) -> str:
@@ -58,11 +67,13 @@ def words_of(file: Path) -> str:
 
 
 def said(folder: Path) -> dict[str, list[str]]:
-    """Return file -> lines that call a gear as the short form does."""
+    """Return file -> lines that call a gear as the short form does; data aside."""
     files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".png"]
     assert files
     found = {
-        str(file.relative_to(folder)): [line[:200] for line in words_of(file).splitlines() if "pinion" in line.lower()]
+        str(file.relative_to(folder)): [
+            line[:200] for line in OF_THE_USER.sub("", words_of(file)).splitlines() if "pinion" in line.lower()
+        ]
         for file in files
     }
     return {file: lines for file, lines in found.items() if lines}
@@ -71,10 +82,10 @@ def said(folder: Path) -> dict[str, list[str]]:
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("mill")
-    sensors = [{"name": "end", "place": "output_bearing"}, {"kind": "encoder", "name": "out", "place": "karl"}]
+    sensors = [{"name": SENSOR, "place": "output_bearing"}, {"kind": "encoder", "name": "out", "place": "karl"}]
     (folder / "mill.yaml").write_text(yaml_text(mill(**COMMON, sensors=sensors, states=states("eva"))))
     printed = run("siggen", "generate", folder / "mill.yaml", "--out", folder / "set", "--engine", "serial")
-    assert "pinion" not in printed
+    assert "pinion" not in OF_THE_USER.sub("", printed)
     return folder
 
 
@@ -84,21 +95,22 @@ def test_plan_set_card_and_records_say_the_users_names_alone(made: Path) -> None
     assert "mesh of slow" in plan
     shown = run("siggen", "show", made / "set", "--record", 1, "--png", made / "record.png")
     shown += run("siggen", "show", made / "set", "--record", 1)
-    assert "pinion" not in plan + shown
+    assert "pinion" not in OF_THE_USER.sub("", plan + shown)
     assert said(made / "set") == {}
     card = siggen.open(made / "set").card()
     assert "`slow`, in which eva with 17 teeth drives karl with 52" in " ".join(card.split())
+    assert f"* `{STATE}`: fault spalling" in card
 
 
 def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: Path) -> None:
-    sensors = [{"name": "end", "place": "slow_bearing"}, {"kind": "encoder", "name": "out", "place": "slow.gear"}]
+    sensors = [{"name": SENSOR, "place": "slow_bearing"}, {"kind": "encoder", "name": "out", "place": "slow.gear"}]
     stage = {**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}
     short = siggen.load_config(staged(**COMMON, stages=[stage], sensors=sensors, states=states("slow.pinion")))
     (other,) = simulate(short, [1])
     assert isinstance(other, Record)
     record = siggen.open(made / "set").record(1)
     for name, signal in other.channels.items():
-        column = {"end_vertical": "accel_end_vertical_m_s2", "out_rotation": "speed_out_rotation_rad_s"}[name]
+        column = {CHANNEL: f"accel_{CHANNEL}_m_s2", "out_rotation": "speed_out_rotation_rad_s"}[name]
         np.testing.assert_array_equal(record[column], signal)
     names = {
         "teeth_pinion": "teeth_ida", "teeth_slow_gear": "teeth_karl", "faulty_teeth_slow_pinion": "faulty_teeth_eva",
@@ -122,8 +134,14 @@ def test_indicators_say_the_users_names_alone(made: Path) -> None:
     run("diagnostics", "indicators", made / "set", "--out", made / "indicators")
     assert said(made / "indicators") == {}
     names = pq.read_schema(made / "indicators/indicators.parquet").names
-    assert "sideband_ratio_ida_h1_k3__end_vertical" in names
-    assert "sideband_ratio_eva_h1_k3_slow__end_vertical" in names
+    assert f"sideband_ratio_ida_h1_k3__{CHANNEL}" in names
+    assert f"sideband_ratio_eva_h1_k3_slow__{CHANNEL}" in names
+    assert f"snr_{CHANNEL}_db" in names
+    values = pq.read_table(made / "indicators/indicators.parquet")["state"].to_pylist()
+    assert values == siggen.open(made / "set").labels()["state"].to_pylist()
+    numbers = json.loads((made / "indicators/indicators.json").read_text())
+    assert numbers["states"] == [STATE]
+    assert {one["channel"] for one in numbers["results"]} == {CHANNEL, "out_rotation"}
 
 
 @pytest.mark.slow
@@ -131,6 +149,26 @@ def test_a_report_says_the_users_names_alone(made: Path) -> None:
     run("diagnostics", "report", made / "set", "--out", made / "report", "--no-cnn")
     found = {file: lines for file, lines in said(made / "report").items() if not file.startswith("models")}
     assert found == {}, "saved models count by the program's own words"
+    page = (made / "report/report.html").read_text()
+    assert f">{STATE}<" in page.replace("<wbr>", "")
+    assert "ida_spalled" not in page
+    assert STATE in json.loads((made / "report/metrics.json").read_text())["detectors"]["alone"]["indicator"]["states"]
+
+
+@pytest.mark.slow
+def test_an_audit_keeps_the_names_of_states(made: Path) -> None:
+    run("diagnostics", "audit", made / "set", "--out", made / "audit")
+    assert said(made / "audit") == {}
+    strongest = json.loads((made / "audit/audit.json").read_text())["strongest"]
+    assert {row["state"] for one in strongest.values() for row in one["states"]} == {STATE}
+
+
+def test_a_message_repeats_what_the_file_says(made: Path) -> None:
+    wrong = made / "wrong.yaml"
+    wrong.write_text((made / "mill.yaml").read_text().replace("severity: severe", "severity: pinion_rough"))
+    done = command("siggen", "plan", str(wrong))
+    assert done.returncode == 2
+    assert "received 'pinion_rough'" in done.stderr
 
 
 @pytest.mark.slow
