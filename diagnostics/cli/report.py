@@ -91,6 +91,8 @@ def report(
             path = _models((dataset, second), folder, seed, options, own)
         else:
             path = _page((dataset, second), folder, seed, options, own, pages)
+            metrics = json.loads((path.parent / "metrics.json").read_text(encoding="utf-8"))
+            typer.echo(metrics["headline"], err=True)
     if as_json:
         echo_json(json.loads(((path if models_only else path.parent) / "metrics.json").read_text(encoding="utf-8")))
     else:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -234,8 +234,8 @@ def sham_sentence(found: Detectors) -> str:
     reached = joined([f"{decimal(sham.value)} ({limits(sham)}) {side}" for side, (_, sham) in asked.items()])
     said = f"Damage without any effect is told from healthy records with an AUC of {reached}; 0.5 is chance."
     for side, (one, sham) in asked.items():
-        if lost := [name for name, state in one.states.items() if not state.auc.value > sham.value]:
-            said += f" What is found of {joined(lost)} {side} is no more than that, so it counts as not found."
+        if lost := [name for name, state in one.states.items() if not state.auc.value > sham.high]:
+            said += f" What is told of {joined(lost)} {side} is within these limits, so it counts as not told."
     return said
 
 
@@ -261,6 +261,8 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
     states = {state: found for state, found in best.states.items() if found.kind == kind}
     smallest = min(states, key=lambda state: states[state].area_mm2)
     largest = max(states, key=lambda state: states[state].area_mm2)
+    if not any(map(best.tells, states)):
+        return f"{capitalised(name)} is not told from healthy records: {_areas_under(states)}."
     if size is None:
         found = states[largest]
         of = f" of {_area(found.area_mm2)}" if found.area_mm2 > 0.0 else ""  # what shows on no flank has no area
@@ -276,6 +278,11 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
         f"{capitalised(name)}: nine of ten records are found at no size of the set. Of the largest ({largest}, up to "
         f"{_area(size.largest_mm2)}) it is {_share(states[largest])}."
     )
+
+
+def _areas_under(states: Mapping[str, StateFound]) -> str:
+    parts = [f"{state} {decimal(found.auc.value)} ({limits(found.auc)})" for state, found in states.items()]
+    return f"AUC of {joined(parts)}, chance is 0.5"
 
 
 def _area_limits(size: FoundSize) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from diagnostics.page.wording import capitalised, counted, decimal, joined, limi
 from diagnostics.records.state_classes import HEALTHY, kind_name
 from diagnostics.report.drawing import BEHIND_COLOUR, DECADES_SHOWN, around, draw_spectrum, strongest
 from diagnostics.report.examples import Example, ExampleSet
-from diagnostics.statistics.detector import Detector, FoundSize
+from diagnostics.statistics.detector import CHANCE, FALSE_ALARMS, FOUND, Detector, FoundSize
 from diagnostics.training.detectors import FEWEST_SPECIMENS, Detectors
 
 if TYPE_CHECKING:
@@ -88,37 +89,129 @@ def _row_title(example: Example, areas: dict[int, float], best: Detector | None)
     if found is None or found.share is None:
         return f"{example.state}{size}"
     spread = f" ({percent_limits(found.share)})" if math.isfinite(found.share.low) else ""
-    return f"{example.state}{size}: found in {percent(found.share.value)} of records{spread}"
+    alarms = f"{example.state}{size}: {percent(found.share.value)} of records alarm{spread}"
+    return alarms if best and best.tells(example.state) else f"{alarms}, not told from healthy"
 
 
 def first_caption(examples: ExampleSet) -> str:
     """Return what the figure shows, for a reader who has never seen one."""
     return (
-        f"Vibration of one gearbox with growing damage (colour), over the same gearbox healthy (grey): specimen "
+        f"Order spectra of one gearbox with damage (colour), by its size, and healthy (grey): specimen "
         f"{examples.specimen_id}, {examples.channel}, {examples.speed_hz:.3g}{SPACE}Hz, "
-        f"{examples.torque_nm:.3g}{SPACE}N{SPACE}m. Damage lifts the marked sidebands of the tooth mesh. Sizes are "
-        f"damaged areas of this gearbox, shares those of all, with 95{SPACE}% limits."
+        f"{examples.torque_nm:.3g}{SPACE}N{SPACE}m. Marked: where sidebands of the tooth mesh lie. Sizes are damaged "
+        f"areas of this gearbox, shares those of all, with 95{SPACE}% limits."
     )
 
 
 def first_answer(found: Detectors) -> str:
-    """Say in a sentence which damage is found, from which size on, and by what; `**` marks what matters."""
+    """Say which damage is found from which size on, which states are told, or that none is; `**` marks what matters."""
     best = found.strongest
     if best is None:
         return (
             "**No answer**: that needs healthy and damaged records of "
             f"**{FEWEST_SPECIMENS} gearboxes or more** in this set."
         )
-    by = f"Detector: **{detector_words(best)}**."
-    if not best.sizes:
-        name = max(best.states, key=lambda state: best.states[state].auc.value)
-        return f"The state **{name}** is told best; {best.healthy} healthy records are too few to name a size. {by}"
+    if not best.told:
+        said = [_nothing_words(best)]
+    elif best.sizes:
+        said = _kinds_words(best)
+    else:
+        said = [f"Told from healthy: **{_sizes(best, best.told[::-1])}**.", _lost_words(best)]
+        said.append(f"{counted(best.healthy, 'healthy record')} are too few to name a size.")
+    said += [_below_chance(best), f"Detector: **{detector_words(best)}**.", _next_step(found)]
+    return " ".join(part for part in said if part)
+
+
+def _nothing_words(best: Detector) -> str:
+    """Say that nothing is found, and what chance gives."""
+    alarms = ""
+    if best.share is not None:
+        alarms = f"; {percent(best.share.value)} of damaged and {percent(FALSE_ALARMS)} of healthy records alarm"
+    said = f"**Nothing was found**: AUC **{decimal(best.every.value)}** ({limits(best.every)}), chance is 0.5{alarms}."
+    if best.sham is not None and any(state.auc.low > CHANCE for state in best.states.values()):
+        said += f" What is told is no more than on damage without effect (AUC up to {decimal(best.sham.high)})."
+    return said
+
+
+def _kinds_words(best: Detector) -> list[str]:
+    """Say of every kind of damage what is found, what is told alone, and what is not; what is found comes first."""
     kinds = list(dict.fromkeys(state.kind for state in best.states.values()))
-    reached = {kind: kind in best.sizes and best.sizes[kind].reached for kind in kinds}
-    order = sorted(kinds, key=lambda kind: not reached[kind])
-    said = [_kind_words(best, kind, best.sizes.get(kind), kind_name(kind, kinds)) for kind in order]
-    more = f"; further kinds of damage: {len(said) - MOST_KINDS}" if len(said) > MOST_KINDS else ""
-    return f"{'; '.join([f'**{capitalised(said[0])}', *(f'**{one}' for one in said[1:MOST_KINDS])])}{more}. {by}"
+    members = {kind: [state for state, found in best.states.items() if found.kind == kind] for kind in kinds}
+    told = {kind: any(map(best.tells, members[kind])) for kind in kinds}
+    reached = {kind: told[kind] and kind in best.sizes and best.sizes[kind].reached for kind in kinds}
+    said = []
+    for kind in sorted(kinds, key=lambda kind: (not reached[kind], not told[kind]))[:MOST_KINDS]:
+        name = capitalised(kind_name(kind, kinds))
+        if reached[kind]:
+            said.append(_reached_words(best, best.sizes[kind], members[kind], name))
+        elif told[kind]:
+            said.append(_told_words(best, members[kind], name if len(kinds) > 1 else ""))
+        else:
+            said.append(f"**{name}** is not told from healthy.")
+    more = len(kinds) - MOST_KINDS
+    return [*said, f"Further kinds of damage: {more}."] if more > 0 else said
+
+
+def _reached_words(best: Detector, size: FoundSize, members: list[str], name: str) -> str:
+    """Say from which size on a kind of damage is found."""
+    limit = f"{rounded(size.smallest_mm2 if size.is_bound else size.area_mm2.value)}{SPACE}mm²"
+    if size.is_bound:
+        smallest = min(members, key=lambda state: best.states[state].area_mm2)
+        spread = f" ({smallest}; none of this kind is smaller)"
+    else:
+        high = size.area_mm2.high
+        spread = f" ({rounded(size.area_mm2.low)} to {rounded(high) if math.isfinite(high) else 'beyond the largest'})"
+    return f"**{name} from {limit} on**{spread} is found in **nine of ten records**."
+
+
+def _told_words(best: Detector, members: list[str], name: str) -> str:
+    """Say which states of a kind are found, which are told from healthy alone, and which are not."""
+    order = sorted(members, key=lambda state: -best.states[state].area_mm2)
+    shares = {state: found.share.value for state in order if (found := best.states[state]).share and best.tells(state)}
+    whole = [state for state, share in shares.items() if share >= FOUND]
+    partly = [state for state in shares if state not in whole]
+    alarms = [f"{_size(best, state)} {percent(shares[state])}" for state in (*whole, *partly)][:MOST_SIZES]
+    of_kind = f" of {name[:1].lower()}{name[1:]}" if name else ""
+    first = (
+        f"**Only {_sizes(best, whole)}{of_kind} {'is' if len(whole) == 1 else 'are'} found**"
+        if whole
+        else f"**No size{of_kind} is found in nine of ten records**"
+    )
+    lost = [state for state in order if state not in shares]
+    said = f"{first}. Records that alarm: {', '.join(alarms)}; healthy {percent(FALSE_ALARMS)}."
+    return f"{said} {_lost_words(best, lost)}" if lost else said
+
+
+def _lost_words(best: Detector, states: Sequence[str] | None = None) -> str:
+    """Name the states that are not told from healthy, of all or of some."""
+    lost = [state for state in states or best.states if not best.tells(state)]
+    return f"Not told from healthy: **{_sizes(best, lost)}**." if lost else ""
+
+
+def _below_chance(best: Detector) -> str:
+    """Call out intervals that lie wholly below chance; empty without one."""
+    asked = {"all damage together": best.every, **{name: state.auc for name, state in best.states.items()}}
+    below = [f"{name} ({limits(auc)})" for name, auc in asked.items() if auc.high < CHANCE][:MOST_SIZES]
+    if not below:
+        return ""
+    return (
+        f"**Below chance, with its whole interval: AUC of {joined(below)}**. What was learnt turns round on other "
+        "gearboxes: look for a trap (`audit`)."
+    )
+
+
+def _next_step(found: Detectors) -> str:
+    """Say what may find more, where something is not told; empty where all is."""
+    best, beside = found.strongest, found.strongest_referenced
+    if best is None or len(best.told) == len(best.states):
+        return ""
+    if beside is None:
+        return "Next: two healthy records of each gearbox (`repeats: 2`), so that each is judged beside one."
+    if more := [state for state in beside.told if state not in best.told]:
+        return (
+            f"Beside a healthy record of the same gearbox **{joined(more)}** {'is' if len(more) == 1 else 'are'} told."
+        )
+    return "Next: more gearboxes or larger damage; a healthy record of the same gearbox tells no more."
 
 
 def detector_words(best: Detector) -> str:
@@ -129,28 +222,16 @@ def detector_words(best: Detector) -> str:
     return most if len(best.picks) == 1 else f"mostly {most}"
 
 
-def _kind_words(best: Detector, kind: str, size: FoundSize | None, name: str) -> str:
-    """Return what is found of a kind of damage, behind the `**` that opens it."""
-    states = sorted(
-        (state for state, found in best.states.items() if found.kind == kind),
-        key=lambda state: best.states[state].area_mm2,
-    )
-    if size is not None and size.reached:
-        limit = size.smallest_mm2 if size.is_bound else size.area_mm2.value
-        smallest = f" ({states[0]}; none of this kind is smaller)" if size.is_bound else ""
-        return f"{name} from {rounded(limit)}{SPACE}mm² on** is found in **nine of ten records**{smallest}"
-    said = f"{name}** is found in only **{_share(best, states[-1])}** of records ({_size(best, states[-1])})"
-    return f"{said}, down to {_share(best, states[0])} ({_size(best, states[0])})" if len(states) > 1 else said
-
-
-def _share(best: Detector, state: str) -> str:
-    share = best.states[state].share
-    return percent(share.value) if share else "an unknown share"
+def _sizes(best: Detector, states: Sequence[str]) -> str:
+    """Name a few states with their sizes, and how many more there are."""
+    named = [_size(best, state) for state in states[:MOST_SIZES]]
+    more = len(states) - len(named)
+    return joined([*named, f"{more} more"] if more else named)
 
 
 def _size(best: Detector, state: str) -> str:
     area_mm2 = best.states[state].area_mm2
-    return f"{state}, {rounded(area_mm2)}{SPACE}mm²" if area_mm2 > 0.0 else state
+    return f"{state} ({rounded(area_mm2)}{SPACE}mm²)" if area_mm2 > 0.0 else state
 
 
 def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
@@ -174,9 +255,10 @@ def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
         f"({spread}; 0.5 is chance, 1 is perfect)."
     ]
     sham = best.sham
-    lost = [name for name, state in best.states.items() if sham and not state.auc.value > sham.value]
-    if sham and lost:
-        parts.append(f"**Damage without effect is told too (AUC {decimal(sham.value)})**: {joined(lost)} is not found.")
+    lost = [name for name, state in best.states.items() if sham and not state.auc.value > sham.high]
+    if sham and sham.low > CHANCE and lost:
+        said = f"**Damage without effect is told too (AUC {decimal(sham.value)})**"
+        parts.append(f"{said}: {joined(lost)} {'is' if len(lost) == 1 else 'are'} not told.")
     if error_free:
         parts.append("**The gears have no manufacturing errors**: on a real machine nothing is known.")
     told = audit.split(". ", maxsplit=1)[0].rstrip(".")

@@ -33,7 +33,7 @@ from diagnostics.report.answer import answer_figure, answer_sentences
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.drawing import draw
 from diagnostics.report.examples import example_set, reported_gearboxes
-from diagnostics.report.first_screen import first_caption, first_figure
+from diagnostics.report.first_screen import first_answer, first_caption, first_figure
 from diagnostics.report.indicator_evaluation import Evaluated, evaluated, write_evaluation
 from diagnostics.report.indicator_sections import figures
 from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, report_page
@@ -152,6 +152,7 @@ def write_report(
     answer = answer_sentences(detectors, error_free=is_error_free(dataset.config))
     sentences = [*(text for _, text in answer), *summary(dataset.config, training, found), audit]
     metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
+    metrics["headline"] = first_answer(detectors).replace("**", "")
     metrics["detectors"] = {
         side: {family: detector.numbers() for family, detector in getattr(detectors, side).items()}
         for side in ("alone", "referenced")

@@ -20,7 +20,7 @@ from diagnostics.statistics.detectable_size import detection_curve, size_at, wei
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
 from diagnostics.statistics.scores import area_interval
 
-FALSE_ALARMS, FOUND = 0.05, 0.9
+FALSE_ALARMS, FOUND, CHANCE = 0.05, 0.9, 0.5
 FEWEST_HEALTHY = 20
 """Healthy records from which one in twenty can lie above a threshold."""
 
@@ -89,6 +89,8 @@ class Detector:
         Which detectors it stands for, and in how many folds; empty for one that is always the same.
     sham : Interval, optional
         AUC of the records of shams against other healthy ones, where there are any: above chance it tells a leak.
+    share : Interval, optional
+        Share of all damaged records with an alarm.
     """
 
     title: str
@@ -102,6 +104,17 @@ class Detector:
     basis: str = ""
     picks: tuple[tuple[str, int], ...] = ()
     sham: Interval | None = None
+    share: Interval | None = None
+
+    def tells(self, state: str) -> bool:
+        """Whether a state is told from healthy: its lower AUC limit beats chance, its AUC what a sham may reach."""
+        auc = self.states[state].auc
+        return auc.low > CHANCE and (self.sham is None or auc.value > self.sham.high)
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """States that are told from healthy, by their size."""
+        return tuple(sorted(filter(self.tells, self.states), key=lambda state: self.states[state].area_mm2))
 
     def numbers(self) -> dict[str, Any]:
         """Return everything for JSON; undefined and unreached numbers are null."""
@@ -115,11 +128,13 @@ class Detector:
             "healthy_records": self.healthy,
             "auc_sham": self.sham.numbers() if self.sham else None,
             "auc": self.every.numbers(),
+            "share_of_alarms": self.share.numbers() if self.share else None,
             "states": {
                 name: {
                     "kind": found.kind,
                     "damaged_area_mm2": found.area_mm2,
                     "auc": found.auc.numbers(),
+                    "told": self.tells(name),
                     "share_of_alarms": found.share.numbers() if found.share else None,
                 }
                 for name, found in self.states.items()
@@ -183,6 +198,7 @@ def judged_detector(
         int(healthy.sum()),
         basis,
         sham=_sham_auc(score, labels, weights),
+        share=_share(score, labels, weights, threshold, ~healthy),
     )
 
 
@@ -209,13 +225,24 @@ def _state(
 ) -> StateFound:
     rows = of_state | (labels["fault"] == HEALTHY)
     auc = _auc(score[rows], of_state[rows], weights[:, rows], labels["specimen_id"][rows])
-    share = None
-    if threshold is not None:
-        own = weights[:, of_state]
-        with np.errstate(invalid="ignore"):  # a resample without this state
-            alarms = (own * (score[of_state] > threshold[:, None])).sum(axis=1) / own.sum(axis=1)
-        share = area_interval(alarms, int(np.unique(labels["specimen_id"][of_state]).size))
+    share = _share(score, labels, weights, threshold, of_state)
     return StateFound(kind, float(np.median(labels[AREA][of_state])), auc, share)
+
+
+def _share(
+    score: np.ndarray,
+    labels: Mapping[str, np.ndarray],
+    weights: np.ndarray,
+    threshold: np.ndarray | None,
+    asked: np.ndarray,
+) -> Interval | None:
+    """Return the share of the records asked for with an alarm."""
+    if threshold is None:
+        return None
+    own = weights[:, asked]
+    with np.errstate(invalid="ignore"):  # a resample without any of them
+        alarms = (own * (score[asked] > threshold[:, None])).sum(axis=1) / own.sum(axis=1)
+    return area_interval(alarms, int(np.unique(labels["specimen_id"][asked]).size))
 
 
 def _sizes(

@@ -70,7 +70,10 @@ def test_the_answer_stands_first_and_says_that_error_free_gears_separate_trivial
     )
     assert opening is not None
     first = re.sub(r"<[^>]*>", "", opening.group())
-    assert "Pitting from 1\xa0mm² on is found in nine of ten records (slight; none of this kind is smaller)." in first
+    assert "Pitting from 1\xa0mm² on (slight; none of this kind is smaller) is found in nine of ten records." in first
+    headline = json.loads((folder / "metrics.json").read_text())["headline"]
+    assert headline in first
+    assert "lifts" not in first
     assert "24\xa0gearboxes was judged by a model that had learnt from others alone." in first
     assert "5\xa0% give a false alarm. All damage together: AUC 1.00" in first
     detectors = text.split('id="which-damage-is-found"')[1].split("<h2")[0]
