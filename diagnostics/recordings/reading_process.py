@@ -1,7 +1,7 @@
-"""Recorded files read in a process apart: what a damaged file does to the libraries that parse it stays there.
+"""Files of strangers read in a process apart: what a damaged one does to the libraries that parse it stays there.
 
-One process is started for all files. It loads the libraries once and forks for every file, within limits of memory and
-time. The columns come back as arrays in a file, never as objects.
+One process is started for all files: recordings, predictions, models. It loads the libraries once and forks for every
+file, within limits of memory and time. What was read comes back as arrays in a file, never as objects.
 """
 
 from __future__ import annotations
@@ -13,6 +13,9 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -30,25 +33,56 @@ _started: dict[int, subprocess.Popen[str]] = {}
 """Process id of the asking process -> its reading process: one that was forked starts its own."""
 
 
-def columns_read_apart(path: Path, row: int | None = None) -> Columns:
-    """Return `file_columns` of a file, read in another process where the system can fork.
+@contextmanager
+def read_apart(path: Path, work: str, *, size: int | None = None, **more: Any) -> Iterator[Path]:
+    """Give the folder with what a function left of a file, called in another process where the system can fork.
+
+    Parameters
+    ----------
+    path : Path
+        A regular file.
+    work : str
+        MODULE:FUNCTION, called with the path, the folder and what is given beside; its module is loaded once.
+    size : int, optional
+        Bytes that the limits follow; that of the file.
 
     Raises
     ------
     UsageError
-        As of `file_columns`, or if reading ended the process, in words.
+        As of the function, or if reading ended the process, in words.
     """
-    if not hasattr(os, "fork"):
-        from diagnostics.recordings.file_columns import file_columns
+    if path.exists() and not path.is_file():
+        raise UsageError(f"{path}: is no file that can be read through; allowed: a regular file")
+    with tempfile.TemporaryDirectory(prefix="siggen-reading-") as name:
+        folder = Path(name)
+        if hasattr(os, "fork"):
+            question = {"path": str(path.absolute()), "shown": str(path), "to": name, "work": work, "size": size}
+            answer = _asked({**question, "more": more})
+            if "refused" in answer:
+                raise UsageError(answer["refused"])
+            if answer["ended"]:
+                raise UsageError(f"{path}: cannot be read: it is damaged, or far too large ({answer['ended']})")
+        else:
+            _function(work)(path, folder, **more)
+        yield folder
 
-        return file_columns(path, row)
-    with tempfile.TemporaryDirectory(prefix="siggen-reading-") as folder:
-        answer = _asked({"path": str(path.absolute()), "shown": str(path), "row": row, "to": folder})
-        if "refused" in answer:
-            raise UsageError(answer["refused"])
-        if answer["ended"]:
-            raise UsageError(f"{path}: cannot be read: it is damaged, or far too large ({answer['ended']})")
-        return _columns(Path(folder))
+
+def columns_read_apart(path: Path, row: int | None = None) -> Columns:
+    """Return `file_columns` of a file, read apart.
+
+    Raises
+    ------
+    UsageError
+        As of `file_columns` and `read_apart`.
+    """
+    with read_apart(path, f"{__name__}:keep_columns", row=row) as folder:
+        return _columns(folder)
+
+
+def _function(work: str) -> Callable[..., None]:
+    module, _, name = work.partition(":")
+    found: Callable[..., None] = getattr(import_module(module), name)
+    return found
 
 
 def _asked(question: dict[str, Any]) -> dict[str, Any]:
@@ -83,11 +117,11 @@ def _stop(process: subprocess.Popen[str]) -> None:
 
 def serve() -> None:
     """Read files as lines of stdin name them, until it is closed: the side of the reading process."""
-    import scipy.io  # noqa: F401 - loaded before it forks
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the asking process decides what it means
     for line in sys.stdin:
         question = json.loads(line)
+        with suppress(Exception):  # the child says it
+            _function(question["work"])
         child = os.fork()
         if child == 0:
             _read(question)
@@ -107,15 +141,12 @@ def _answer(status: int, folder: Path) -> dict[str, Any]:
 
 
 def _read(question: dict[str, Any]) -> None:
-    """Read one file, leave its columns or a sentence, and end the process."""
-    from diagnostics.recordings.file_columns import file_columns
-
+    """Read one file, leave what was asked for or a sentence, and end the process."""
     path, folder = Path(question["path"]), Path(question["to"])
     try:
-        _limit(path.stat().st_size)
-        found = file_columns(path, question["row"])
-        refuse_many(path, len(found.values))
-        _keep(found, folder)
+        own = path.stat().st_size if path.exists() else 0  # the function says that there is none
+        _limit(own if question["size"] is None else question["size"])
+        _function(question["work"])(path, folder, **question["more"])
     except UsageError as error:
         text = str(error).replace(question["path"], question["shown"])
         (folder / "refused").write_text(text, encoding="utf-8", errors="replace")
@@ -132,6 +163,15 @@ def _limit(size: int) -> None:
         # never above what this process was started with: asking for more is refused
         given = [bound for bound in resource.getrlimit(limit) if bound != resource.RLIM_INFINITY]
         resource.setrlimit(limit, (min([asked, *given]),) * 2)
+
+
+def keep_columns(path: Path, folder: Path, row: int | None) -> None:
+    """Leave the columns of a recording in a folder; errors as of `file_columns`."""
+    from diagnostics.recordings.file_columns import file_columns
+
+    found = file_columns(path, row)
+    refuse_many(path, len(found.values))
+    _keep(found, folder)
 
 
 def _keep(found: Columns, folder: Path) -> None:

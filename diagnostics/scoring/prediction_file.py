@@ -9,6 +9,7 @@ The columns of one classifier's predictions, brought into the order of the recor
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,10 +17,13 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from diagnostics.base.beside import beside
+from diagnostics.recordings.reading_process import read_apart
 from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.grade import PROBABILITY
+from diagnostics.scoring.prediction_reading import keep_table, kept_table
 from diagnostics.scoring.remaining_life import RUL
 from diagnostics.scoring.size import AREA
 from diagnostics.scoring.tasks import TASKS
@@ -28,7 +32,7 @@ from diagnostics.statistics.evaluation import Predictions
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
 
-SHOWN = 5
+SHOWN, MOST_CLASSIFIERS = 5, 1_000
 
 PREDICTIONS_FILE, MODELS_FOLDER = "predictions.parquet", "models"
 RECORD, CLASSIFIER, SPLIT = "record_id", "classifier", "split"
@@ -188,23 +192,30 @@ def prediction_table(predictions: Any) -> pa.Table:
     UsageError
         If they cannot be read, or their columns differ in length.
     """
+    if isinstance(predictions, str | Path):
+        with read_apart(Path(predictions), f"{keep_table.__module__}:{keep_table.__name__}") as folder:
+            return _usable(kept_table(folder), predictions)
     try:
-        return _read(Path(predictions)) if isinstance(predictions, str | Path) else pa.table(predictions)
-    except (OSError, TypeError, ValueError, pa.ArrowException) as error:
-        what = predictions if isinstance(predictions, str | Path) else "predictions"
-        raise UsageError(
-            f"{what}: no readable table ({error}); allowed are .parquet and .csv, and in Python columns by name"
-        ) from error
+        return _usable(pa.table(predictions), "predictions")
+    except (TypeError, ValueError, pa.ArrowException) as error:
+        raise UsageError(f"predictions: no table ({error}); allowed: columns by name, all of one length") from error
 
 
-def _read(path: Path) -> pa.Table:
-    if path.suffix == ".csv":
-        from pyarrow import csv
-
-        return csv.read_csv(path)
-    from pyarrow import parquet
-
-    return parquet.ParquetFile(path).read()
+def _usable(table: pa.Table, where: Any) -> pa.Table:
+    """Return a table whose columns have a name each, with names of classifiers as texts."""
+    doubled = [name for name, count in Counter(table.column_names).items() if count > 1]
+    if doubled:
+        raise UsageError(f"{where}: the column {', '.join(doubled[:SHOWN])} is there more than once; allowed: once")
+    if CLASSIFIER not in table.column_names:
+        return table
+    column = table.column(CLASSIFIER)
+    if column.null_count or not (pa.types.is_string(column.type) or pa.types.is_primitive(column.type)):
+        empty = counted(column.null_count, "empty value")
+        raise UsageError(f"{where}: {CLASSIFIER} holds {column.type}, {empty}; allowed: a name in each row")
+    names = column.cast(pa.string())
+    if (count := pc.count_distinct(names).as_py()) > MOST_CLASSIFIERS:
+        raise UsageError(f"{where}: {count} names in {CLASSIFIER}; allowed: {MOST_CLASSIFIERS}")
+    return table.set_column(table.column_names.index(CLASSIFIER), CLASSIFIER, names)
 
 
 def baselines_file(folder: Path) -> Path:
@@ -230,7 +241,7 @@ def baselines_beside(dataset: Dataset) -> Path | None:
     for ending in BESIDE:
         folder = beside(dataset.path, ending)
         for file in (folder / MODELS_FOLDER / PREDICTIONS_FILE, folder / PREDICTIONS_FILE):
-            if file.is_file() and identity_of(_read(file)) == dataset.manifest["identity"]:
+            if file.is_file() and identity_of(prediction_table(file)) == dataset.manifest["identity"]:
                 return file
     return None
 
@@ -238,7 +249,7 @@ def baselines_beside(dataset: Dataset) -> Path | None:
 def identity_of(table: pa.Table) -> str | None:
     """Return the identity of the set that predictions name; None where they name none."""
     named = (table.schema.metadata or {}).get(IDENTITY_KEY)
-    return None if named is None else str(named.decode())
+    return None if named is None else named.decode(errors="replace")
 
 
 def check_identity(table: pa.Table, identity: str, where: Any) -> None:
@@ -265,6 +276,6 @@ def check_classes(table: pa.Table, kind: str, where: Any) -> None:
     UsageError
         If they do not.
     """
-    named = (table.schema.metadata or {}).get(KIND_KEY, kind.encode()).decode()
+    named = (table.schema.metadata or {}).get(KIND_KEY, kind.encode()).decode(errors="replace")
     if named != kind:
         raise UsageError(f"{where}: its classes are {named}s; asked for were {kind}s. Give --classes {named}")
