@@ -20,6 +20,7 @@ from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
 from diagnostics.cli.score import score
+from siggen.cli.echo import echo
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
 
 PROGRAM = "siggen-diagnostics"
@@ -47,7 +48,7 @@ app.add_typer(bench, name="bench", rich_help_panel="A benchmark with sealed labe
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"{PROGRAM} {siggen.__version__}")
+        echo(f"{PROGRAM} {siggen.__version__}")
         raise typer.Exit(EXIT_OK)
 
 
@@ -66,20 +67,20 @@ def main() -> None:
     try:
         app()
     except SiggenError as error:
-        typer.echo(f"{PROGRAM}: {error}", err=True)
+        echo(f"{PROGRAM}: {error}", err=True)
         sys.exit(error.exit_code)
     except BrokenPipeError:  # the reader of a pipe, such as head, has seen enough
         sys.stdout = None
     except KeyboardInterrupt:
-        typer.echo(f"{PROGRAM}: interrupted", err=True)
+        echo(f"{PROGRAM}: interrupted", err=True)
         sys.exit(EXIT_INTERRUPTED)
     except Exception as error:
         if words := path_fault(error):
-            typer.echo(f"{PROGRAM}: {words}", err=True)
+            echo(f"{PROGRAM}: {words}", err=True)
             sys.exit(EXIT_USAGE)
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
         kind = type(error).__name__
         again = f"run again with {TRACEBACK_VARIABLE}=1 for details"
-        typer.echo(f"{PROGRAM}: unexpected {kind}: {error}; {again}", err=True)
+        echo(f"{PROGRAM}: unexpected {kind}: {error}; {again}", err=True)
         sys.exit(EXIT_UNEXPECTED)

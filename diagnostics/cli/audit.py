@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.set_options import OwnIndicators
+from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 
 
@@ -99,14 +100,14 @@ def audit(
     )
     found = audit_set(dataset, wanted, own, terminal_stage)
     for sentence in audit_summary(found):
-        typer.echo(sentence)
+        echo(sentence)
     for finding in found.findings:
-        typer.echo(f"- {finding.line()}")
+        echo(f"- {finding.line()}")
     for note in found.notes:
-        typer.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
     with terminal_stage("page", 1):
         page = write_audit(found, dataset, folder)
-    typer.echo(str(page))
+    echo(str(page))
     if strict and found.findings:
         raise VerificationError(f"{directory}: {counted(len(found.findings), 'trap')} found (--strict)")
     if strict and found.tells_too_little:

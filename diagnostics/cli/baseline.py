@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
+from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -61,11 +62,11 @@ def baseline(
     save_machine(machine, out)
     shaft = names_of(train).shafts[0]
     speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
-    typer.echo(f"{len(sources)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
+    echo(f"{len(sources)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
     for doubt in machine.doubts:
-        typer.echo(f"doubtful: {doubt}", err=True)
-    typer.echo(rate_sentence(len(sources), false_alarms), err=True)
-    typer.echo(str(out))
+        echo(f"doubtful: {doubt}", err=True)
+    echo(rate_sentence(len(sources), false_alarms), err=True)
+    echo(str(out))
 
 
 def _loads(said: str) -> list[float] | None:

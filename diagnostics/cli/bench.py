@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.set_options import Open, Seed, opened
+from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 
 Bench = Annotated[Path, typer.Argument(metavar="BENCH", help="Folder of a benchmark.", show_default=False)]
@@ -100,8 +101,8 @@ def make(
     named = f"{size.tier}{numbers}"
     wanted = Wanted(named, chosen, config or LEARNT, tuple(overrides or ()), facts=facts)
     found = make_benchmark(out, folder, read_secret(folder / SECRET_FILE), wanted, workers, terminal_stage)
-    typer.echo(str(found))
-    typer.echo(f"publish {out}; never {folder}", err=True)
+    echo(str(found))
+    echo(f"publish {out}; never {folder}", err=True)
 
 
 @bench.command()
@@ -113,7 +114,7 @@ def commit(folder: Bench, labels: Sealed = None) -> None:
     from diagnostics.bench.revealing import commit as committed
     from diagnostics.scoring.benchmark import open_benchmark
 
-    typer.echo(committed(open_benchmark(folder), labels))
+    echo(committed(open_benchmark(folder), labels))
 
 
 @bench.command()
@@ -125,7 +126,7 @@ def reveal(folder: Bench, labels: Sealed = None) -> None:
     from diagnostics.bench.revealing import reveal as revealed
     from diagnostics.scoring.benchmark import open_benchmark
 
-    typer.echo(str(revealed(open_benchmark(folder), labels)))
+    echo(str(revealed(open_benchmark(folder), labels)))
 
 
 @bench.command()
@@ -146,7 +147,7 @@ def baselines(
     from diagnostics.scoring.benchmark import open_benchmark
 
     require_packages("baselines", "sklearn")
-    typer.echo(str(write_baselines(open_benchmark(folder), seed, workers, terminal_stage)))
+    echo(str(write_baselines(open_benchmark(folder), seed, workers, terminal_stage)))
 
 
 @bench.command()
@@ -177,6 +178,6 @@ def board(
     found = open_benchmark(folder)
     judged = board_entries(found, labels_of(found, labels), entries, seed)
     path = write_board(found, judged, out or beside(folder, "_board"))
-    typer.echo(str(path))
+    echo(str(path))
     if show:
         opened(path)

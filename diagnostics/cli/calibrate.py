@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from diagnostics.cli.recording_options import RecordingOptions, file_rows, two_numbers
+from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 
 if TYPE_CHECKING:
@@ -127,15 +128,15 @@ def calibrate(
     write_calibration(found, out)
     siggen.load_config(out)  # what would be refused is said now
     _tell(found)
-    typer.echo(str(out))
+    echo(str(out))
     if injection.inject is not None:
         per_recording = injection.per_recording
         with terminal_stage("injected gearboxes", per_recording * len(blocks.blocks)) as advance:
-            typer.echo(str(write_injected(blocks, out, per_recording, injection.inject, seed, advance)))
+            echo(str(write_injected(blocks, out, per_recording, injection.inject, seed, advance)))
     if page.compared:
         with terminal_stage("records to compare", 2 * page.compared) as advance:
             written, sentences = calibration_page(found, out, judges, (page.compared, seed), advance)
-        typer.echo("\n".join([*sentences[:2], str(written)]))
+        echo("\n".join([*sentences[:2], str(written)]))
 
 
 def _tell(found: Calibration) -> None:
@@ -148,17 +149,17 @@ def _tell(found: Calibration) -> None:
 
     for fit in found.channels:
         noise, depths = fit.noise, [depth.value for depth in fit.noise.depths]
-        typer.echo(
+        echo(
             f"{fit.name}: noise {noise.level_db.value:.1f} dB re 1 (m/s2)^2, shaft depths {depths[0]:.2f} and "
             f"{depths[1]:.2f}, {len(fit.own)} lines beside the mesh, {len(fit.paths)} paths"
         )
     if len(found.blocks.blocks) < FEWEST_RECORDINGS:
-        typer.echo(f"recordings: {len(found.blocks.blocks)}; {TOO_FEW}", err=True)
+        echo(f"recordings: {len(found.blocks.blocks)}; {TOO_FEW}", err=True)
     if found.stage is not None or not found.rig.shows_other_stages:
-        typer.echo(stage_sentence(found))
+        echo(stage_sentence(found))
     for text in not_identified(found):
-        typer.echo(f"not identified: {text}", err=True)
+        echo(f"not identified: {text}", err=True)
     paths = np.array([draw.accelerance for channel in found.channels for draw in channel.paths])
     mass_kg = housing_mass_kg(found.rig.config)
     if mass_kg is not None and (doubt := path_level_doubt(mass_kg, found.grid_hz, paths)):
-        typer.echo(doubt, err=True)
+        echo(doubt, err=True)

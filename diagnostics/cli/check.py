@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.recording_options import Rate, file_rows
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 
 READ_AS = re.compile(r"(?<![\w-])--(?!fs|load)[a-z]")
@@ -77,15 +78,15 @@ def check(
         echo_json({"machine": str(machine), "checks": [asdict(one) for one in found], "refused": unread})
     else:
         for one in found:
-            typer.echo(f"{one.recording}: {one.verdict}: {one.reason}")
+            echo(f"{one.recording}: {one.verdict}: {one.reason}")
         for name, reason in unread.items():
-            typer.echo(f"{name}: {CANNOT_TELL}: {reason}")
+            echo(f"{name}: {CANNOT_TELL}: {reason}")
     used = [one.used for one in found if one.score is not None]
     if used:
-        typer.echo(rate_sentence(min(used), known.false_alarms), err=True)
+        echo(rate_sentence(min(used), known.false_alarms), err=True)
     for note in [*(f"doubtful: {doubt}" for doubt in known.doubts), *([load_note] if load_note else [])]:
-        typer.echo(note, err=True)
-    typer.echo(str(write_machine_page(known, machine, found)), err=as_json)
+        echo(note, err=True)
+    echo(str(write_machine_page(known, machine, found)), err=as_json)
     if any(one.verdict == CHANGED for one in found):
         raise typer.Exit(EXIT_MISMATCH)
     if unread:

@@ -13,6 +13,7 @@ from diagnostics.base.beside import beside as path_beside
 from diagnostics.base.progress import Stage
 from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
 from diagnostics.cli.set_options import AmountOptions, Open, OwnIndicators, opened
+from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -194,7 +195,7 @@ def explore(
         path = _set_page(first, out, amount, of_set, show)
     if path is None:
         return
-    typer.echo(str(path))
+    echo(str(path))
     if show:
         opened(path)
 
@@ -269,11 +270,11 @@ def _serve(dataset: Dataset, options: LookOptions, port: int, adds: LivesOf | No
     except OSError as error:
         raise UsageError(f"--port {port}: {error.strerror}; allowed: a free port, or 0 for any") from error
     address = f"http://{server.server_address[0]!s}:{server.server_port}/"
-    typer.echo(f"{address} (this machine alone; Ctrl+C ends it)")
+    echo(f"{address} (this machine alone; Ctrl+C ends it)")
     if show:
         opened(address)
     with server:
         try:
             server.serve_forever()
         except KeyboardInterrupt:
-            typer.echo("ended", err=True)
+            echo("ended", err=True)

@@ -10,6 +10,7 @@ import typer
 
 from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
 from diagnostics.cli.set_options import OwnIndicators, RankingOptions
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
@@ -133,8 +134,8 @@ def _ranked_tables(
     found = evaluated(table, AssessmentSettings(), terminal_stage)
     path = write_evaluation(dataset, found, out or beside(dataset.path, "_indicators"), values=True)
     for sentence in findings(dataset, found)[1:]:
-        typer.echo(words_of(dataset)(sentence))
-    typer.echo(str(path))
+        echo(words_of(dataset)(sentence))
+    echo(str(path))
 
 
 def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: int) -> None:
@@ -153,8 +154,8 @@ def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: 
     words = words_of(dataset)
     write_table(words.table(classifier_table(table, notes)), out)
     for note in notes:
-        typer.echo(f"note: {words(note)}", err=True)
-    typer.echo(str(out))
+        echo(f"note: {words(note)}", err=True)
+    echo(str(out))
 
 
 def _of_recordings(
@@ -187,8 +188,8 @@ def _of_recordings(
         shaft = names_of(one.train).shafts[0]
         speed = f"{shaft} {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
         if not as_json:
-            typer.echo(f"{one.name}: {speed}; rms {levels}")
+            echo(f"{one.name}: {speed}; rms {levels}")
         for doubt in one.doubts:
-            typer.echo(f"doubtful: {doubt}", err=True)
+            echo(f"doubtful: {doubt}", err=True)
     folder = out or sources[0][0].resolve().with_name(f"{sources[0][0].stem}_indicators")
-    typer.echo(str(write_recordings(found, folder)), err=as_json)
+    echo(str(write_recordings(found, folder)), err=as_json)

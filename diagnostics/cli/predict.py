@@ -11,6 +11,7 @@ import typer
 
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.set_options import OwnIndicators
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import EXIT_USAGE, UsageError
@@ -104,7 +105,7 @@ def predict(
     if out is not None:
         for name, one in found.items():
             place = out / name.replace(":", "_").replace("/", "_") if len(sources) > 1 else out
-            typer.echo(str(write_prediction(one, loaded.facts, place)), err=as_json)
+            echo(str(write_prediction(one, loaded.facts, place)), err=as_json)
     if refused:
         raise typer.Exit(EXIT_USAGE)
 
@@ -114,12 +115,12 @@ def _tell(found: Mapping[str, Prediction], refused: Mapping[str, str]) -> None:
     from diagnostics.prediction.prediction_page import MEANING, prediction_headline, prediction_rows
 
     for name, one in found.items():
-        typer.echo(f"{name}: {prediction_headline(one)}")
+        echo(f"{name}: {prediction_headline(one)}")
         for label, text in prediction_rows(one):
-            typer.echo(f"  {label + ':':21} {text}")
+            echo(f"  {label + ':':21} {text}")
     for name, reason in refused.items():
-        typer.echo(f"{name}: cannot tell: {reason}")
-    typer.echo(MEANING)
+        echo(f"{name}: cannot tell: {reason}")
+    echo(MEANING)
 
 
 def _names(sources: Sequence[tuple[Path, int | None]]) -> list[str]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from diagnostics.cli.set_options import OwnIndicators, ReportOptions, Seed, TrainingOptions, opened
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
@@ -92,11 +93,11 @@ def report(
         else:
             path = _page((dataset, second), folder, seed, options, own, pages)
             metrics = json.loads((path.parent / "metrics.json").read_text(encoding="utf-8"))
-            typer.echo(metrics["headline"], err=True)
+            echo(metrics["headline"], err=True)
     if as_json:
         echo_json(json.loads(((path if models_only else path.parent) / "metrics.json").read_text(encoding="utf-8")))
     else:
-        typer.echo(str(path))
+        echo(str(path))
     if pages.show:
         opened(path)
 
@@ -161,7 +162,7 @@ def _models(
         found = run_studies(dataset, matrix, trained.split, seed, second, terminal_stage)
         metrics["studies"] = studies_metrics(found)
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    typer.echo(class_text(trained.split, dataset), err=True)
+    echo(class_text(trained.split, dataset), err=True)
     for note in (*trained.notes, *notes):
-        typer.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
     return folder

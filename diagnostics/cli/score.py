@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.set_options import Classes, Seed
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 
@@ -96,7 +97,7 @@ def score(
     if as_json:
         echo_json({"split": judged.split, "classes": judged.classes, "scores": found.numbers()})
     else:
-        typer.echo(str(found))
+        echo(str(found))
     if out:
         write_table(found.to_table(), out)
-        typer.echo(str(out), err=as_json)
+        echo(str(out), err=as_json)

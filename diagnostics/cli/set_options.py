@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
+
 Open = Annotated[bool, typer.Option("--open", help="Open the page in your browser.")]
 
 Classes = Annotated[
@@ -82,7 +84,7 @@ def opened(target: Path | str) -> None:
     """Open a file or an address; where there is no browser, say so and leave it at that."""
     address = target if isinstance(target, str) else target.resolve().as_uri()
     if not webbrowser.open(address):
-        typer.echo(f"note: no browser was found; open {target} yourself", err=True)
+        echo(f"note: no browser was found; open {target} yourself", err=True)
 
 
 @dataclass(frozen=True, slots=True)

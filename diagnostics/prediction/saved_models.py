@@ -29,6 +29,7 @@ from diagnostics.training.severity import expected_area
 from diagnostics.training.splits import TEST, VALIDATION, SpecimenSplit
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
+from siggen.printable import markdown
 
 
 def model_card(training: Training, dataset: Dataset) -> str:
@@ -42,7 +43,7 @@ def model_card(training: Training, dataset: Dataset) -> str:
         The set they were trained on.
     """
     parts = [
-        f"# Gear fault classifiers trained on {dataset.path.name}",
+        f"# Gear fault classifiers trained on {markdown(dataset.path.name)}",
         meaning_of_scores(dataset.config),
         "## Data",
         _data(training, dataset),
@@ -56,17 +57,17 @@ def model_card(training: Training, dataset: Dataset) -> str:
         "measured records.",
     ]
     if training.notes:
-        parts += ["## Notes", "\n".join(f"* {note}" for note in training.notes)]
+        parts += ["## Notes", "\n".join(f"* {markdown(note)}" for note in training.notes)]
     return "\n\n".join(parts) + "\n"
 
 
 def _data(training: Training, dataset: Dataset) -> str:
     count = ", ".join(f"{name} {number}" for name, number in training.specimens.items())
-    channels = ", ".join(f"{channel.name} [{channel.unit}]" for channel in dataset.channels)
+    channels = ", ".join(f"{markdown(channel.name)} [{markdown(channel.unit)}]" for channel in dataset.channels)
     return "\n".join(
         [
-            f"* identity of the set: `{dataset.manifest['identity']}`",
-            f"* {class_text(training.split, dataset)}",
+            f"* identity of the set: `{markdown(dataset.manifest['identity'])}`",
+            f"* {markdown(class_text(training.split, dataset))}",
             f"* specimens: {count} (no specimen is in two splits)",
             f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
         ]
@@ -99,7 +100,7 @@ def _files(training: Training, dataset: Dataset) -> str:
         f"{len(training.classifier.logarithms)} columns are logarithms. Undefined values are replaced by medians, then "
         f"columns are standardised. C = {training.classifier.strength:g} was chosen by cross-validation over training "
         "and validation gearboxes. `feature_names.json` lists the columns in order, with the settings of their "
-        f"definitions. Columns: {columns_text(training.classifier.features)}",
+        f"definitions. Columns: {markdown(columns_text(training.classifier.features))}",
     ]
     if training.network:
         facts = training.network.facts
@@ -196,7 +197,7 @@ def release_card(found: Release) -> str:
     lines = [
         "## Use on recordings",
         f"* digest of the set's manifest (the manifest holds the hash of every file): `{facts.manifest_digest}`",
-        f"* `model.json`: channels ({', '.join(facts.channels)}), {facts.fs_hz:g} Hz, {teeth} teeth, "
+        f"* `model.json`: channels ({markdown(', '.join(facts.channels))}), {facts.fs_hz:g} Hz, {teeth} teeth, "
         f"{facts.speed_range_hz[0]:.3g} to {facts.speed_range_hz[1]:.3g} Hz pinion speed, "
         f"{facts.torque_range_nm[0]:.3g} to {facts.torque_range_nm[1]:.3g} N m in training and validation. Outside "
         "these ranges no answer is given. Torque is not checked, because a recording does not contain it.",

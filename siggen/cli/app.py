@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.errors import errors
 from siggen.cli.export_model import export_model
 from siggen.cli.extend import extend
@@ -70,7 +71,7 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         from siggen.sources import installed_version
 
-        typer.echo(f"siggen {installed_version()}")
+        echo(f"siggen {installed_version()}")
         raise typer.Exit
 
 
@@ -88,22 +89,22 @@ def main() -> None:
     try:
         app()
     except SiggenError as error:
-        typer.echo(f"siggen: {error}", err=True)
+        echo(f"siggen: {error}", err=True)
         sys.exit(error.exit_code)
     except BrokenPipeError:  # the reader of a pipe, such as head, has seen enough
         sys.stdout = None
     except KeyboardInterrupt:
-        typer.echo("siggen: interrupted", err=True)
+        echo("siggen: interrupted", err=True)
         sys.exit(EXIT_INTERRUPTED)
     except MemoryError:
-        typer.echo("siggen: not enough memory; finished shards stay, and the same command goes on from there", err=True)
+        echo("siggen: not enough memory; finished shards stay, and the same command goes on from there", err=True)
         sys.exit(EXIT_UNEXPECTED)
     except Exception as error:
         if words := path_fault(error):
-            typer.echo(f"siggen: {words}", err=True)
+            echo(f"siggen: {words}", err=True)
             sys.exit(EXIT_USAGE)
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
         kind = type(error).__name__
-        typer.echo(f"siggen: unexpected {kind}: {error}; run again with {TRACEBACK_VARIABLE}=1 for details", err=True)
+        echo(f"siggen: unexpected {kind}: {error}; run again with {TRACEBACK_VARIABLE}=1 for details", err=True)
         sys.exit(EXIT_UNEXPECTED)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.gearbox_choice import GearboxChoice
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions, check_wanted
@@ -47,7 +48,7 @@ def errors(
         charts = gear_charts(gearbox.of(load_config(config, overrides or ())), gearbox.specimen, state)
     if out is not None:
         write_table_file(deviation_table(charts), out)
-        typer.echo(str(out))
+        echo(str(out))
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.error_figure import save_error_figure

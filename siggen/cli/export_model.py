@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.working import working
 
 
@@ -31,4 +32,4 @@ def export_model(
     with working("simulating the record"):
         model = exported_model(chosen_config(source, record, overrides or ()), record)
     write_model(model, out)
-    typer.echo(str(out))
+    echo(str(out))

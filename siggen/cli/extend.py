@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.engine_options import EngineOptions
 from siggen.cli.option_groups import grouped
 from siggen.cli.run_display import LogJson, run_shown
@@ -41,6 +42,6 @@ def extend(
         told: dict[str, Any] = {"events": shown.events, "allowed_loss": engine.allowed_loss}
         generation = extend_set(folder, specimens, count, shown.progress, engine=runner, **told)
     report(generation, say=shown.say)
-    typer.echo(str(generation.path))
+    echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.gearbox_choice import GearboxChoice
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions, check_wanted
@@ -51,7 +52,7 @@ def flank(
         raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png and --open")
     if out is not None:
         write_table_file(_without_lists(table) if out.suffix.lower() == ".csv" else table, out)
-        typer.echo(str(out))
+        echo(str(out))
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.flank_figure import save_flank_figure

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.engine_options import EngineOptions
 from siggen.cli.option_groups import grouped
 from siggen.cli.run_display import LogJson, run_shown
@@ -73,14 +74,14 @@ def generate(
         else:
             generation = generate_part(loaded, out, chosen, count, progress, engine=runner, **told)
     report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}", shown.say)
-    typer.echo(str(generation.path))
+    echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)
 
 
 def report(generation: Generation, what: str = "the set", say: Callable[[str], None] | None = None) -> None:
     """Say, on stderr unless told otherwise, what was done and what failed."""
-    say = say or partial(typer.echo, err=True)
+    say = say or partial(echo, err=True)
     if generation.was_finished:
         say(f"{generation.path} is finished already; nothing to do (`siggen verify` checks every byte)")
     else:

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 
 
@@ -89,11 +90,11 @@ def init(
     out.write_text(text, encoding="utf-8")
     out.with_name(SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
     for option, sentence in proposals.items():
-        typer.echo(f"--{option} was not given; proposed: {sentence}", err=True)
+        echo(f"--{option} was not given; proposed: {sentence}", err=True)
     for sentence in implausible(config):
-        typer.echo(f"implausible: {sentence}", err=True)
-    typer.echo(f"next: siggen plan {out} (tries it: which records would be lost); siggen generate {out} ...", err=True)
-    typer.echo(str(out))
+        echo(f"implausible: {sentence}", err=True)
+    echo(f"next: siggen plan {out} (tries it: which records would be lost); siggen generate {out} ...", err=True)
+    echo(str(out))
 
 
 def _name(out: Path) -> str:

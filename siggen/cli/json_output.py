@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from siggen.cli.echo import echo
+
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
 
 
@@ -14,7 +16,7 @@ def echo_json(content: object) -> None:
     """Print mappings, sequences, texts and numbers, numpy's too, as JSON; what is not finite becomes null."""
     import json
 
-    typer.echo(json.dumps(_plain(content), indent=2, allow_nan=False))
+    echo(json.dumps(_plain(content), indent=2, allow_nan=False))
 
 
 def _plain(content: Any) -> Any:

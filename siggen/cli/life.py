@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.working import working
 
@@ -45,7 +46,7 @@ def life(
         found = _content(loaded, specimen)
     if as_states is not None:
         _write(as_states, loaded, specimen)
-        typer.echo(f"wrote {as_states}: inspections of gearbox {specimen} as states", err=True)
+        echo(f"wrote {as_states}: inspections of gearbox {specimen} as states", err=True)
     if as_json:
         echo_json(found)
         return

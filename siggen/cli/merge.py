@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
+
 
 def merge(
     parts: Annotated[
@@ -31,6 +33,6 @@ def merge(
     with run_shown() as shown:
         generation = merge_parts(parts, out, shown.progress)
     report(generation)
-    typer.echo(str(generation.path))
+    echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)

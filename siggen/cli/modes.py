@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions
@@ -54,7 +55,7 @@ def modes(
         Console().print(_printed(found))
     if out is not None:
         write_table_file(found.table, out)
-        typer.echo(str(out), err=as_json)
+        echo(str(out), err=as_json)
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.modes_figure import save_modes_figure

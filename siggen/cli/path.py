@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions
@@ -65,10 +66,10 @@ def path(
         Console().print(_printed(found))
     if out is not None:
         write_table_file(found.table, out)
-        typer.echo(str(out), err=as_json)
+        echo(str(out), err=as_json)
     if modes is not None:
         _write_modes(found, modes)
-        typer.echo(str(modes), err=as_json)
+        echo(str(modes), err=as_json)
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.path_figure import save_path_figure

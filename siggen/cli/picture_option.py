@@ -10,6 +10,8 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
+
 
 @dataclass(frozen=True, slots=True)
 class PictureOptions:
@@ -36,9 +38,9 @@ class PictureOptions:
 
     def drawn(self, png: Path) -> None:
         """Say where the picture is, and open it if asked for."""
-        typer.echo(str(png))
+        echo(str(png))
         if self.show and not webbrowser.open(png.resolve().as_uri()):
-            typer.echo(f"note: no program was found to show it; open {png} yourself", err=True)
+            echo(f"note: no program was found to show it; open {png} yourself", err=True)
 
 
 def check_wanted(out: Path | None, png: Path | None, command: str) -> None:

@@ -11,6 +11,7 @@ import typer
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.life_table import cost_summary, cost_text, history_text, life_doubts, life_summary, life_table
 from siggen.cli.working import working
+from siggen.printable import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -72,12 +73,12 @@ def plan(
     console.print(_states(summary) if summary["life"] is None else life_table(summary["life"]))
     console.print(summary["stiffness_tables"], highlight=False, markup=False)
     for sentence in summary["implausible"]:
-        console.print(f"implausible: {sentence}", highlight=False, markup=False, style="yellow")
+        console.print(printable(f"implausible: {sentence}"), highlight=False, markup=False, style="yellow")
     for state in summary["states"]:
         for remark in state["remarks"]:
-            console.print(f"{state['name']}: {remark}", highlight=False, markup=False)
+            console.print(printable(f"{state['name']}: {remark}"), highlight=False, markup=False)
     for note in (note for kind in NOTES for note in summary[kind]):
-        console.print(f"note: {note}", highlight=False, markup=False)
+        console.print(printable(f"note: {note}"), highlight=False, markup=False)
     _print_trial(console, tried)
 
 
@@ -124,7 +125,7 @@ def _print_trial(console: Console, tried: Sequence[StateTrial]) -> None:
             f"{state.state}: more than {ALLOWED_LOSS:.0%} would be lost, at which `siggen generate` stops "
             f"(--allowed-loss). {state.reason}"
         )
-        console.print(sentence, highlight=False, markup=False, style="yellow")
+        console.print(printable(sentence), highlight=False, markup=False, style="yellow")
 
 
 def plan_summary(config: Config) -> dict[str, Any]:

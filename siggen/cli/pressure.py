@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
@@ -54,8 +55,8 @@ def pressure(
     if png is not None:
         with working("drawing the picture", compiles=False):
             save_pressure_figure(found, positions, png)
-    typer.echo(f"{found.view.state}, {found.view.gear} tooth {found.view.tooth}: {largest_text(found)}", err=True)
+    echo(f"{found.view.state}, {found.view.gear} tooth {found.view.tooth}: {largest_text(found)}", err=True)
     if out is not None:
-        typer.echo(str(out))
+        echo(str(out))
     if png is not None:
         picture.drawn(png)

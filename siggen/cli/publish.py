@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.working import working
 
 
@@ -39,9 +40,9 @@ def publish(
 
     with working("reading the set", compiles=False):
         made = publish_set(folder, to, facts, audit, with_recordings=with_recordings)
-    typer.echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
+    echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
     for name, content in made.texts.items():
-        typer.echo(f"{name}: {len(content)} bytes, made for publication", err=True)
+        echo(f"{name}: {len(content)} bytes, made for publication", err=True)
     quoted = f"quotes {made.audit}" if made.audit else "says that there is no audit (siggen-diagnostics audit)"
-    typer.echo(f"the card {quoted}", err=True)
-    typer.echo(str(to))
+    echo(f"the card {quoted}", err=True)
+    echo(str(to))

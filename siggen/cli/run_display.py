@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.opened_log import opened_log
 
 if TYPE_CHECKING:
@@ -55,14 +56,14 @@ class RunDisplay:
         if event["event"] == "record_failed":
             self.failures += 1
         if event["event"] == "said" and not self._quiet:
-            typer.echo(event["sentence"], err=True)
+            echo(event["sentence"], err=True)
         if self._log is None:
             return
         try:
             self._log(json.dumps(event) + "\n")
         except OSError as error:
             self._log = None
-            typer.echo(f"--log-json: no further events are written ({error}); the run goes on", err=True)
+            echo(f"--log-json: no further events are written ({error}); the run goes on", err=True)
 
     def say(self, sentence: str) -> None:
         """Say something on stderr; in the log if it has stderr for itself."""
@@ -71,7 +72,7 @@ class RunDisplay:
 
             self.events(stamped("said", {"sentence": sentence}))
         else:
-            typer.echo(sentence, err=True)
+            echo(sentence, err=True)
 
 
 @contextmanager
@@ -162,4 +163,4 @@ class _Lines:
         self._last_s = now_s
         rate = (done - self._first) / (now_s - self._begun_s)
         left = f"{(total - done) / rate / 60:.1f} min left" if rate else "time left unknown"
-        typer.echo(f"{done} of {total} records, {rate:.3g}/s, {failures} failed, {left}", err=True)
+        echo(f"{done} of {total} records, {rate:.3g}/s, {failures} failed, {left}", err=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import typer
+from siggen.cli.echo import echo
 
 
 def schema() -> None:
@@ -15,4 +15,4 @@ def schema() -> None:
     """
     from siggen.config.expert_keys import schema_text
 
-    typer.echo(schema_text(), nl=False)
+    echo(schema_text(), nl=False)

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.echo import cell
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
     from rich.table import Table
+    from rich.text import Text
 
     from siggen.columns.record import Channel
     from siggen.dataset.reading import Dataset
@@ -64,17 +66,17 @@ def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
 
     from siggen.errors import counted
 
-    table = Table(
-        "label", "value", "unit", title=f"Record {record['record_id']} of {dataset.path}", title_justify="left"
-    )
+    title = cell(f"Record {record['record_id']} of {dataset.path}")
+    table = Table("label", "value", "unit", title=title, title_justify="left")
     schema = dataset.labels(columns=None).schema
     for field in schema:
-        unit = (field.metadata or {}).get(b"unit", b"").decode()
-        table.add_row(field.name, _text(record[field.name]), unit)
+        unit = (field.metadata or {}).get(b"unit", b"").decode(errors="replace")
+        table.add_row(cell(field.name), _text(record[field.name]), cell(unit))
     for channel in dataset.channels:
         signal = record[channel.column]
         rms, peak = float((signal.astype(float) ** 2).mean() ** 0.5), float(abs(signal).max())
-        table.add_row(channel.column, f"{counted(len(signal), 'sample')}, RMS {rms:.4g}, peak {peak:.4g}", channel.unit)
+        told = f"{counted(len(signal), 'sample')}, RMS {rms:.4g}, peak {peak:.4g}"
+        table.add_row(cell(channel.column), told, cell(channel.unit))
     table.add_row("tacho_s", counted(len(record["tacho_s"]), "pulse"), "s")
     return table
 
@@ -82,16 +84,16 @@ def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
 def _damage(dataset: Dataset, record: Mapping[str, Any]) -> Table:
     import pyarrow as pa
     import pyarrow.compute as pc
-    from rich.table import Table
+    from rich.table import Column, Table
 
     rows = dataset.damage(record["split"])
     own = rows.filter(pc.equal(rows["record_id"], record["record_id"])).drop_columns(["record_id"])
     names = [field.name for field in own.schema if not pa.types.is_list(field.type)]
-    table = Table(*names, title="Damage", title_justify="left")
+    table = Table(*(Column(cell(name)) for name in names), title="Damage", title_justify="left")
     for row in own.select(names).to_pylist():
         table.add_row(*(_text(row[name]) for name in names))
     return table
 
 
-def _text(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _text(value: object) -> Text:
+    return cell(f"{value:.6g}" if isinstance(value, float) else value)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.working import working
 
 
@@ -35,4 +36,4 @@ def simulate(
 
         table = internals_table(config, record, internals=internals)
     write_table_file(table, out)
-    typer.echo(str(out))
+    echo(str(out))

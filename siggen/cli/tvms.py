@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.gearbox_choice import GearboxChoice
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions, check_wanted
@@ -90,11 +91,11 @@ def tvms(
     if png is not None:
         with working("drawing the picture", compiles=False):
             save_stiffness_figure(curves, png, usable.names, **asdict(further), title=meaning)
-    typer.echo(usable.names.text(meaning), err=True)
-    typer.echo(usable.names.text(error), err=True)
+    echo(usable.names.text(meaning), err=True)
+    echo(usable.names.text(error), err=True)
     for note in model_notes(usable):
-        typer.echo(f"note: {usable.names.text(note)}", err=True)
+        echo(f"note: {usable.names.text(note)}", err=True)
     if out is not None:
-        typer.echo(str(out))
+        echo(str(out))
     if png is not None:
         picture.drawn(png)

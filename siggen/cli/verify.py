@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.working import working
 
@@ -54,19 +55,19 @@ def verify(
         measured = {} if precision is None else {"physics": asdict(precision)}
         echo_json({**asdict(found), **measured, "ok": ok})
     else:
-        typer.echo(f"{found.path}: {counted(found.files, 'file')}, {found.bytes / 1e6:.1f} MB")
+        echo(f"{found.path}: {counted(found.files, 'file')}, {found.bytes / 1e6:.1f} MB")
         again = f"{counted(len(found.records), 'record')} simulated again, compared "
         again = again if found.records else "records simulated again: "
-        typer.echo(("" if found.comparison.startswith(HASHES_ALONE) else again) + found.comparison)
+        echo(("" if found.comparison.startswith(HASHES_ALONE) else again) + found.comparison)
         for maker in found.made_by:
             same = "as this one" if maker == found.here else f"this is {found.here}"
-            typer.echo(f"made by {maker}; {same}")
+            echo(f"made by {maker}; {same}")
         for line in problem_lines(found):
-            typer.echo(line, err=True)
-        typer.echo("differs from its manifest" if found.mismatches else "as its manifest promises")
+            echo(line, err=True)
+        echo("differs from its manifest" if found.mismatches else "as its manifest promises")
         for line in precision_lines(precision) if precision is not None else ():
-            typer.echo(line)
+            echo(line)
         if physics and precision is None:
-            typer.echo("no record integrated again, since files differ", err=True)
+            echo("no record integrated again, since files differ", err=True)
     if not ok:
         raise typer.Exit(EXIT_MISMATCH)

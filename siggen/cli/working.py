@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-import typer
+from siggen.cli.echo import echo
 
 FIRST_TIME = "the first time after an install it also compiles, for up to a minute"
 
@@ -69,6 +69,6 @@ def _lines(what: str) -> Callable[[int, int], None]:
         passed_s = time.monotonic() - begun_s
         if passed_s >= due_s:
             due_s = passed_s + LINE_EVERY_S
-            typer.echo(f"{what}: {done} of {total}", err=True)
+            echo(f"{what}: {done} of {total}", err=True)
 
     return tell
