@@ -11,12 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import missing_packages
+from diagnostics.base.reading_process import read_apart
 from diagnostics.indicators.indicator import base_name, without_mesh
 from diagnostics.indicators.own_indicator import OwnIndicator, all_own
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.model_facts import (
     FACTS_FILE,
+    MODEL_FILES,
     ModelFacts,
     check_files,
     read_accuracy,
@@ -46,6 +48,8 @@ if TYPE_CHECKING:
     from diagnostics.training.cnn_files import NetworkFile
 
 NETWORK_FILE, CIRCULAR_FILE = "cnn.safetensors", "circular.safetensors"
+LOADED_ONCE = ("skops.io", "diagnostics.training.cnn_files", "diagnostics.training.circular_files")
+"""What the process that tries models loads before it has limits, as far as it is installed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +186,21 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     folder = folder / MODELS_FOLDER if (folder / MODELS_FOLDER).is_dir() else folder
     if not (folder / FACTS_FILE).is_file():
         raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics report` wrote")
+    files = [folder / name for name in (FACTS_FILE, *MODEL_FILES) if (folder / name).exists()]
+    if strange := [file.name for file in files if not file.is_file()]:
+        raise UsageError(f"{folder}: {', '.join(strange)} cannot be read through; allowed: regular files")
+    size = sum(file.stat().st_size for file in files)
+    with read_apart(folder / FACTS_FILE, f"{__name__}:try_model", size=size):
+        return _loaded(folder, own)  # as it was just read within limits
+
+
+def try_model(path: Path, _folder: Path) -> None:
+    """Read a model as `load_model` does, to leave nothing: for the process with limits."""
+    _loaded(path.parent, None)
+
+
+def _loaded(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedModel:
+    """Return the model of a folder; without own indicators those that it needs are not looked for."""
     check_files(folder, read_hashes(folder))
     facts, distance, referenced = read_facts(folder)
     accuracy = read_accuracy(folder)
@@ -201,7 +220,7 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         network=network,
         accuracy=accuracy,
         note=note,
-        own=_own_of(folder, classifiers, own),
+        own=() if own is None else _own_of(folder, classifiers, own),
         circular=circular,
     )
 

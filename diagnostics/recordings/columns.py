@@ -21,8 +21,8 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnostics.recordings.columns_apart import columns_read_apart
 from diagnostics.recordings.file_columns import READERS
-from diagnostics.recordings.reading_process import columns_read_apart
 from diagnostics.recordings.recorded_columns import LARGEST, OWN_TACHO, Columns
 from diagnostics.recordings.time_gaps import TURNED, refuse_gaps
 from diagnostics.recordings.units import known_unit, unit_of_name

@@ -20,7 +20,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from diagnostics.base.beside import beside
-from diagnostics.recordings.reading_process import read_apart
+from diagnostics.base.reading_process import read_apart
 from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.grade import PROBABILITY
 from diagnostics.scoring.prediction_reading import keep_table, kept_table

@@ -5,6 +5,6 @@ In their rows `measured` is how many were found or refused, `alternative` what e
 
 PARTS = (
     *("mutated_configurations", "mutated_recordings", "hostile_files", "foreign_sets", "bit_flips", "digests"),
-    *("shortages", "kills"),
+    *("mutated_answers", "shortages", "kills"),
 )
 """Each by itself: `python -m tests.faults kills`."""

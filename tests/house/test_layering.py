@@ -14,7 +14,7 @@ import pytest
 from tests.house.source_tree import ROOT, imports, modules
 
 SIGGEN_ROOMS = (
-    "errors", "sources", "seeding", "child_environment", "arrays", "compiled", "lanes", "keys",
+    "errors", "printable", "sources", "seeding", "child_environment", "arrays", "compiled", "lanes", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.bearings", "dynamics.friction",
     "dynamics.mesh", "dynamics.time",
@@ -30,10 +30,15 @@ PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")
 PHYSICS_MAY_IMPORT = {"numpy", "scipy", "numba", "siggen", "__future__", "collections", "dataclasses", "enum"} | {
     "fractions", "functools", "itertools", "math", "typing",
 }  # fmt: skip
-DOOR = {"siggen", "siggen.errors", "siggen.columns.record", "siggen.config.names", "siggen.dataset.reading"} | {
-    "siggen.keys.column"
-}
-SHARED = {"siggen.cli.option_groups", "siggen.cli.json_output", "siggen.child_environment"}
+DOOR = {
+    "siggen",
+    "siggen.errors",
+    "siggen.printable",
+    "siggen.columns.record",
+    "siggen.config.names",
+    "siggen.dataset.reading",
+} | {"siggen.keys.column"}
+SHARED = {"siggen.child_environment"} | {f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")}
 """What both programs are built with; it knows no set."""
 TREE = {package: modules(package) for package in ROOMS}
 KNOWN = {name for paths in TREE.values() for name in paths}

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnostics.recordings import reading_process
+from diagnostics.base import reading_process
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.file_columns import file_columns
 from siggen.errors import UsageError

@@ -19,13 +19,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from diagnostics.recordings.recorded_columns import Columns, refuse_many
 from siggen.errors import UsageError
 
 MEMORY_BYTES, MEMORY_PER_BYTE = 4 << 30, 64
-"""Address space of one reading, of which libraries reserve most; compressed and text files grow when they are read."""
+"""Address space of one reading beside the libraries; compressed and text files grow when they are read."""
 
 CPU_S, BYTES_PER_CPU_S = 60, 1 << 20
 
@@ -42,7 +39,8 @@ def read_apart(path: Path, work: str, *, size: int | None = None, **more: Any) -
     path : Path
         A regular file.
     work : str
-        MODULE:FUNCTION, called with the path, the folder and what is given beside; its module is loaded once.
+        MODULE:FUNCTION, called with the path, the folder and what is given beside; its module, and what that names in
+        `LOADED_ONCE`, is loaded once.
     size : int, optional
         Bytes that the limits follow; that of the file.
 
@@ -67,18 +65,6 @@ def read_apart(path: Path, work: str, *, size: int | None = None, **more: Any) -
         yield folder
 
 
-def columns_read_apart(path: Path, row: int | None = None) -> Columns:
-    """Return `file_columns` of a file, read apart.
-
-    Raises
-    ------
-    UsageError
-        As of `file_columns` and `read_apart`.
-    """
-    with read_apart(path, f"{__name__}:keep_columns", row=row) as folder:
-        return _columns(folder)
-
-
 def _function(work: str) -> Callable[..., None]:
     module, _, name = work.partition(":")
     found: Callable[..., None] = getattr(import_module(module), name)
@@ -98,7 +84,7 @@ def _asked(question: dict[str, Any]) -> dict[str, Any]:
 
 
 def _start() -> subprocess.Popen[str]:
-    command = [sys.executable, "-P", "-c", "from diagnostics.recordings.reading_process import serve; serve()"]
+    command = [sys.executable, "-P", "-c", "from diagnostics.base.reading_process import serve; serve()"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     process = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment
@@ -122,6 +108,8 @@ def serve() -> None:
         question = json.loads(line)
         with suppress(Exception):  # the child says it
             _function(question["work"])
+            for name in getattr(sys.modules[question["work"].partition(":")[0]], "LOADED_ONCE", ()):
+                import_module(name)
         child = os.fork()
         if child == 0:
             _read(question)
@@ -158,36 +146,15 @@ def _read(question: dict[str, Any]) -> None:
 def _limit(size: int) -> None:
     import resource
 
-    memory, seconds = MEMORY_BYTES + MEMORY_PER_BYTE * size, CPU_S + size // BYTES_PER_CPU_S
+    memory = _address_space_bytes() + MEMORY_BYTES + MEMORY_PER_BYTE * size
+    seconds = CPU_S + size // BYTES_PER_CPU_S
     for limit, asked in ((resource.RLIMIT_AS, memory), (resource.RLIMIT_CPU, seconds), (resource.RLIMIT_CORE, 0)):
         # never above what this process was started with: asking for more is refused
         given = [bound for bound in resource.getrlimit(limit) if bound != resource.RLIM_INFINITY]
         resource.setrlimit(limit, (min([asked, *given]),) * 2)
 
 
-def keep_columns(path: Path, folder: Path, row: int | None) -> None:
-    """Leave the columns of a recording in a folder; errors as of `file_columns`."""
-    from diagnostics.recordings.file_columns import file_columns
-
-    found = file_columns(path, row)
-    refuse_many(path, len(found.values))
-    _keep(found, folder)
-
-
-def _keep(found: Columns, folder: Path) -> None:
-    facts = {
-        "fs_hz": found.fs_hz,
-        "full_scale": found.full_scale,
-        "simulated": found.simulated,
-        "units": dict(found.units),
-        "own": dict(found.own),
-    }
-    (folder / "facts.json").write_text(json.dumps({**facts, "names": list(found.values)}), encoding="utf-8")
-    for number, column in enumerate(found.values.values()):
-        np.save(folder / f"{number}.npy", np.asarray(column, dtype=np.float64), allow_pickle=False)
-
-
-def _columns(folder: Path) -> Columns:
-    facts = json.loads((folder / "facts.json").read_text(encoding="utf-8"))
-    names = facts.pop("names")
-    return Columns({name: np.load(folder / f"{number}.npy") for number, name in enumerate(names)}, **facts)
+def _address_space_bytes() -> int:
+    """Return what this process holds before it reads: loaded libraries; 0 where the system does not say."""
+    pages = Path("/proc/self/statm")
+    return int(pages.read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE") if pages.is_file() else 0

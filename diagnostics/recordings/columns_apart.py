@@ -1,0 +1,51 @@
+"""The columns of a recorded file, read in the process with limits; they come back as arrays in files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.base.reading_process import read_apart
+from diagnostics.recordings.recorded_columns import Columns, refuse_many
+
+
+def columns_read_apart(path: Path, row: int | None = None) -> Columns:
+    """Return `file_columns` of a file, read apart.
+
+    Raises
+    ------
+    UsageError
+        As of `file_columns` and `read_apart`.
+    """
+    with read_apart(path, f"{__name__}:keep_columns", row=row) as folder:
+        return _columns(folder)
+
+
+def keep_columns(path: Path, folder: Path, row: int | None) -> None:
+    """Leave the columns of a recording in a folder; errors as of `file_columns`."""
+    from diagnostics.recordings.file_columns import file_columns
+
+    found = file_columns(path, row)
+    refuse_many(path, len(found.values))
+    _keep(found, folder)
+
+
+def _keep(found: Columns, folder: Path) -> None:
+    facts = {
+        "fs_hz": found.fs_hz,
+        "full_scale": found.full_scale,
+        "simulated": found.simulated,
+        "units": dict(found.units),
+        "own": dict(found.own),
+    }
+    (folder / "facts.json").write_text(json.dumps({**facts, "names": list(found.values)}), encoding="utf-8")
+    for number, column in enumerate(found.values.values()):
+        np.save(folder / f"{number}.npy", np.asarray(column, dtype=np.float64), allow_pickle=False)
+
+
+def _columns(folder: Path) -> Columns:
+    facts = json.loads((folder / "facts.json").read_text(encoding="utf-8"))
+    names = facts.pop("names")
+    return Columns({name: np.load(folder / f"{number}.npy") for number, name in enumerate(names)}, **facts)
