@@ -74,7 +74,7 @@ def audit(
 
     Exit codes: 0 done, 2 no finished set, 4 with --strict if a trap was found or gearboxes are too few to tell.
 
-    Example: siggen-diagnostics audit data/quickstart --strict --realism
+    Example: siggen-diagnostics audit runs/quickstart --strict --realism
     """
     from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
     from diagnostics.audit.audit_sentences import audit_summary

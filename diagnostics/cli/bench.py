@@ -26,7 +26,7 @@ Sealed = Annotated[
 bench = typer.Typer(
     help="A benchmark whose test labels are sealed: make it, commit to the labels, reveal them, show a leaderboard.",
     no_args_is_help=True,
-    epilog="Begin with: siggen-diagnostics bench make data/bench_tiny --tier tiny",
+    epilog="Begin with: siggen-diagnostics bench make runs/bench_tiny --tier tiny",
 )
 
 
@@ -83,7 +83,7 @@ def make(
 
     The same call goes on where it was stopped.
 
-    Example: siggen-diagnostics bench make data/bench_tiny --tier tiny
+    Example: siggen-diagnostics bench make runs/bench_tiny --tier tiny
     """
     from diagnostics.base.beside import beside
     from diagnostics.base.progress import terminal_stage
@@ -109,7 +109,7 @@ def make(
 def commit(folder: Bench, labels: Sealed = None) -> None:
     """Print the SHA-256 of labels, salt, seeds and configurations, and write it into the benchmark: publish it first.
 
-    Example: siggen-diagnostics bench commit data/bench_tiny
+    Example: siggen-diagnostics bench commit runs/bench_tiny
     """
     from diagnostics.bench.revealing import commit as committed
     from diagnostics.scoring.benchmark import open_benchmark
@@ -121,7 +121,7 @@ def commit(folder: Bench, labels: Sealed = None) -> None:
 def reveal(folder: Bench, labels: Sealed = None) -> None:
     """Write labels, salt, seeds and configurations of the test parts into the benchmark; anybody can check their hash.
 
-    Example: siggen-diagnostics bench reveal data/bench_tiny
+    Example: siggen-diagnostics bench reveal runs/bench_tiny
     """
     from diagnostics.bench.revealing import reveal as revealed
     from diagnostics.scoring.benchmark import open_benchmark
@@ -139,7 +139,7 @@ def baselines(
 
     `score` and `board` then show them too.
 
-    Example: siggen-diagnostics bench baselines data/bench_tiny
+    Example: siggen-diagnostics bench baselines runs/bench_tiny
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
@@ -168,7 +168,7 @@ def board(
 
     An entry that used the healthy references says so in a column `reference`, true in its rows.
 
-    Example: siggen-diagnostics bench board data/bench_tiny entries
+    Example: siggen-diagnostics bench board runs/bench_tiny entries
     """
     from diagnostics.base.beside import beside
     from diagnostics.bench.leaderboard import board_entries, write_board

@@ -173,9 +173,9 @@ def explore(
 
     It opens from disk, without a network. The folder of a machine knows how its recordings are read.
 
-    Example: siggen-diagnostics explore data/quickstart --model data/quickstart_report --serve --open
+    Example: siggen-diagnostics explore runs/quickstart --model runs/quickstart_report --serve --open
 
-    Example: siggen-diagnostics explore rig january.csv february.csv august.csv --beside data/mine
+    Example: siggen-diagnostics explore rig january.csv february.csv august.csv --beside runs/mine
     """
     first, path = Path(targets[0]), out
     if out and out.is_dir():

@@ -68,9 +68,9 @@ def indicators(
 
     Of a set it writes the values and the ranking as tables; `report` shows both. Of recordings also indicators.html.
 
-    Example: siggen-diagnostics indicators data/quickstart --workers 4
+    Example: siggen-diagnostics indicators runs/quickstart --workers 4
 
-    Example: siggen-diagnostics indicators data/quickstart --out features.parquet
+    Example: siggen-diagnostics indicators runs/quickstart --out features.parquet
 
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
     """

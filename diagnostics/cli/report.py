@@ -52,9 +52,9 @@ def report(
     gearboxes that run to failure it says how well baselines tell their remaining life. Beside it lie metrics.json,
     evaluation.csv with all indicators, figures and models.
 
-    Example: siggen-diagnostics report data/quickstart --studies
+    Example: siggen-diagnostics report runs/quickstart --studies
 
-    Example: siggen-diagnostics report data/quickstart --models-only --out models --test data/other_gears
+    Example: siggen-diagnostics report runs/quickstart --models-only --out models --test runs/other_gears
     """
     if models_only:
         of_page = {"--open": pages.show, "--predictions": pages.predictions, "--state": pages.state}

@@ -69,7 +69,7 @@ def score(
     Missing, doubled and unknown records and values that cannot be are refused in one list. Of a benchmark every test
     part is judged that the predictions have rows for.
 
-    Example: siggen-diagnostics score data/quickstart mine.parquet
+    Example: siggen-diagnostics score runs/quickstart mine.parquet
     """
     from diagnostics.indicators.classifier_table import check_suffix, write_table
     from diagnostics.scoring.benchmark import is_benchmark, open_benchmark

@@ -1,6 +1,6 @@
 """Windows of a set by number, for samplers, `DataLoader(batch_size=...)` and trainers that want a length.
 
-    windows = WindowDataset(siggen.open("data/set"), "train", cache=Path("cache"))
+    windows = WindowDataset(siggen.open("runs/set"), "train", cache=Path("cache"))
     loader = DataLoader(windows, batch_size=64, sampler=RowGroupSampler(windows), num_workers=2)
 
 Batches are the same for any number of workers, since the sampler stays in one process.

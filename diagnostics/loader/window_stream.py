@@ -1,6 +1,6 @@
 """Windows of a set for torch: shuffled, split over ranks and workers, and resumed in the middle of an epoch.
 
-    loader = WindowLoader(WindowStream(siggen.open("data/set"), "train", batch=64), workers=2)
+    loader = WindowLoader(WindowStream(siggen.open("runs/set"), "train", batch=64), workers=2)
     for batch in loader:
         loss = step(batch["windows"], batch["state_id"])
         position = loader.state_dict()

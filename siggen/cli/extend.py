@@ -31,7 +31,7 @@ def extend(
     Exit codes: 0 done, 2 no finished set or a wrong number, 3 records failed (done without them, or stopped by
     --allowed-loss), 130 interrupted.
 
-    Example: siggen extend sets/quickstart --specimens +100
+    Example: siggen extend runs/quickstart --specimens +100
     """
     from siggen.cli.generate import report
     from siggen.errors import EXIT_RECORDS_FAILED

@@ -50,7 +50,7 @@ def generate(
     Exit codes: 0 done, 2 wrong configuration or folder, 3 records failed (done without them, or stopped by
     --allowed-loss), 130 interrupted.
 
-    Example: siggen generate configs/quickstart.yaml --out sets/quickstart
+    Example: siggen generate configs/quickstart.yaml --out runs/quickstart
     """
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible

@@ -23,7 +23,7 @@ def merge(
 
     Exit codes: 0 done, 2 parts of different sets or shards that are missing, 3 done but some records failed.
 
-    Example: siggen merge parts/1 parts/2 parts/3 --out sets/quickstart
+    Example: siggen merge parts/1 parts/2 parts/3 --out runs/quickstart
     """
     from siggen.cli.generate import report
     from siggen.cli.run_display import run_shown

@@ -33,7 +33,7 @@ def publish(
 
     Exit codes: 0 done, 2 no finished set, a licence that is unset, or a folder that is not empty.
 
-    Example: siggen publish sets/quickstart --to upload --facts publication.yaml
+    Example: siggen publish runs/quickstart --to upload --facts publication.yaml
     """
     from siggen.errors import counted
     from siggen.publication.publish import publish as publish_set

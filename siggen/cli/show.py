@@ -31,7 +31,7 @@ def show(
 ) -> None:
     """Show the labels and damage of one record, or draw its waveform and its spectrum around the mesh harmonics.
 
-    Example: siggen show sets/quickstart --record 3 --png record3.png
+    Example: siggen show runs/quickstart --record 3 --png record3.png
     """
     from siggen.dataset.reading import open as open_set
 

@@ -34,7 +34,7 @@ def verify(
     Exit codes: 0 all as promised, 2 no finished set, 4 something differs or an error is above the set's tolerance
     and its label does not say so.
 
-    Example: siggen verify sets/quickstart --sample 10 --physics 8
+    Example: siggen verify runs/quickstart --sample 10 --physics 8
     """
     from dataclasses import asdict
 
