@@ -39,6 +39,7 @@ from diagnostics.records.named_set import words_of
 from diagnostics.records.recording import gear_names
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, how_to_install
+from siggen.file_writing import write_file
 
 SEEN_ALONE, BESIDE = "alone", "beside a healthy record"
 """What attackers see of a record."""
@@ -292,18 +293,16 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realis
 def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     """Write page, JSON and figures; return the page's path."""
     words = words_of(dataset)
-    folder.mkdir(parents=True, exist_ok=True)
     with styled():
         drawn = {}
         if audit.realism:
             drawn["realism"] = png_bytes(words.figure(realism_figure(audit.realism)))
         if any(math.isfinite(entry.auc.value) for entries in audit.detections.values() for entry in entries):
             drawn["detectability"] = png_bytes(words.figure(detectability_figure(shown_ladders(audit))))
-    (folder / "figures").mkdir(exist_ok=True)
     for name, png in drawn.items():
-        (folder / "figures" / f"{name}.png").write_bytes(png)
+        write_file(folder / "figures" / f"{name}.png", png)
     text = json.dumps(words.document(audit_numbers(audit, dataset)), indent=1, allow_nan=False)
-    (folder / "audit.json").write_text(text + "\n", encoding="utf-8")
+    write_file(folder / "audit.json", text + "\n")
     path = folder / "audit.html"
-    path.write_text(words(audit_page(audit, dataset, drawn)), encoding="utf-8")
+    write_file(path, words(audit_page(audit, dataset, drawn)))
     return path

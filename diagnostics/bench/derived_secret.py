@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 FEWEST_BYTES = 32
 
@@ -27,8 +28,7 @@ def read_secret(file: Path) -> bytes:
     """
     if not file.exists():
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        file.touch(mode=0o600)
-        file.write_text(secrets.token_hex(FEWEST_BYTES) + "\n", encoding="ascii")
+        write_file(file, _draw)
     found = file.read_bytes().strip()
     if len(found) < FEWEST_BYTES:
         raise UsageError(
@@ -36,6 +36,11 @@ def read_secret(file: Path) -> bytes:
             "remove the file and one is drawn"
         )
     return found
+
+
+def _draw(draft: Path) -> None:
+    draft.touch(mode=0o600)
+    draft.write_text(secrets.token_hex(FEWEST_BYTES) + "\n", encoding="ascii")
 
 
 def derived(secret: bytes, *words: object) -> bytes:

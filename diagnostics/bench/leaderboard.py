@@ -33,6 +33,7 @@ from diagnostics.scoring.sealed_labels import SealedLabels
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, bootstrap_weights, interval
 from diagnostics.statistics.scores import area_interval
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 BOARD, NUMBERS = "leaderboard.html", "leaderboard.json"
 MEAN = "mean"
@@ -136,19 +137,18 @@ def _entry(
 
 def write_board(benchmark: Benchmark, entries: Sequence[Entry], folder: Path) -> Path:
     """Write the page, and its numbers beside it; return the page."""
-    folder.mkdir(parents=True, exist_ok=True)
     ranking = ranking_of(benchmark)
     tables = {referenced: _ordered(entries, benchmark.parts, referenced) for referenced in ranking.tracks}
     numbers = [row for ordered in tables.values() for row in _numbers(ordered, benchmark)]
     facts = {"digest": benchmark.digest, "simulation_version": benchmark.simulation_version, "entries": numbers}
-    (folder / NUMBERS).write_text(json.dumps(facts, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_file(folder / NUMBERS, json.dumps(facts, indent=1, allow_nan=False) + "\n")
     title = f"Leaderboard of {benchmark.title}, {benchmark.tier}"
     parts = [heading(title, 1), *summary(_sentences(benchmark, tables))]
     for referenced, ordered in tables.items():
         if ordered:
             parts += [heading(ranking.tracks[referenced]), _figure(ordered), *_table(ordered, benchmark.parts)]
     path = folder / BOARD
-    path.write_text(page(title, parts), encoding="utf-8")
+    write_file(path, page(title, parts))
     return path
 
 

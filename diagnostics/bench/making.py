@@ -28,6 +28,7 @@ from diagnostics.scoring.benchmark import FACTS, LEARN, SEALED, TESTS, Benchmark
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
+from siggen.file_writing import write_file
 
 LEARNT = str(Path(__file__).with_name("siggen_bench.yaml"))
 """The part of siggen-bench to learn from."""
@@ -107,10 +108,10 @@ def make_benchmark(
         "configurations": {name: config.canonical() for name, config in tests.items()},
         "parts": parts,
     }
-    (hidden / SEALED).write_text(json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n", encoding="utf-8")
+    write_file(hidden / SEALED, json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n")
     own = (out / LEARN / CARD).read_text(encoding="utf-8")
-    (out / CARD).write_text(benchmark_card(facts, learn, own, question.words), encoding="utf-8")
-    (out / FACTS).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    write_file(out / CARD, benchmark_card(facts, learn, own, question.words))
+    write_file(out / FACTS, json.dumps(facts, indent=1) + "\n")
     return open_benchmark(out)
 
 

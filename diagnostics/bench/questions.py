@@ -16,6 +16,7 @@ from diagnostics.bench.life_question import LIFE_QUESTION
 from diagnostics.bench.question import Question
 from diagnostics.scoring.benchmark import BASELINES, Benchmark
 from diagnostics.scoring.prediction_file import IDENTITY_KEY, PREDICTIONS_FILE
+from siggen.file_writing import write_file
 
 
 def question_of(config: Mapping[str, Any]) -> Question:
@@ -28,7 +29,6 @@ def write_baselines(benchmark: Benchmark, seed: int, workers: int, stage: Stage)
     """Write what all baselines say of all test parts into the benchmark, from some processes; return the file."""
     rows = list(question_of(benchmark.learn().config).predictions(benchmark, seed, workers, stage))
     table = pa.concat_tables(rows).replace_schema_metadata({IDENTITY_KEY: benchmark.digest.encode()})
-    folder = benchmark.path / BASELINES
-    folder.mkdir(exist_ok=True)
-    parquet.write_table(table, folder / PREDICTIONS_FILE, compression="zstd")
-    return folder / PREDICTIONS_FILE
+    path = benchmark.path / BASELINES / PREDICTIONS_FILE
+    write_file(path, lambda draft: parquet.write_table(table, draft, compression="zstd"))
+    return path

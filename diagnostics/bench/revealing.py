@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 
 from diagnostics.scoring.benchmark import COMMITMENT, REVEALED, Benchmark
 from diagnostics.scoring.sealed_labels import labels_of
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 
 def commit(benchmark: Benchmark, sealed: Path | None = None) -> str:
@@ -21,7 +21,7 @@ def commit(benchmark: Benchmark, sealed: Path | None = None) -> str:
     """
     found = labels_of(benchmark, sealed).commitment
     content = {"sha256": found, "digest": benchmark.digest, "of": REVEALED}
-    (benchmark.path / COMMITMENT).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    write_file(benchmark.path / COMMITMENT, json.dumps(content, indent=1) + "\n")
     return found
 
 
@@ -37,5 +37,5 @@ def reveal(benchmark: Benchmark, sealed: Path | None = None) -> Path:
         raise UsageError(f"{benchmark.path}: nothing was committed to; run `siggen-diagnostics bench commit` first")
     found, target = labels_of(benchmark, sealed), benchmark.path / REVEALED
     if not target.exists() or not target.samefile(found.file):
-        shutil.copyfile(found.file, target)
+        write_file(target, found.file.read_bytes())
     return target

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 from collections.abc import Iterable, Sequence
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ from diagnostics.calibration.own_lines import OwnLine
 from diagnostics.calibration.path_draws import PathDraw
 from diagnostics.calibration.source_library import sampled_as
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 FACTS = "calibration.json"
 
@@ -53,18 +56,21 @@ def write_calibration(found: Calibration, out: Path) -> Path:
     """
     check_new(out, None)
     folder = data_folder(out)
-    folder.mkdir(parents=True)
-    sensors = sensor_axes(found)
-    for channel, (name, axis) in zip(found.channels, sensors, strict=True):
-        _write_table(folder / f"noise_{name}.csv", ("frequency_hz", "density"), _noise_rows(channel.noise))
-        if table := _lines(channel):
-            rows = [(line.order, line.frequency_hz, line.amplitude) for line in table]
-            _write_table(folder / f"lines_{name}.csv", ("order", "frequency_hz", "amplitude_m_s2"), rows)
-        for number in range(len(channel.paths)):
-            _write_path(folder / _path_file(name, number), found, axis, channel.paths[number])
-    facts = json.dumps(calibration_facts(found), indent=1, allow_nan=False)
-    (folder / FACTS).write_text(facts + "\n", encoding="utf-8")
-    out.write_text(calibrated_text(found, out), encoding="utf-8")
+    try:
+        sensors = sensor_axes(found)
+        for channel, (name, axis) in zip(found.channels, sensors, strict=True):
+            _write_table(folder / f"noise_{name}.csv", ("frequency_hz", "density"), _noise_rows(channel.noise))
+            if table := _lines(channel):
+                rows = [(line.order, line.frequency_hz, line.amplitude) for line in table]
+                _write_table(folder / f"lines_{name}.csv", ("order", "frequency_hz", "amplitude_m_s2"), rows)
+            for number in range(len(channel.paths)):
+                _write_path(folder / _path_file(name, number), found, axis, channel.paths[number])
+        facts = json.dumps(calibration_facts(found), indent=1, allow_nan=False)
+        write_file(folder / FACTS, facts + "\n")
+        write_file(out, calibrated_text(found, out))
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)  # the same command may come again
+        raise
     return out
 
 
@@ -245,10 +251,11 @@ def _noise_rows(noise: NoiseFit) -> Iterable[Sequence[float]]:
 
 
 def _write_table(file: Path, head: Sequence[str], rows: Iterable[Sequence[float]]) -> None:
-    with file.open("w", newline="", encoding="utf-8") as lines:
-        writer = csv.writer(lines)
-        writer.writerow(head)
-        writer.writerows([f"{value:.7g}" for value in row] for row in rows)
+    lines = StringIO(newline="")
+    writer = csv.writer(lines)
+    writer.writerow(head)
+    writer.writerows([f"{value:.7g}" for value in row] for row in rows)
+    write_file(file, lines.getvalue())
 
 
 def _path_file(sensor: str, number: int) -> str:
@@ -261,7 +268,9 @@ def _write_path(file: Path, found: Calibration, axis: str, draw: PathDraw) -> No
         stem = f"{axis}_from_{force.replace('/', '_')}"
         curve = weight * draw.accelerance
         columns |= {f"{stem}_real_m_s2_per_n": curve.real, f"{stem}_imag_m_s2_per_n": curve.imag}
-    np.savez(file, allow_pickle=False, **columns)
+    archive = BytesIO()
+    np.savez(archive, allow_pickle=False, **columns)
+    write_file(file, archive.getvalue())
 
 
 def _beside(rig: Path, out: Path) -> str:

@@ -31,6 +31,7 @@ from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
 from diagnostics.page.wording import counted, decimal, percent
+from siggen.file_writing import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -109,7 +110,7 @@ def write_calibration_page(
         *(html.paragraph(f"{text[:1].upper()}{text[1:]}.") for text in not_identified(found)),
     ]
     path = folder / PAGE
-    path.write_text(html.page(f"Calibration of {found.rig.file.stem}", parts), encoding="utf-8")
+    write_file(path, html.page(f"Calibration of {found.rig.file.stem}", parts))
     return path
 
 

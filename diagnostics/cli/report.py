@@ -146,6 +146,7 @@ def _models(
     from diagnostics.training.training import train_models, training_metrics
     from diagnostics.training.training_sets import other_table, set_table
     from siggen.errors import DatasetError
+    from siggen.file_writing import write_file
 
     dataset, second = sets
     table = set_table(dataset, terminal_stage, own=own)
@@ -161,7 +162,7 @@ def _models(
         matrix = feature_matrix(table, set_classes(dataset, options.classes))
         found = run_studies(dataset, matrix, trained.split, seed, second, terminal_stage)
         metrics["studies"] = studies_metrics(found)
-    (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_file(folder / "metrics.json", json.dumps(metrics, indent=1, allow_nan=False) + "\n")
     echo(class_text(trained.split, dataset), err=True)
     for note in (*trained.notes, *notes):
         echo(f"note: {note}", err=True)

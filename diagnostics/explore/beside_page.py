@@ -26,6 +26,7 @@ from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 RECORDING, SIMULATED = "recording", "simulated"
 
@@ -211,8 +212,7 @@ def write_beside_page(
     simulated = set_source(dataset, table, kept)
     said = Shown(COLUMNS, FILTERS, _missing(shown, measured, simulated))
     look = look_of(beside_source(measured, simulated), said, stage, full=chosen.full)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(look_page(f"Recordings of {name} beside {set_name(dataset)}", look), encoding="utf-8")
+    write_file(path, look_page(f"Recordings of {name} beside {set_name(dataset)}", look))
     return path
 
 

@@ -20,6 +20,7 @@ from diagnostics.records.gear_train import names_of, train_labels
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 REFERENCE, UNKNOWN = "healthy reference", "not judged"
 
@@ -149,8 +150,7 @@ def write_recordings_page(
     """
     missing = missing_sentences(sum(one.healthy for one in shown))
     look = look_of(recordings_source(shown), Shown(COLUMNS, FILTERS, missing), stage, full=full)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(look_page(f"Recordings of {name}", look), encoding="utf-8")
+    write_file(path, look_page(f"Recordings of {name}", look))
     return path
 
 

@@ -25,6 +25,7 @@ from diagnostics.records.state_classes import HEALTHY
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 RIGHT, WRONG = "rightly", "wrongly"
 SEEN, UNSEEN = "seen in training", "no"
@@ -219,8 +220,7 @@ def write_set_page(
 ) -> Path:
     """Write the records of a set as a page of its own and return its path; parameters and errors as of `set_look`."""
     look = set_look(dataset, options or LookOptions(), stage, lives_of)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(look_page(f"Records of {set_name(dataset)}", look), encoding="utf-8")
+    write_file(path, look_page(f"Records of {set_name(dataset)}", look))
     return path
 
 

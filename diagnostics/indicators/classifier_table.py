@@ -27,6 +27,7 @@ from diagnostics.records.state_classes import CLASS
 from diagnostics.records.usable_records import RecordCheck
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
+from siggen.file_writing import write_file
 from siggen.keys.column import Role
 
 BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
@@ -209,13 +210,12 @@ def write_table(table: pa.Table, path: Path) -> None:
     """
     check_suffix(path)
     table = _with_own_names(table)
-    path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".csv":
         siggen.write_csv(table, path)
         return
     from pyarrow import parquet
 
-    parquet.write_table(table, path, compression="zstd")
+    write_file(path, lambda draft: parquet.write_table(table, draft, compression="zstd"))
 
 
 def _with_own_names(table: pa.Table) -> pa.Table:

@@ -39,7 +39,8 @@ from diagnostics.records.record_problems import RecordProblem
 from diagnostics.records.recording import LABEL_NAMES, Recording, gear_names, recordings
 from diagnostics.records.sample_bytes import BYTES
 from siggen.dataset.reading import Dataset
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, UsageError
+from siggen.file_writing import write_file
 
 CODE = ("signal", "records", "indicators")
 DIGITS = 12
@@ -111,17 +112,18 @@ def is_readable(path: Path) -> bool:
 
 def keep_table(table: pa.Table, path: Path) -> str:
     """Write a table and delete those of other states of the set; return why it could not be kept, or an empty text."""
-    partial = path.with_suffix(".partial")
+
+    def fill(draft: Path) -> None:
+        pq.write_table(table, draft, compression="zstd")
+        write_file(_hash_file(path), _sha256(draft))
+
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        pq.write_table(table, partial, compression="zstd")
-        _hash_file(path).write_text(_sha256(partial), encoding="ascii")
-        partial.replace(path)
+        write_file(path, fill)
         for other in path.parent.glob("*-*.parquet"):
             if other.name.split("-")[0] != path.name.split("-")[0]:
                 other.unlink(missing_ok=True)
                 _hash_file(other).unlink(missing_ok=True)
-    except OSError as error:
+    except (OSError, UsageError) as error:
         return f"the table of indicators could not be kept ({error}); the next command computes it again"
     return ""
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -23,6 +22,7 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.loader.window_index import StreamSettings, WindowIndex
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from siggen.dataset.reading import Dataset
+from siggen.file_writing import write_file
 
 NOT_DECODED = ("quantity", "classes")
 """Settings that decoded samples do not depend on: the channels say what the quantity says."""
@@ -86,12 +86,9 @@ class RowGroupSignals:
         path = folder / f"{self.split}-{number:05d}.f32"
         lengths = self.index.lengths[number]
         if not path.exists():
-            folder.mkdir(parents=True, exist_ok=True)
             usable = [row for row in range(lengths.size) if lengths[row]]
             joined = np.concatenate([np.stack(found) for found in self._decoded(number, usable).values()], axis=1)
-            part = path.with_suffix(f".{os.getpid()}.part")
-            np.asarray(joined, dtype=np.float32).tofile(part)
-            part.replace(path)  # at once: another process sees the whole file or none
+            write_file(path, np.asarray(joined, dtype=np.float32).tofile)
         # Plain numbers: NumPy's header is parsed as Python source, which Python 3.11 at times refuses in a worker.
         shape = (len(self.dataset.channels), int(lengths.sum()))
         return np.asarray(np.memmap(path, dtype=np.float32, mode="r", shape=shape))

@@ -24,6 +24,7 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
 from diagnostics.training.referenced import log_values
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "other load or speed", "cannot tell"
 LISTED = 8
@@ -48,12 +49,14 @@ class PastCheck:
 def add_checks(folder: Path, checks: list[Check]) -> None:
     """Append checks to the machine's history."""
     made = datetime.now(UTC).isoformat(timespec="seconds")
-    with (folder / CHECKS).open("a", encoding="utf-8") as file:
-        for check in checks:
-            speed = check.speed_hz if isfinite(check.speed_hz) else None
-            score, limit = (None, None) if check.score is None else (check.score.score, check.score.limit)
-            row = PastCheck(made, check.recording, check.verdict, speed, score, limit)
-            file.write(json.dumps({name: getattr(row, name) for name in PastCheck.__slots__}) + "\n")
+    path = folder / CHECKS
+    history = path.read_text(encoding="utf-8") if path.exists() else ""
+    for check in checks:
+        speed = check.speed_hz if isfinite(check.speed_hz) else None
+        score, limit = (None, None) if check.score is None else (check.score.score, check.score.limit)
+        row = PastCheck(made, check.recording, check.verdict, speed, score, limit)
+        history += json.dumps({name: getattr(row, name) for name in PastCheck.__slots__}) + "\n"
+    write_file(path, history)
 
 
 def past_checks(folder: Path) -> list[PastCheck]:

@@ -12,6 +12,7 @@ import numpy as np
 from diagnostics.recordings.measured_recording import RecordingFacts
 from diagnostics.records.gear_train import Mesh, gear_train, train_labels
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 FACTS, TABLE, CHECKS = "machine.json", "references.parquet", "checks.jsonl"
 VERSION = 3
@@ -77,10 +78,10 @@ def save_machine(machine: Machine, folder: Path) -> None:
 
     if (folder / FACTS).exists():
         raise UsageError(f"{folder}: holds a machine already; give --out a new folder")
-    folder.mkdir(parents=True, exist_ok=True)
     columns = {"recording": list(machine.references), "speed_hz": machine.speed_hz, "load": machine.load}
     columns |= {name: machine.values[:, k] for k, name in enumerate(machine.names)}
-    parquet.write_table(pa.table(columns), folder / TABLE, write_page_checksum=True)
+    table = pa.table(columns)
+    write_file(folder / TABLE, lambda draft: parquet.write_table(table, draft, write_page_checksum=True))
     facts = asdict(machine.facts) | {"columns": dict(machine.facts.columns)}
     content = {
         "version": VERSION,
@@ -94,7 +95,7 @@ def save_machine(machine: Machine, folder: Path) -> None:
         "load_from_slip": machine.load_from_slip,
         "doubts": machine.doubts,
     }
-    (folder / FACTS).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    write_file(folder / FACTS, json.dumps(content, indent=1) + "\n")
 
 
 def load_machine(folder: Path) -> Machine:

@@ -14,6 +14,7 @@ from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.page import html
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, new_figure, png_bytes, styled
 from diagnostics.page.wording import capitalised
+from siggen.file_writing import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,7 +62,7 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check]) 
         ),
     ]
     page = folder / PAGE
-    page.write_text(html.page(f"Machine {folder.name}", parts), encoding="utf-8")
+    write_file(page, html.page(f"Machine {folder.name}", parts))
     return page
 
 

@@ -30,6 +30,7 @@ from diagnostics.records.gear_train import Mesh, names_of
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resample_to_angle
 from diagnostics.signal.spectrum import OrderLines, noise_density, order_lines
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 TABLE, PAGE = "indicators.csv", "indicators.html"
 
@@ -42,7 +43,6 @@ def write_recordings(found: Sequence[RecordingIndicators], folder: Path) -> Path
     """Write `indicators.csv`, one row per recording and channel, and `indicators.html`; return the page's path."""
     import pyarrow as pa
 
-    folder.mkdir(parents=True, exist_ok=True)
     rows = recording_rows(found)
     columns = list(dict.fromkeys(name for row in rows for name in row))
     siggen.write_csv(pa.table({name: [row.get(name) for row in rows] for name in columns}), folder / TABLE)
@@ -50,7 +50,7 @@ def write_recordings(found: Sequence[RecordingIndicators], folder: Path) -> Path
     for one in found:
         parts += _section(one)
     page = folder / PAGE
-    page.write_text(html.page("Indicators of recordings", parts), encoding="utf-8")
+    write_file(page, html.page("Indicators of recordings", parts))
     return page
 
 

@@ -80,7 +80,8 @@ def png_bytes(figure: Figure) -> bytes:
     from diagnostics.page.power_labels import write_powers
 
     write_powers(figure)
-    drawn, stream = io.BytesIO(), io.BytesIO()
+    drawn = io.BytesIO()
+    stream = io.BytesIO()
     with styled():
         # packed once, with its palette
         figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH, pil_kwargs={"compress_level": 0})

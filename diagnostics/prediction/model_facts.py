@@ -23,6 +23,7 @@ from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.splits import TEST, SpecimenSplit
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 FACTS_FILE = "model.json"
 MODEL_FILES = (
@@ -195,7 +196,7 @@ def write_facts(
         "referenced_distance": distance_facts(referenced) if referenced else None,
         "files": file_hashes(folder),
     }
-    (folder / FACTS_FILE).write_text(sealed_text(content), encoding="utf-8")
+    write_file(folder / FACTS_FILE, sealed_text(content))
 
 
 def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDistance | None]:

@@ -30,6 +30,7 @@ from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.records.gear_train import Mesh
 from diagnostics.records.record_classes import STATE
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
+from siggen.file_writing import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -247,18 +248,17 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
         If matplotlib is missing.
     """
     require_packages("the plots of a prediction", "matplotlib")
-    folder.mkdir(parents=True, exist_ok=True)
     content = prediction_facts(found, facts)
     text = json.dumps(content, indent=1, allow_nan=False) + "\n"
-    (folder / "prediction.json").write_text(text, encoding="utf-8")
+    write_file(folder / "prediction.json", text)
     blocks = []
     for channel in found.recording.channels:
         with styled():
             png = png_bytes(sideband_figure(found.recording, Mesh("", found.teeth), found.pulses, channel))
-        (folder / f"sidebands_{channel}.png").write_bytes(png)
+        write_file(folder / f"sidebands_{channel}.png", png)
         blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     page = folder / "prediction.html"
-    page.write_text(_page(found, facts, content["indicators"], blocks), encoding="utf-8")
+    write_file(page, _page(found, facts, content["indicators"], blocks))
     return page
 
 

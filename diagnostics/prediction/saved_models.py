@@ -29,6 +29,7 @@ from diagnostics.training.severity import expected_area
 from diagnostics.training.splits import TEST, VALIDATION, SpecimenSplit
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
+from siggen.file_writing import write_file
 from siggen.printable import markdown
 
 
@@ -228,7 +229,6 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     folder : Path
         Created where missing.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     for name in (FACTS_FILE, *MODEL_FILES):
         # a network of an earlier run must not lie beside a card that does not know it
         (folder / name).unlink(missing_ok=True)
@@ -255,7 +255,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     released = release(training, table, dataset)
     notes += [released.note] if released.note else []
     card = f"{model_card(training, dataset)}\n{release_card(released)}"
-    (folder / "model_card.md").write_text(card, encoding="utf-8")
+    write_file(folder / "model_card.md", card)
     save_release(training, released, table, folder)
     return notes
 

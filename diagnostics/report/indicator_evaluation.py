@@ -23,6 +23,7 @@ from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.judged_records import JudgedRecords, judged_records
 from diagnostics.training.realism import meaning_of_scores
 from siggen.dataset.reading import Dataset
+from siggen.file_writing import write_file
 
 CURVES_SHOWN = 6
 NUMBERS = "indicators.json"
@@ -88,7 +89,7 @@ def write_evaluation(dataset: Dataset, found: Evaluated, folder: Path, *, values
     write_table(results, folder / "evaluation.parquet")
     write_table(results, folder / "evaluation.csv")
     numbers = words.document(report_numbers(dataset, found, findings(dataset, found)))
-    (folder / NUMBERS).write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_file(folder / NUMBERS, json.dumps(numbers, indent=1, allow_nan=False) + "\n")
     return folder / "evaluation.csv"
 
 

@@ -38,6 +38,7 @@ from diagnostics.training.life_baselines import (
 from diagnostics.training.life_rows import INDICATORS, inspections
 from siggen.dataset.reading import Dataset
 from siggen.errors import how_to_install
+from siggen.file_writing import write_file
 
 PAGE = "report.html"
 KNOWN = (CONSTANT, AGE, AREAS, OUTLOOK)
@@ -77,13 +78,12 @@ def write_life_report(
         name: life_scores(found.rul_h, values, found.specimen, found.median_life_h, seed)
         for name, values in predicted.items()
     }
-    folder.mkdir(parents=True, exist_ok=True)
     baselines = {name: one.numbers() for name, one in scores.items()}
     metrics = {"seed": seed, **_facts(found), "baselines": baselines, "leaks": [leak.numbers() for leak in leaks]}
     detected = detections(found, seen)
     metrics["first_detection"] = {name: one.numbers() for name, one in detected.items()}
     text = json.dumps(metrics, indent=1, allow_nan=False)
-    (folder / "metrics.json").write_text(f"{text}\n", encoding="utf-8")
+    write_file(folder / "metrics.json", f"{text}\n")
     identity = str(dataset.manifest["identity"])
     write_predictions([_predicted_rows(name, found, values) for name, values in predicted.items()], identity, folder)
     page = folder / PAGE
@@ -97,7 +97,7 @@ def write_life_report(
         *(html.figure_grid([life_block(one) for one in lives]), html.heading("Leaks"), _leaks(leaks)),
     ]
     opening = html.answer(_answer(found, scores, detected), life_block(first))
-    page.write_text(_page(dataset, seed, opening, parts, look), encoding="utf-8")
+    write_file(page, _page(dataset, seed, opening, parts, look))
     return page
 
 

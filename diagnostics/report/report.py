@@ -51,6 +51,7 @@ from diagnostics.training.training import Training, train_models, training_metri
 from diagnostics.training.training_sets import checked_table, measured_table, other_table
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, how_to_install
+from siggen.file_writing import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -127,7 +128,6 @@ def write_report(
     records = measured_table(dataset, stage, own=own, workers=page.workers)
     table = checked_table(records, dataset)
     second = other_table(other, stage, own) if other is not None else None
-    folder.mkdir(parents=True, exist_ok=True)
     matrix = feature_matrix(table, set_classes(dataset, network.classes))
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)
@@ -160,14 +160,14 @@ def write_report(
     metrics["studies"] = studies_metrics(studies) if studies else None
     yours = _scored(dataset, page, folder if training else None, network)
     metrics = {**words.document(metrics), "yours": yours.numbers() if yours else None}
-    (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_file(folder / "metrics.json", json.dumps(metrics, indent=1, allow_nan=False) + "\n")
     look = _look(dataset, records, judged, folder / "models" if training else None, page, own, stage)
     reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, judged, look, yours)
     path = folder / "report.html"
     with stage("page", 1):
         drawn = {**opening, **drawing.figures(), **in_detail}
         pictures = _write_pictures(folder, {name: (words.figure(one), text) for name, (one, text) in drawn.items()})
-        path.write_text(report_page(reported, pictures), encoding="utf-8")
+        write_file(path, report_page(reported, pictures))
     return path
 
 
@@ -228,11 +228,10 @@ def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
 def _write_pictures(folder: Path, figures: dict[str, tuple[Figure, str]]) -> dict[str, tuple[bytes, str]]:
     """Write all figures and return them with their captions; those that an earlier run alone had are removed."""
     pictures = {name: (png_bytes(figure), caption) for name, (figure, caption) in figures.items()}
-    (folder / "figures").mkdir(exist_ok=True)
     for name in TITLES:  # matrices are tables now
         (folder / "figures" / f"confusion_{name}.png").unlink(missing_ok=True)
     for name, (png, _) in pictures.items():
-        (folder / "figures" / f"{name}.png").write_bytes(png)
+        write_file(folder / "figures" / f"{name}.png", png)
     return pictures
 
 

@@ -31,6 +31,7 @@ from diagnostics.scoring.truth import Truth
 from diagnostics.statistics.evaluation import Predictions
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
+from siggen.file_writing import write_file
 
 SHOWN, MOST_CLASSIFIERS = 5, 1_000
 
@@ -167,7 +168,7 @@ def write_predictions(parts: Sequence[pa.Table], identity: str, folder: Path, ki
         {IDENTITY_KEY: identity.encode(), KIND_KEY: kind.encode()}
     )
     path = folder / PREDICTIONS_FILE
-    parquet.write_table(table, path, compression="zstd")
+    write_file(path, lambda draft: parquet.write_table(table, draft, compression="zstd"))
     return path
 
 

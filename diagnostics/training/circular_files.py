@@ -8,17 +8,19 @@ from __future__ import annotations
 import json
 import warnings
 from dataclasses import asdict, dataclass
+from io import BytesIO
 from pathlib import Path
 
 import torch
 from safetensors import SafetensorError, safe_open
-from safetensors.torch import load_file, save_file
+from safetensors.torch import load_file, save
 
 from diagnostics.training.average_rows import ROWS, STEPS
 from diagnostics.training.circular_network import CircularNetwork
 from diagnostics.training.circular_training import TrainedCircularFile
 from diagnostics.training.cnn_files import check_finite
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 FORMAT = "siggen-diagnostics circular network 1"
 
@@ -48,7 +50,7 @@ def save_circular(found: TrainedCircularFile, path: Path) -> None:
     trained = found.trained
     facts = CircularFacts(trained.classes, found.channels, found.identity, trained.temperature)
     weights = {name: value.contiguous() for name, value in trained.network.state_dict().items()}
-    save_file(weights, path, metadata={"format": FORMAT, "facts": json.dumps(asdict(facts))})
+    write_file(path, save(weights, metadata={"format": FORMAT, "facts": json.dumps(asdict(facts))}))
 
 
 def load_circular(path: Path) -> tuple[CircularNetwork, CircularFacts]:
@@ -89,12 +91,14 @@ def export_circular_onnx(found: TrainedCircularFile, path: Path) -> None:
     example = torch.ones(2, ROWS * len(found.channels), STEPS)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the legacy exporter needs no further package; it announces its successor
+        exported = BytesIO()
         torch.onnx.export(
             found.trained.network,
             (example,),
-            str(path),
+            exported,
             dynamo=False,
             input_names=["rows"],
             output_names=["logits"],
             dynamic_axes={"rows": {0: "batch"}, "logits": {0: "batch"}},
         )
+    write_file(path, exported.getvalue())

@@ -13,6 +13,7 @@ from typing import Any
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.training.baselines import FeatureClassifier
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 CLASSIFIER_FILE, NAMES_FILE = "classifier.skops", "feature_names.json"
 TRUSTED_TYPES = ("numpy.dtype",)
@@ -27,7 +28,7 @@ def save_classifier(
     A prefix before both names keeps variants of a classifier apart.
     """
     path = folder / f"{prefix}{CLASSIFIER_FILE}"
-    _skops_io().dump(model.pipeline, path)
+    write_file(path, _skops_io().dumps(model.pipeline))
     facts = {
         "features": model.features,
         "classes": model.classes,
@@ -38,7 +39,7 @@ def save_classifier(
         "settings": asdict(settings),
         "identity": identity,
     }
-    (folder / f"{prefix}{NAMES_FILE}").write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    write_file(folder / f"{prefix}{NAMES_FILE}", json.dumps(facts, indent=1) + "\n")
     return path
 
 

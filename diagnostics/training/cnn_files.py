@@ -6,15 +6,17 @@ import json
 import math
 import warnings
 from dataclasses import asdict, dataclass
+from io import BytesIO
 from pathlib import Path
 
 import torch
 from safetensors import SafetensorError, safe_open
-from safetensors.torch import load_file, save_file
+from safetensors.torch import load_file, save
 
 from diagnostics.loader.windows import WindowSettings
 from diagnostics.training.cnn import TrainedNetwork, WideKernelNetwork
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
 FORMAT = "siggen-diagnostics wide-kernel network 1"
 
@@ -59,7 +61,7 @@ def describe_network(
 def save_network(network: WideKernelNetwork, facts: NetworkFile, path: Path) -> None:
     """Write weights and facts as safetensors; the facts are JSON under the metadata key `facts`."""
     weights = {name: value.contiguous() for name, value in network.state_dict().items()}
-    save_file(weights, path, metadata={"format": FORMAT, "facts": json.dumps(asdict(facts))})
+    write_file(path, save(weights, metadata={"format": FORMAT, "facts": json.dumps(asdict(facts))}))
 
 
 def load_network(path: Path) -> tuple[WideKernelNetwork, NetworkFile]:
@@ -120,12 +122,14 @@ def export_onnx(network: WideKernelNetwork, facts: NetworkFile, path: Path) -> N
     with warnings.catch_warnings():
         # the legacy exporter is the one that needs no further package; it announces its successor on every call
         warnings.simplefilter("ignore")
+        exported = BytesIO()
         torch.onnx.export(
             network,
             (example,),
-            str(path),
+            exported,
             dynamo=False,
             input_names=["windows"],
             output_names=["logits"],
             dynamic_axes={"windows": {0: "batch"}, "logits": {0: "batch"}},
         )
+    write_file(path, exported.getvalue())

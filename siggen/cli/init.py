@@ -72,6 +72,7 @@ def init(
     from siggen.config import inherited, parse_yaml
     from siggen.config.expert_keys import schema_text
     from siggen.errors import UsageError
+    from siggen.file_writing import write_file
     from siggen.rig.rig_answers import QUESTIONS, missing_answers, refuse_missing, rig_of
     from siggen.rig.rig_text import SCHEMA_FILE, rig_text
 
@@ -86,9 +87,8 @@ def init(
     rig = replace(rig, accuracy_classes=covering_classes(rig))
     text = rig_text(rig, _name(out), base, proposals)
     config = load_config(inherited(parse_yaml(text, str(out))))  # what is refused is never written
-    out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(text, encoding="utf-8")
-    out.with_name(SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
+    write_file(out.with_name(SCHEMA_FILE), schema_text())
+    write_file(out, text)  # last: once it is there, this command refuses
     for option, sentence in proposals.items():
         echo(f"--{option} was not given; proposed: {sentence}", err=True)
     for sentence in implausible(config):

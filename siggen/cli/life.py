@@ -79,16 +79,14 @@ def _content(config: Config, specimen: int) -> dict[str, Any]:
 def _write(file: Path, config: Config, specimen: int) -> None:
     from siggen.config import yaml_text
     from siggen.errors import UsageError
+    from siggen.file_writing import write_file
     from siggen.planning.gearbox import gearbox_config
 
     if file.exists():
         raise UsageError(f"--as-states {file}: is there already; give a new file")
     states = gearbox_config(config, specimen).states
     listed = config.model_copy(update={"life": None, "states": states})
-    try:
-        file.write_text(yaml_text(listed.canonical()), encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"--as-states {file}: {error.strerror}; allowed: a file in a folder that is there") from None
+    write_file(file, yaml_text(listed.canonical()))
 
 
 def _print(found: dict[str, Any]) -> None:

@@ -80,14 +80,12 @@ def path(
 
 def _write_modes(found: PathCurves, path: Path) -> None:
     from siggen.errors import UsageError
+    from siggen.file_writing import write_file
     from siggen.views.exported_modes import exported_modes
 
     if found.housing is None:
         raise UsageError("no sensor stands on a housing that gives way: allowed is housing.kind: plates")
-    try:
-        path.write_text(exported_modes(found.housing).text, encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error
+    write_file(path, exported_modes(found.housing).text)
 
 
 def _facts(found: PathCurves) -> dict[str, object]:

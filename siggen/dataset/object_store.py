@@ -15,9 +15,9 @@ from typing import Any, BinaryIO, cast
 from siggen.dataset.object_file import ObjectFile
 from siggen.dataset.object_path import ObjectPath
 from siggen.dataset.s3_client import error_code, in_words, s3_client
-from siggen.dataset.storage import LEFTOVER_SUFFIX
 from siggen.dataset.writer_lock import ABSENT, WriterLock
 from siggen.errors import DatasetError
+from siggen.file_writing import LEFTOVER_SUFFIX
 
 LOCK = f".writer{LEFTOVER_SUFFIX}"
 LARGEST_PUT_BYTES = 5 * 1024**3

@@ -39,11 +39,11 @@ class TableFile:
     cut them.
     """
 
-    def __init__(self, path: Path, name: str, schema: pa.Schema, group_rows: int) -> None:
-        self._path, self._name, self._schema, self._group_rows = path, name, schema, group_rows
+    def __init__(self, draft: Path, name: str, schema: pa.Schema, group_rows: int) -> None:
+        self._path, self._name, self._schema, self._group_rows = draft, name, schema, group_rows
         self._pending = schema.empty_table()
         self._rows = 0
-        self._writer = pq.ParquetWriter(path, schema, **_options(schema))
+        self._writer = pq.ParquetWriter(draft, schema, **_options(schema))
 
     def add(self, batch: pa.RecordBatch) -> None:
         """Write the row groups that a batch completes."""

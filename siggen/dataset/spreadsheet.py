@@ -13,6 +13,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv
 
+from siggen.file_writing import write_file
+
 OPENS_A_FORMULA = r"^([=+\-@\t\r\n])"
 
 
@@ -24,10 +26,15 @@ def write_csv(table: pa.Table, path: Path | str) -> None:
     table : pyarrow.Table
         Of numbers and texts.
     path : path
+
+    Raises
+    ------
+    UsageError
+        If it cannot be written.
     """
     columns = [_guarded(column) for column in table.columns]
     names = [_guarded(pa.array([name]))[0].as_py() for name in table.column_names]
-    pyarrow.csv.write_csv(pa.table(columns, names=names), path)
+    write_file(Path(path), lambda draft: pyarrow.csv.write_csv(pa.table(columns, names=names), draft))
 
 
 def _guarded(column: pa.ChunkedArray | pa.Array) -> pa.ChunkedArray | pa.Array:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import os
-import secrets
 import stat
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
@@ -14,9 +12,7 @@ from typing import BinaryIO, Protocol
 
 from siggen.dataset.object_name import check_below
 from siggen.errors import DatasetError
-
-LEFTOVER_SUFFIX = ".siggen-part"
-"""Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
+from siggen.file_writing import LEFTOVER_SUFFIX, UNWRITABLE, drafted
 
 READ_BYTES = 1 << 20
 MAKE_ATTEMPTS = 5
@@ -24,8 +20,6 @@ HOW_TO_GO_ON = (
     "`siggen verify` finds all damaged files of a set; delete them, and `siggen generate` with the set's config.yaml "
     "makes them again"
 )
-UNWRITABLE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO}
-"""What the user of a disk can mend: it is full, at its quota, read-only, not theirs, or broken."""
 
 
 class Storage(Protocol):
@@ -99,11 +93,11 @@ def file_sha256(file: BinaryIO) -> str:
     return digest.hexdigest()
 
 
-def copy_object(source: Storage, name: str, target: Storage, promised_sha256: str) -> None:
+def copy_object(source: Storage, name: str, target: Storage, promised_sha256: str, *, links: bool = True) -> None:
     """Copy an object into another storage under the same name, if it is the one that is promised.
 
-    Between folders of one file system both names lead to the same bytes afterwards, where it has hard links. Nothing
-    here writes into a file that is there: whoever makes one of them again puts another in its place.
+    With `links`, both names lead to the same bytes afterwards between folders of one file system, where it has hard
+    links. Nothing here writes into a file that is there: whoever makes one of them again puts another in its place.
 
     Raises
     ------
@@ -111,7 +105,7 @@ def copy_object(source: Storage, name: str, target: Storage, promised_sha256: st
         If it is missing, or its SHA-256 is another one; then nothing is stored.
     """
     with source.open(name) as file, target.draft(name) as draft:
-        if isinstance(source, LocalFolder) and source.link(name, draft):
+        if links and isinstance(source, LocalFolder) and source.link(name, draft):
             with draft.open("rb") as linked:
                 digest = file_sha256(linked)
         else:
@@ -123,10 +117,10 @@ def copy_object(source: Storage, name: str, target: Storage, promised_sha256: st
             )
 
 
-def _copied(file: BinaryIO, path: Path) -> str:
+def _copied(file: BinaryIO, draft: Path) -> str:
     """Copy an open file and return its SHA-256."""
     digest = hashlib.sha256()
-    with path.open("wb") as copy:
+    with draft.open("wb") as copy:
         while piece := file.read(READ_BYTES):
             digest.update(piece)
             copy.write(piece)
@@ -149,8 +143,8 @@ class LocalFolder:
 
     def put(self, name: str, content: bytes) -> None:
         """Write the content to a hidden file, then rename it: a reader never sees half of it."""
-        with self.draft(name) as path:
-            path.write_bytes(content)
+        with self.draft(name) as draft:
+            draft.write_bytes(content)
 
     @contextmanager
     def draft(self, name: str) -> Iterator[Path]:
@@ -164,14 +158,8 @@ class LocalFolder:
             is_taken = True
         if is_taken:
             raise DatasetError(f"{target}: a folder stands where a file belongs, or a file in its way; remove it")
-        part = target.with_name(f".{target.name}.{secrets.token_hex(4)}{LEFTOVER_SUFFIX}")
-        try:
-            yield part
-            _flush(part)
-            part.replace(target)
-            _flush(target.parent)
-        finally:
-            part.unlink(missing_ok=True)
+        with drafted(target) as draft:
+            yield draft
 
     def get(self, name: str) -> bytes:
         """Return the file's content."""
@@ -204,7 +192,7 @@ class LocalFolder:
     def link(self, name: str, path: Path) -> bool:
         """Give a file a second name, a path outside; False where the file system cannot."""
         try:
-            os.link(self._file(name), path)
+            os.link(_real(self._file(name)), path)  # never a link that is there: it may lead elsewhere from the path
         except OSError:
             return False
         return True
@@ -317,15 +305,6 @@ def _make(folder: Path) -> None:
 def _real(path: Path) -> Path:
     """Return where links lead; a circle of them leads to itself."""
     return Path(os.path.realpath(path))
-
-
-def _flush(path: Path) -> None:
-    """Wait until a file's content, or a folder's entries, are on the disk."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def _lock(folder: Path) -> int | None:

@@ -8,10 +8,10 @@ import pyarrow as pa
 import pyarrow.parquet
 
 from siggen.dataset.spreadsheet import write_csv
-from siggen.dataset.storage import LocalFolder
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 
-WRITERS = {".csv": write_csv, ".parquet": pyarrow.parquet.write_table}
+ENDINGS = (".csv", ".parquet")
 
 
 def check_table_file(path: Path) -> Path:
@@ -22,8 +22,8 @@ def check_table_file(path: Path) -> Path:
     UsageError
         If the ending is unknown or the path is a folder.
     """
-    if path.suffix.lower() not in WRITERS:
-        raise UsageError(f"{path}: received the ending {path.suffix!r}; allowed are {', '.join(WRITERS)}")
+    if path.suffix.lower() not in ENDINGS:
+        raise UsageError(f"{path}: received the ending {path.suffix!r}; allowed are {', '.join(ENDINGS)}")
     if path.is_dir():
         raise UsageError(f"{path} is a folder; name a file in it, such as {path / 'table.parquet'}")
     return path
@@ -38,8 +38,7 @@ def write_table_file(table: pa.Table, path: Path) -> None:
         If the path cannot be written.
     """
     check_table_file(path)
-    try:
-        with LocalFolder(path.parent).draft(path.name) as draft:
-            WRITERS[path.suffix.lower()](table, draft)
-    except OSError as error:
-        raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error
+    if path.suffix.lower() == ".csv":
+        write_csv(table, path)
+    else:
+        write_file(path, lambda draft: pyarrow.parquet.write_table(table, draft))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,10 +15,11 @@ import pyarrow as pa
 from siggen.dataset.card import faults_text, tags
 from siggen.dataset.card_making import quantities_text
 from siggen.dataset.manifest import BLIND, CARD, INJECTED, MANIFEST
+from siggen.dataset.new_folder import new_folder
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import sealed
-from siggen.dataset.storage import copy_object
+from siggen.dataset.storage import LocalFolder, Storage, copy_object
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.publication.audit_section import AUDIT, audit_section
@@ -115,7 +117,7 @@ def publish(
     Parameters
     ----------
     to : path
-        A new or empty folder.
+        A new or empty folder. After a kill the same call begins anew, and ends with the same bytes.
 
     Raises
     ------
@@ -123,20 +125,35 @@ def publish(
         As of `publication`, or if the target is not empty.
     """
     made = publication(path, facts_file, audit, with_recordings=with_recordings)
-    source, target = storage_at(path), storage_at(to)
-    if target.names():
-        raise UsageError(f"{to} is not empty; name a new or empty folder (nothing is deleted)")
-    dataset = open_set(path)
-    with target.writing():
+    source, dataset = storage_at(path), open_set(path)
+    own = {**made.texts, **_previews(dataset)}
+    with _target(to, {*made.copied, *own}) as target:
         for name in made.copied:
-            copy_object(source, name, target, dataset.files[name].sha256)
-        own = {**made.texts, **_previews(dataset)}
+            copy_object(source, name, target, dataset.files[name].sha256, links=False)
         for name, content in own.items():
             target.put(name, content)
         files = {name: file for name, file in dataset.manifest["files"].items() if name in made.copied}
         files |= {name: {"bytes": len(text), "sha256": hashlib.sha256(text).hexdigest()} for name, text in own.items()}
         target.put(MANIFEST, sealed({**dataset.manifest, "files": files}))
     return made
+
+
+@contextmanager
+def _target(to: Path | str, names: set[str]) -> Iterator[Storage]:
+    """Give the storage to fill: a folder appears when all is there, in a store the manifest comes last.
+
+    A store may hold what a stopped `publish` of the same set left, which is written again.
+    """
+    target = storage_at(to)
+    left = set(target.names())
+    if left and (isinstance(target, LocalFolder) or not left <= names):
+        raise UsageError(f"{to} is not empty; name a new or empty folder (nothing is deleted)")
+    if isinstance(target, LocalFolder):
+        with new_folder(target.path) as draft:
+            yield draft
+    else:
+        with target.writing():
+            yield target
 
 
 def _facts(path: Path, file: Path | None) -> PublicationFacts:

@@ -24,9 +24,9 @@ from siggen.dataset.object_name import data_name, internals_name
 from siggen.dataset.pieces import Pieces, ShardPieces
 from siggen.dataset.shard import TableFile, table_draft
 from siggen.dataset.sidecar import Sidecar, promised_shard, put_sidecar, ranges
-from siggen.dataset.storage import UNWRITABLE
 from siggen.engines.protocol import Unfinished
 from siggen.errors import DatasetError
+from siggen.file_writing import UNWRITABLE
 from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group
 from siggen.record.stage_times import collected
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from siggen.config import Config
 from siggen.config.names import Names
-from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -27,6 +26,7 @@ from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.transient import both_settled_s, settling_steps
 from siggen.errors import UsageError
+from siggen.file_writing import write_file
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
@@ -103,12 +103,13 @@ def write_model(model: Model, path: Path) -> None:
         If the path does not end with .npz or cannot be written.
     """
     check_model_file(path)
-    try:
-        with LocalFolder(path.parent).draft(path.name) as draft, draft.open("wb") as file:
-            arrays: dict[str, Any] = {name: np.asarray(value) for name, value in model.items()}
+    arrays: dict[str, Any] = {name: np.asarray(value) for name, value in model.items()}
+
+    def fill(draft: Path) -> None:
+        with draft.open("wb") as file:  # NumPy would append its ending to a name
             np.savez_compressed(file, **arrays)
-    except OSError as error:
-        raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error
+
+    write_file(path, fill)
 
 
 def check_model_file(path: Path) -> None:

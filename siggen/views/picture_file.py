@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from siggen.config.names import NO_NAMES, Names
 from siggen.errors import UsageError, how_to_install
+from siggen.file_writing import write_file
 from siggen.views.figure_style import figure_style
 
 if TYPE_CHECKING:
@@ -49,9 +51,7 @@ def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150, names: N
                 text.set_text(names.text(text.get_text()))
     except ImportError:
         raise UsageError(f"drawing needs matplotlib: {how_to_install('diagnostics')}") from None
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with mpl.rc_context(figure_style()):  # letters are set when the file is written
-            figure.savefig(path, dpi=dpi)
-    except OSError as error:
-        raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error
+    drawn = BytesIO()
+    with mpl.rc_context(figure_style()):  # letters are set when the file is written
+        figure.savefig(drawn, format=path.suffix[1:].lower(), dpi=dpi)
+    write_file(path, drawn.getvalue())

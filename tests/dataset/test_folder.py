@@ -8,8 +8,9 @@ import pytest
 
 from siggen.config import parse, parse_yaml
 from siggen.dataset.folder import config_bytes, is_finished
-from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
+from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
+from siggen.file_writing import LEFTOVER_SUFFIX
 from tests.dataset.fake_set import fake_config, file_bytes, write_fake_set
 
 CONFIG = fake_config()

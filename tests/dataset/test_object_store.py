@@ -13,9 +13,10 @@ import pytest
 from siggen.dataset import object_store
 from siggen.dataset.object_path import object_path
 from siggen.dataset.object_store import LOCK, ObjectStore
-from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder, sha256
+from siggen.dataset.storage import LocalFolder, sha256
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError
+from siggen.file_writing import LEFTOVER_SUFFIX
 from tests.dataset.s3_server import BUCKET, s3_server
 
 PLACE = f"s3://{BUCKET}/some/set"

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder, sha256
+from siggen.dataset.storage import LocalFolder, sha256
 from siggen.errors import DatasetError
+from siggen.file_writing import LEFTOVER_SUFFIX
 
 
 def test_an_object_replaces_an_older_one_and_is_read_back(tmp_path: Path) -> None:

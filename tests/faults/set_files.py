@@ -6,7 +6,8 @@ import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
-from siggen.dataset.storage import LEFTOVER_SUFFIX, Storage
+from siggen.dataset.storage import Storage
+from siggen.file_writing import LEFTOVER_SUFFIX
 
 PER_RUN = "run.json"
 """Says when and with which processes a set was made."""

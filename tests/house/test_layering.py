@@ -14,7 +14,8 @@ import pytest
 from tests.house.source_tree import ROOT, imports, modules
 
 SIGGEN_ROOMS = (
-    "errors", "printable", "sources", "seeding", "child_environment", "arrays", "compiled", "lanes", "keys",
+    "errors", "file_writing", "printable", "sources", "seeding", "child_environment", "arrays", "compiled", "lanes",
+    "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.bearings", "dynamics.friction",
     "dynamics.mesh", "dynamics.time",
@@ -38,7 +39,9 @@ DOOR = {
     "siggen.config.names",
     "siggen.dataset.reading",
 } | {"siggen.keys.column"}
-SHARED = {"siggen.child_environment"} | {f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")}
+SHARED = {"siggen.child_environment", "siggen.file_writing"} | {
+    f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")
+}
 """What both programs are built with; it knows no set."""
 TREE = {package: modules(package) for package in ROOMS}
 KNOWN = {name for paths in TREE.values() for name in paths}

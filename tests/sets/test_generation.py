@@ -9,8 +9,9 @@ import pytest
 
 from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import unsealed
-from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
+from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError, EngineError
+from siggen.file_writing import LEFTOVER_SUFFIX
 from siggen.sets.extension import extend
 from siggen.sets.generation import generate
 from siggen.sets.loss_limit import LossError

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from siggen.dataset.seal import unsealed
-from siggen.dataset.storage import LEFTOVER_SUFFIX
 from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError
+from siggen.file_writing import LEFTOVER_SUFFIX
 from siggen.sets.generation import generate
 from siggen.sets.set_run import InterruptionError
 from tests.dataset.fake_set import (

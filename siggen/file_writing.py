@@ -1,0 +1,80 @@
+"""The one way in which a file is written: beside its name, flushed to the disk, renamed."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from siggen.errors import UsageError
+
+LEFTOVER_SUFFIX = ".siggen-part"
+"""Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
+
+UNWRITABLE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO}
+"""What the user of a disk can mend: it is full, at its quota, read-only, not theirs, or broken."""
+
+
+def write_file(path: Path, content: str | bytes | Callable[[Path], object]) -> None:
+    """Write a file and the folders above it; a reader sees the old one or the whole new one, never a part.
+
+    Parameters
+    ----------
+    path : Path
+        A link is followed.
+    content : str, bytes or callable
+        Text (as UTF-8), bytes, or what fills a draft: it is called with a path beside the file.
+
+    Raises
+    ------
+    UsageError
+        If the disk takes no more, or nothing can be written there; then nothing is left behind.
+    """
+    target = Path(os.path.realpath(path))
+    try:
+        if target.exists() and not target.is_file():
+            raise UsageError(f"{path} is no regular file; name another one")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with drafted(target) as draft:
+            if callable(content):
+                content(draft)
+            else:
+                draft.write_bytes(content.encode() if isinstance(content, str) else content)
+    except OSError as error:
+        raise unwritten(path, error) from error
+
+
+def unwritten(path: Path | str, error: OSError) -> UsageError:
+    """Return in words why nothing was written, and that nothing is left of it."""
+    why = os.strerror(error.errno) if error.errno in UNWRITABLE else error.strerror or error
+    return UsageError(
+        f"{path} cannot be written: {why}; no part of it is left: mend that, or name another place, and try again"
+    )
+
+
+@contextmanager
+def drafted(target: Path) -> Iterator[Path]:
+    """Give a hidden path in the target's folder to fill; flushed and renamed when the block ends without an error.
+
+    Errors of the file system stay what they are: of a set, whoever writes it says how to go on.
+    """
+    draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}{LEFTOVER_SUFFIX}")
+    try:
+        yield draft
+        _flush(draft)
+        draft.replace(target)
+        _flush(target.parent)
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _flush(path: Path) -> None:
+    """Wait until a file's content, or a folder's entries, are on the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,95 @@
+"""`publish` that is stopped: the folder has no name before it is whole, and the same call ends with the same bytes."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+import siggen
+from siggen import file_writing
+from siggen.errors import UsageError
+from siggen.publication import publish as publication_module
+from siggen.publication.publish import publish
+from tests.dataset.fake_set import file_bytes, write_fake_set
+from tests.publication.conftest import facts_file
+
+MOMENTS = 10
+PUBLISHED = """
+import os, signal, sys
+from pathlib import Path
+from siggen import file_writing
+from siggen.publication.publish import publish
+folder, moments = Path(sys.argv[1]), sys.argv[2:]
+flush, flushed = file_writing._flush, 0
+def dies(path):
+    global flushed
+    flushed += 1
+    if flushed == moment:
+        os.kill(os.getpid(), signal.SIGKILL)
+    flush(path)
+file_writing._flush = dies
+for moment in map(int, moments):
+    child = os.fork()
+    if child == 0:
+        publish(folder / "set", folder / "upload", folder / "publication.yaml")
+        os._exit(0)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), (folder / "upload").exists(), flush=True)
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a set whose shard is a link within it, and the authors' facts."""
+    folder = tmp_path_factory.mktemp("again")
+    write_fake_set(folder / "set")
+    facts_file(folder)
+    shard = next((folder / "set" / "data").glob("*.parquet"))
+    moved = shard.rename(folder / "set" / "data" / f".{shard.name}")
+    shard.symlink_to(moved.absolute())
+    return folder
+
+
+@pytest.fixture(scope="module")
+def whole(place: Path) -> dict[str, bytes]:
+    publish(place / "set", place / "whole", place / "publication.yaml")
+    return file_bytes(place / "whole")
+
+
+def test_killed_at_ten_moments_and_run_again_it_ends_with_the_same_bytes(place: Path, whole: dict[str, bytes]) -> None:
+    moments = np.linspace(1, 2 * len(whole), MOMENTS).round().astype(int).tolist()  # two flushes for every file
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", PUBLISHED, place, *map(str, moments), "0"],
+        capture_output=True, text=True, timeout=500, check=False,
+    )  # fmt: skip
+    assert done.stdout.splitlines() == [f"{-signal.SIGKILL} False"] * MOMENTS + ["0 True"], done.stderr
+    assert file_bytes(place / "upload") == whole
+    assert not list(place.glob(f".upload*{file_writing.LEFTOVER_SUFFIX}"))
+
+
+def test_ctrl_c_leaves_nothing(place: Path, tmp_path: Path) -> None:
+    with patch.object(publication_module, "sealed", side_effect=KeyboardInterrupt), pytest.raises(KeyboardInterrupt):
+        publish(place / "set", tmp_path / "upload", place / "publication.yaml")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_is_published_is_a_copy_without_links(place: Path, whole: dict[str, bytes]) -> None:
+    files = [path for path in (place / "whole").rglob("*") if not path.is_dir()]
+    assert len(files) == len(whole)
+    assert all(not path.is_symlink() and path.stat().st_nlink == 1 for path in files)
+    assert siggen.open(place / "whole").labels().equals(siggen.open(place / "set").labels())
+
+
+def test_a_folder_that_holds_something_is_never_touched(place: Path, tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(UsageError, match="is not empty"):
+        publish(place / "set", tmp_path, place / "publication.yaml")
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    (tmp_path / "empty").mkdir()
+    publish(place / "set", tmp_path / "empty", place / "publication.yaml")
+    assert siggen.open(tmp_path / "empty").labels().num_rows
