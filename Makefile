@@ -67,11 +67,13 @@ container:
 
 # Pins with the hashes of every file that the package index has of them; again after a change of constraints.txt.
 LOCK := compile pyproject.toml --constraint constraints.txt --generate-hashes --universal --python-version 3.11.5 --no-header --no-annotate --no-emit-index-url
+LOWEST := compile pyproject.toml --extra diagnostics --resolution lowest-direct --universal --python-version 3.11.5 --no-header --no-annotate --no-emit-index-url
 locks: $(STAMP)
 	$(PYTHON) -m venv $(VENV)/locks
 	$(VENV)/locks/bin/python -m pip install -q uv
 	$(VENV)/locks/bin/uv pip $(LOCK) --output-file locks/siggen.txt
 	$(VENV)/locks/bin/uv pip $(LOCK) --all-extras --output-file locks/all.txt
+	$(VENV)/locks/bin/uv pip $(LOWEST) --output-file locks/lowest.txt
 
 clean:
 	rm -rf $(VENV) runs build dist site
