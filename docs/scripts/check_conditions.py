@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from hidden_machine import CHANNELS, FS_HZ, HEALTHY, STATES, features, machine
-from hidden_machines import interval
+from scipy.stats import t as student
 
 import siggen
 from diagnostics.machine.comparable import comparable, slip_loads
@@ -36,6 +36,14 @@ DRAWS = 8
 LOAD, SPEED = "load", "speed"
 WAYS = {LOAD: ("unknown", "given", "slip"), SPEED: ("known",)}
 COUNTS = {LOAD: (3, 4, 5), SPEED: (5, 7, 10)}
+
+
+def interval(values: np.ndarray) -> str:
+    """Return the mean with its 90 % interval (Student's t over machines)."""
+    if values.size < 2:
+        return f"{values.mean():.2f}"
+    reach = student.ppf(0.95, values.size - 1) * values.std(ddof=1) / np.sqrt(values.size)
+    return f"{values.mean():.2f} [{values.mean() - reach:.2f}, {values.mean() + reach:.2f}]"
 
 
 def points(over: str) -> list[dict[str, float]]:

@@ -1,22 +1,17 @@
-"""A hidden machine: its configuration, the recordings of its user, and features of records in tables.
+"""A hidden machine: its configuration, a recording of its user, and features of records.
 
 A machine has fixed numbers and one transfer path; its bearings, masses, walls, relief, accuracy, housing and noise come
-from ranges that no preset has. Its user has three healthy recordings of one gearbox.
+from ranges that no preset has.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import siggen
-from diagnostics.calibration.drivetrain import pair
-from diagnostics.calibration.order_record import HIGHEST_SHARE, group_levels, line_groups, order_record
 from diagnostics.indicators.record import record_values
 from diagnostics.training.referenced import log_values
 from siggen.views.path_curves import path_curves
@@ -31,10 +26,6 @@ STATES = [
     {"name": "partial", "severity": "slight", "damage": {**SPALL, "profile_length_mm": 1.0, "face_share": 0.4}},
     {"name": "through", "severity": "severe", "damage": {**SPALL, "profile_length_mm": 0.6, "face_share": 1.0}},
 ]
-SMALL = {"name": "small", "severity": "slight", "damage": {**SPALL, "profile_length_mm": 0.6, "face_share": 0.25}}
-"""Of the test records only, for `check_hidden_machines.py`: what `siggen init` calls slight."""
-REFERENCES, TEST_HEALTHY, TEST_DAMAGED = 3, 18, 6
-GEARBOXES = 8
 
 
 def machine(number: int, folder: Path) -> dict[str, Any]:
@@ -61,7 +52,7 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
         "extends": "quickstart",
         "name": f"hidden_{number}",
         "seed": 90_000 + number,
-        "specimens": 1 + GEARBOXES,
+        "specimens": 9,
         "background": {"bearings": {}},
         "operating_points": [
             {
@@ -107,90 +98,10 @@ def _with_own_path(found: dict[str, Any], folder: Path) -> dict[str, Any]:
     return found
 
 
-def simulated(config: Any, gearboxes: Sequence[int], repeats: Sequence[int] = (0,)) -> list[tuple[str, Any]]:
-    """Return state and record of every state of some gearboxes; records that failed are left out."""
-    count = len(config.states)
-    rows = [((g * count + s) * config.repeats + r) for g in gearboxes for s in range(count) for r in repeats]
-    found = [siggen.simulate(config, [row])[0] for row in rows]
-    return [(record.labels["state"], record) for record in found if hasattr(record, "channels")]
-
-
 def features(channels: dict[str, np.ndarray], pulses_s: np.ndarray) -> np.ndarray:
     """Return the logarithms of the indicators of a record, in a fixed order."""
     values = record_values(dict(zip(CHANNELS, channels.values(), strict=True)), pulses_s, FS_HZ, TEETH).values
     return np.asarray(log_values(np.array([values[name] for name in sorted(values)])[None])[0])
-
-
-@dataclass(frozen=True)
-class Table:
-    """Features (records, n), the same less the healthy record of the gearbox, and whether a record is damaged."""
-
-    plain: np.ndarray
-    beside: np.ndarray
-    damaged: np.ndarray
-
-    def part(self, chosen: np.ndarray) -> Table:
-        """Return some of the rows."""
-        return Table(self.plain[chosen], self.beside[chosen], self.damaged[chosen])
-
-
-def training_table(records: Sequence[tuple[str, Any]]) -> tuple[Table, np.ndarray]:
-    """Return features of records of several gearboxes, each less its first healthy record, and their gearboxes."""
-    rows = [features(record.channels, np.asarray(record.tacho_s)) for _, record in records]
-    gearbox = [record.planned.specimen_id for _, record in records]
-    first = {g: row for g, row, (state, _) in zip(gearbox, rows, records, strict=True) if state == HEALTHY}
-    used = [k for k, (state, _) in enumerate(records) if state != HEALTHY and gearbox[k] in first]
-    plain = np.array([rows[k] for k in used])
-    damaged = np.array([not records[k][0].startswith(HEALTHY) for k in used])
-    beside = plain - np.array([first[gearbox[k]] for k in used])
-    return Table(plain, beside, damaged), np.array([gearbox[k] for k in used])
-
-
-@dataclass(frozen=True)
-class Own:
-    """The user's gearbox: files of the references, later records as a table, their states, true levels by channel."""
-
-    files: list[Path]
-    test: Table
-    states: np.ndarray
-    truth: list[dict[str, float]]
-
-
-def own_records(folder: Path, number: int) -> Own:
-    """Return the user's recordings and what he will measure later, from its files if they were made before."""
-    folder.mkdir(parents=True, exist_ok=True)
-    kept, files = folder / "own.npz", [folder / f"run{k}.npz" for k in range(REFERENCES)]
-    if not kept.exists():
-        records = _own_records(machine(number, folder))
-        for (_, record), file in zip(records, files, strict=False):
-            write_recording(record, file)
-        rows = np.array([features(record.channels, np.asarray(record.tacho_s)) for _, record in records])
-        states = np.array([state for state, _ in records])
-        healthy = [record for state, record in records[REFERENCES:] if state == HEALTHY]
-        truth = json.dumps([true_levels(healthy, k) for k in range(len(CHANNELS))])
-        np.savez(kept, rows=rows, states=states, truth=np.array(truth))
-    held = np.load(kept)
-    plain, states = held["rows"][REFERENCES:], held["states"][REFERENCES:]
-    test = Table(plain, plain - held["rows"][:REFERENCES].mean(axis=0), states != HEALTHY)
-    return Own(files, test, states, json.loads(str(held["truth"])))
-
-
-def _own_records(raw: dict[str, Any]) -> list[tuple[str, Any]]:
-    """Return healthy records of the first gearbox, the references first, and its damaged ones."""
-    repeats = REFERENCES + TEST_HEALTHY
-    damaged = {**raw, "states": [SMALL, *STATES[2:]], "repeats": TEST_DAMAGED}
-    healthy = siggen.load_config({**raw, "states": STATES[:1], "repeats": repeats})
-    return simulated(healthy, [0], range(repeats)) + simulated(siggen.load_config(damaged), [0], range(TEST_DAMAGED))
-
-
-def true_levels(healthy: Sequence[Any], channel: int) -> dict[str, float]:
-    """Return the mean level [dB] of every group of lines and of the noise over records; lines to a common order."""
-    signals = [(list(one.channels.values())[channel].astype(float), np.asarray(one.tacho_s)) for one in healthy]
-    spectra = [order_record(signal, FS_HZ, pulses, pair(TEETH)) for signal, pulses in signals]
-    groups = line_groups(pair(TEETH), HIGHEST_SHARE * FS_HZ / max(one.speed_hz for one in spectra))
-    energy = np.array([group_levels(one, groups)[0] for one in spectra])
-    levels = dict(zip((g.name for g in groups), (10.0 * np.log10(energy)).mean(axis=0).tolist(), strict=True))
-    return {**levels, "noise": float(np.mean([10.0 * np.log10(one.floor.sum()) for one in spectra]))}
 
 
 def tacho_waveform(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
