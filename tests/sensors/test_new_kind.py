@@ -42,7 +42,6 @@ OTHER_QUANTITY = re.compile(r"accelerat\w*|accelerometer|(?<!m)m/s(²|\^?2)|m_s2
 MISTAKES = {
     "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
     "sensors.0.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
-    "dynamics.model=8dof": "allowed: one of pinion_bearing, gear_bearing",
 }
 LINES = {
     "generate": "siggen generate toy.yaml --out set --engine serial",
