@@ -16,6 +16,7 @@ EXTRA_OF = {
     "nptdms": "recordings",
     "pyuff": "recordings",
     "h5py": "recordings",
+    "asammdf": "mdf",
 }
 """Import name of every optional package and the extra that brings it."""
 

@@ -19,8 +19,9 @@ from pathlib import Path
 import numpy as np
 
 from diagnostics.recordings.level_alike import check_levels_alike, level_note
-from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import shaft_pulses
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.errors import UsageError
 
 CONFIDENCE = 0.9

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from diagnostics.calibration.healthy_blocks import Block
 from diagnostics.calibration.order_record import OrderRecord
 from diagnostics.calibration.path_draws import number_limits
 from diagnostics.recordings.configured_train import configured_train
-from diagnostics.recordings.file_channels import file_channels
+from diagnostics.recordings.taken import RecordingFacts, file_channels
 from siggen.errors import UsageError
 
 LINES, AROUND, LEAST_SHOWN = 10, 4, 0.25
@@ -98,7 +98,7 @@ def read_rig(file: Path) -> Rig:
 
 
 def rig_channels(
-    rig: Rig, source: tuple[Path, int | None], said: Mapping[str, str], tacho: str | None
+    rig: Rig, source: tuple[Path, int | None], said: Mapping[str, str], facts: RecordingFacts
 ) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the channels of a rig, and the column of each where it has another name.
 
@@ -109,7 +109,8 @@ def rig_channels(
         First recording.
     said : mapping
         Column by channel, as the user gave it.
-    tacho : str, optional
+    facts : RecordingFacts
+        How it is read.
 
     Raises
     ------
@@ -121,7 +122,7 @@ def rig_channels(
         if set(said) != set(names):
             raise UsageError(f"--channel: received {', '.join(said)}; the rig has the channels {', '.join(names)}")
         return names, dict(said)
-    found = file_channels(source[0], tacho, source[1])
+    found = file_channels(source[0], replace(facts, row=source[1], columns={}))
     if set(names) <= set(found):
         return names, {}
     if len(found) != len(names):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -19,8 +20,8 @@ def baseline(
         list[str],
         typer.Argument(
             metavar="HEALTHY...",
-            help="Healthy recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, .tdms, .uff, .h5; 3 at "
-            "least.",
+            help="Healthy recordings: .csv, .txt, .lvm, .mat, .wav, .npz, .tdms, .uff, .h5, .mf4, .parquet "
+            "(FILE:ROW,ROW) and others; 3 at least.",
             show_default=False,
         ),
     ],
@@ -49,14 +50,16 @@ def baseline(
     from diagnostics.machine.check import rate_sentence
     from diagnostics.machine.healthy_state import healthy_state
     from diagnostics.machine.machine import save_machine
-    from diagnostics.recordings.file_channels import file_channels
+    from diagnostics.recordings.taken import file_channels, take, unit_or_unknown
     from diagnostics.records.gear_train import names_of
 
     train = gears.train("--teeth")
     sources = [source for said in healthy for source in file_rows(said)]
     columns = recording.columns()
-    names = tuple(columns) or file_channels(sources[0][0], recording.tacho, sources[0][1])
     facts, span = recording.facts(), recording.speed_range_hz()
+    first = replace(facts, row=sources[0][1])
+    names = tuple(columns) or file_channels(sources[0][0], first)
+    facts = unit_or_unknown(take(sources[0][0], first, say=False), names, facts)
     with terminal_stage("healthy recordings", len(sources)) as advance:
         machine = healthy_state(sources, names, facts, train, span, _loads(load), false_alarms, advance)
     save_machine(machine, out)

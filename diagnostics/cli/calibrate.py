@@ -73,8 +73,8 @@ def calibrate(
         list[str],
         typer.Argument(
             metavar="HEALTHY...",
-            help="Healthy recordings of one rate: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, .tdms, "
-            ".uff, .h5; 3 or more.",
+            help="Healthy recordings of one rate: .csv, .txt, .lvm, .mat, .wav, .npz, .tdms, .uff, .h5, .mf4, .parquet "
+            "(FILE:ROW,ROW) and others; 3 or more.",
             show_default=False,
         ),
     ],
@@ -113,7 +113,7 @@ def calibrate(
     with terminal_stage("the rig", 1):
         machine = read_rig(rig)
     teeth = machine.drive.teeth
-    names, columns = rig_channels(machine, sources[0], recording.columns(), recording.tacho)
+    names, columns = rig_channels(machine, sources[0], recording.columns(), recording.facts())
     facts, span = recording.facts(columns), recording.speed_range_hz()
     newtons = two_numbers(torque, "--torque", "15,60") if torque else None
     with terminal_stage("healthy recordings", 1) as advance:

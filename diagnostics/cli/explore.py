@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from diagnostics.explore.measured_page import ShownRecording
     from diagnostics.explore.set_page import LivesOf, LookOptions
     from diagnostics.machine.recording_indicators import RecordingIndicators
-    from diagnostics.recordings.measured_recording import RecordingFacts
+    from diagnostics.recordings.taken import RecordingFacts
     from diagnostics.records.gear_train import Mesh
     from siggen.dataset.reading import Dataset
 

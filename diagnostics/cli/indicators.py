@@ -16,7 +16,7 @@ from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
-    from diagnostics.recordings.measured_recording import RecordingFacts
+    from diagnostics.recordings.taken import RecordingFacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +43,8 @@ def indicators(
         list[str],
         typer.Argument(
             metavar="DIR | RECORDING...",
-            help="Folder of a finished set, or recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, "
-            ".tdms, .uff, .h5.",
+            help="Folder of a finished set, or recordings: .csv, .txt, .lvm, .mat, .wav, .npz, .tdms, .uff, .h5, "
+            ".mf4, .parquet (FILE:ROW,ROW) and others.",
             show_default=False,
         ),
     ],

@@ -18,7 +18,7 @@ from siggen.errors import EXIT_USAGE, UsageError
 
 if TYPE_CHECKING:
     from diagnostics.prediction.prediction import Prediction
-    from diagnostics.recordings.measured_recording import RecordingFacts
+    from diagnostics.recordings.taken import RecordingFacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,8 @@ def predict(
         list[str],
         typer.Argument(
             metavar="FILE...",
-            help="Recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, .tdms, .uff, .unv, .h5 or .hdf5.",
+            help="Recordings: .csv, .txt, .lvm, .mat, .wav, .npz, .tdms, .uff, .h5, .mf4, .parquet (FILE:ROW,ROW) and "
+            "others.",
             show_default=False,
         ),
     ],

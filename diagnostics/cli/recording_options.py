@@ -13,7 +13,7 @@ import typer
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
-    from diagnostics.recordings.measured_recording import RecordingFacts
+    from diagnostics.recordings.taken import RecordingFacts
     from diagnostics.records.gear_train import Mesh
 
 ROWS = re.compile(r"\d+(,\d+)*")
@@ -88,7 +88,9 @@ class RecordingOptions:
     unit: Annotated[
         str | None,
         typer.Option(
-            "--unit", help="Unit of the file: m/s2, mm/s2, g, mg, mV or V. Default: as the file states, else m/s2."
+            "--unit",
+            help="Unit of channels of which the file states none, such as m/s2, g, mg, mV or V. `baseline` and `check` "
+            "need none: levels are then relative.",
         ),
     ] = None
     sensitivity: Annotated[
@@ -99,9 +101,27 @@ class RecordingOptions:
         float | None, typer.Option("--full-scale", help="Full scale of an integer WAV file, in its unit.")
     ] = None
     tacho: Annotated[
-        str | None, typer.Option("--tacho", metavar="COLUMN", help="Column with the tacho waveform, or `tacho_s`.")
+        str | None,
+        typer.Option(
+            "--tacho",
+            metavar="COLUMN",
+            help="Column that tells the angle: waveform or pulse times of a tacho, an angle, counts of an encoder. "
+            "Default: without --speed-range the one that is called so.",
+        ),
     ] = None
-    tacho_pulses: Annotated[int, typer.Option("--tacho-pulses", min=1, help="Tacho pulses per pinion revolution.")] = 1
+    tacho_pulses: Annotated[
+        int | None, typer.Option("--tacho-pulses", min=1, help="Pulses or counts of it per pinion revolution.")
+    ] = None
+    tacho_level: Annotated[
+        float | None,
+        typer.Option("--tacho-level", help="Level that the tacho's waveform crosses upwards. Default: its middle."),
+    ] = None
+    resample: Annotated[
+        float | None,
+        typer.Option(
+            "--resample", metavar="RATE", help="Lay samples at uneven times on this rate [Hz]; 0.4 of it is used."
+        ),
+    ] = None
 
     def columns(self) -> dict[str, str]:
         """Return the column of every channel that was named."""
@@ -109,11 +129,20 @@ class RecordingOptions:
 
     def facts(self, columns: dict[str, str] | None = None) -> RecordingFacts:
         """Return how the files are read, with other columns than those that were named where such are given."""
-        from diagnostics.recordings.measured_recording import RecordingFacts
+        from diagnostics.recordings.taken import RecordingFacts
 
         voltage = self.unit, self.sensitivity, self.full_scale
         named = self.columns() if columns is None else columns
-        return RecordingFacts(self.fs, named, *voltage, self.tacho, self.tacho_pulses)
+        return RecordingFacts(
+            self.fs,
+            named,
+            *voltage,
+            self.tacho,
+            self.tacho_pulses,
+            tacho_level=self.tacho_level,
+            resample_hz=self.resample,
+            tacho_by_name=not self.speed_range,
+        )
 
     def speed_range_hz(self) -> tuple[float, float] | None:
         """Return where the speed of the pinion is searched.

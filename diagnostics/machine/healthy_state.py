@@ -16,8 +16,9 @@ from diagnostics.machine.odd_references import USED_BAND, odd_references, odd_se
 from diagnostics.machine.recording_indicators import check_mesh_lines
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.recordings.level_alike import check_levels_alike
-from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import Mesh
 from diagnostics.statistics.change_score import FEWEST
 from siggen.errors import UsageError

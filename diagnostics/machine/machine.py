@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import Mesh, gear_train, train_labels
 from siggen.errors import UsageError
 from siggen.file_writing import write_file

@@ -22,10 +22,10 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page import html
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.prediction.prediction_page import sideband_figure
-from diagnostics.recordings.file_channels import file_channels
 from diagnostics.recordings.level_alike import level_note
-from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import Mesh, names_of
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resample_to_angle
 from diagnostics.signal.spectrum import OrderLines, noise_density, order_lines
@@ -204,7 +204,7 @@ def recording_indicators(
     Parameters
     ----------
     path : Path
-        Its suffix is one of `diagnostics.recordings.file_columns.READERS`.
+        Of a format in `diagnostics.recordings.file_columns.READERS`.
     teeth : (int, int)
         Of pinion and gear.
     facts : RecordingFacts, optional
@@ -220,8 +220,7 @@ def recording_indicators(
         If the file cannot be read or used, or no speed is found; names the file and the way out.
     """
     facts = facts or RecordingFacts()
-    names = tuple(facts.columns) or file_channels(path, facts.tacho, facts.row)
-    recording = read_recording(path, names, facts)
+    recording = read_recording(path, None, facts)
     meshes = train or (Mesh("", teeth),)
     pulses = shaft_pulses(recording, teeth, speed_range_hz, meshes[0].planets)
     settings = IndicatorSettings()

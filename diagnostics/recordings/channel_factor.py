@@ -5,8 +5,6 @@ Accelerations and voltages of accelerometers are turned into m/s^2. Any other qu
 
 from __future__ import annotations
 
-import logging
-from functools import cache
 from pathlib import Path
 
 from diagnostics.recordings.units import (
@@ -19,9 +17,10 @@ from diagnostics.recordings.units import (
 )
 from siggen.errors import UsageError
 
-ASSUMED = "m/s2"
 ACCELERATION_UNIT = "m/s^2"
 """How sets and models write it."""
+UNKNOWN_UNIT = "unknown"
+"""That nobody names: levels are then compared with those of the same machine alone."""
 ALLOWED = (*ACCELERATIONS, *VOLTAGES)
 
 
@@ -73,7 +72,7 @@ def channel_factor(
     stated : str, optional
         Unit in the file.
     said : str, optional
-        Unit of the user; m/s2 is assumed where nobody names one.
+        Unit of the user, or `unknown`: as the file has it.
     mv_per_g : float, optional
         Sensitivity, for voltages.
     wanted : str, optional
@@ -82,16 +81,23 @@ def channel_factor(
     Raises
     ------
     UsageError
-        If file and user name different units, the file an unknown one and the user none, or one of another quantity
-        than is wanted, or as of `factor_to_m_s2`.
+        If nobody names a unit, file and user name different ones, the file an unknown one and the user none, or one
+        of another quantity than is wanted, or as of `factor_to_m_s2`.
     """
     if wanted != ACCELERATION_UNIT:
         _check_same(path, column, stated or said, wanted)
         return 1.0
     known, named = known_unit(stated or ""), known_unit(said or "")
+    if said == UNKNOWN_UNIT:
+        if stated:
+            raise UsageError(
+                f"{path}: states the unit {stated[:40]!r} of {column}; the machine's references state none, so their "
+                "levels cannot be compared. Make the machine again with --unit"
+            )
+        return 1.0
     if stated and known is not None and known.quantity not in (ACCELERATION, VOLTAGE):
         raise UsageError(
-            f"{path}: states the unit {stated[:40]!r} of {column}, which is no acceleration; allowed are "
+            f"{path}: states the unit {stated[:40]!r} of {column}, no acceleration ({known.quantity}); allowed are "
             f"{', '.join(ALLOWED)}. Name a column of an accelerometer (--channel NAME=COLUMN), or correct the file"
         )
     if known is not None and said and known != named:
@@ -105,16 +111,11 @@ def channel_factor(
             "values are, e.g. --unit g"
         )
     if not (stated or said):
-        say_assumed(column)
-    return factor_to_m_s2(said or stated or ASSUMED, mv_per_g)
-
-
-@cache
-def say_assumed(column: str) -> None:
-    """Say once that nobody names the unit of a column."""
-    logging.getLogger(__name__).warning(
-        "note: no unit of column %s is stated; %s is assumed, --unit says another", column, ASSUMED
-    )
+        raise UsageError(
+            f"{path}: no unit of {column} is stated. Say what the values are, such as --unit g or --unit m/s2; "
+            f"allowed are {', '.join(ALLOWED)}"
+        )
+    return factor_to_m_s2(said or stated or "", mv_per_g)
 
 
 def _check_same(path: Path, column: str, found: str | None, wanted: str) -> None:

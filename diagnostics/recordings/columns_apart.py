@@ -10,6 +10,9 @@ import numpy as np
 from diagnostics.base.reading_process import read_apart
 from diagnostics.recordings.recorded_columns import Columns, refuse_many
 
+LOADED_ONCE = ("diagnostics.recordings.file_columns", "pyarrow.csv", "pyarrow.parquet", "scipy.io")
+"""What the reading process loads before it forks for a file."""
+
 
 def columns_read_apart(path: Path, row: int | None = None) -> Columns:
     """Return `file_columns` of a file, read apart.
@@ -39,6 +42,9 @@ def _keep(found: Columns, folder: Path) -> None:
         "simulated": found.simulated,
         "units": dict(found.units),
         "own": dict(found.own),
+        "layout": dict(found.layout),
+        "notes": list(found.notes),
+        "hint_hz": found.hint_hz,
     }
     (folder / "facts.json").write_text(json.dumps({**facts, "names": list(found.values)}), encoding="utf-8")
     for number, column in enumerate(found.values.values()):
@@ -47,5 +53,5 @@ def _keep(found: Columns, folder: Path) -> None:
 
 def _columns(folder: Path) -> Columns:
     facts = json.loads((folder / "facts.json").read_text(encoding="utf-8"))
-    names = facts.pop("names")
-    return Columns({name: np.load(folder / f"{number}.npy") for number, name in enumerate(names)}, **facts)
+    names, notes = facts.pop("names"), tuple(facts.pop("notes"))
+    return Columns({name: np.load(folder / f"{number}.npy") for number, name in enumerate(names)}, notes=notes, **facts)

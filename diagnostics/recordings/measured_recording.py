@@ -11,24 +11,24 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.recordings.channel_factor import ACCELERATION_UNIT, ASSUMED, channel_factor
-from diagnostics.recordings.columns import read_columns, signal_problem
+from diagnostics.recordings.channel_factor import ACCELERATION_UNIT, UNKNOWN_UNIT, channel_factor
+from diagnostics.recordings.columns import signal_problem
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
-from diagnostics.recordings.roles import ColumnUse, named_role
-from diagnostics.recordings.units import known_unit, unit_of_name
+from diagnostics.recordings.roles import ColumnUse
+from diagnostics.recordings.taken import RecordingFacts, TakenRecording, channel_names, column_called, take
+from diagnostics.recordings.units import known_unit
 from siggen.errors import UsageError
 
 HYSTERESIS = 0.2
 """Share of the swing that the waveform must fall below the middle before the next rise counts."""
 
-OWN_COLUMN = "accel_{}_m_s2"
-"""How siggen calls a channel in files whose columns cannot say what they hold, such as CSV."""
-RATES_ALIKE = 1e-5
-"""A rate that a time column states is as exact as its digits: 1e-6 s in 0.1 s."""
+FEWEST_PULSES = 2
+SPEED_MARGIN = 0.01
+"""Beyond what a column of speed shows: instruments are off by some permille, and lag behind."""
 
 
-def pulse_edges(waveform: np.ndarray, fs_hz: float) -> np.ndarray:
-    """Return the times of rising edges through the middle of the swing, (k,) [s], interpolated between samples.
+def pulse_edges(waveform: np.ndarray, fs_hz: float, level: float | None = None) -> np.ndarray:
+    """Return the times of rising edges, (k,) [s], interpolated between samples.
 
     Parameters
     ----------
@@ -36,15 +36,18 @@ def pulse_edges(waveform: np.ndarray, fs_hz: float) -> np.ndarray:
         Voltage or logic level of the tacho.
     fs_hz : float
         Sampling frequency [Hz].
+    level : float, optional
+        What the waveform crosses, in its unit; the middle of its swing without.
     """
     low, high = np.quantile(waveform, [0.001, 0.999])
     if not high > low:
         return np.empty(0)
-    middle, reset = 0.5 * (low + high), 0.5 * (low + high) - HYSTERESIS * (high - low)
+    middle = 0.5 * (low + high) if level is None else level
+    reset = middle - HYSTERESIS * min(high - low, 2.0 * (middle - low)) if middle > low else middle
     # +1 above the middle, -1 below the reset level, in between the last of both holds
-    level = np.where(waveform >= middle, 1, np.where(waveform < reset, -1, 0))
-    last = np.maximum.accumulate(np.where(level != 0, np.arange(level.size), 0))
-    held = level[last]
+    side = np.where(waveform >= middle, 1, np.where(waveform < reset, -1, 0))
+    last = np.maximum.accumulate(np.where(side != 0, np.arange(side.size), 0))
+    held = side[last]
     after = np.flatnonzero((held[1:] == 1) & (held[:-1] == -1)) + 1
     step = waveform[after] - waveform[after - 1]
     share = np.where(step > 0, (middle - waveform[after - 1]) / np.where(step > 0, step, 1.0), 1.0)
@@ -52,44 +55,11 @@ def pulse_edges(waveform: np.ndarray, fs_hz: float) -> np.ndarray:
 
 
 @dataclass(frozen=True, slots=True)
-class RecordingFacts:
-    """What the user says about files that they do not say themselves.
-
-    Attributes
-    ----------
-    fs_hz : float or None
-        Sampling frequency [Hz] of files that do not state it themselves.
-    columns : mapping of str to str
-        Channel name of the model to column of the file; empty where the file uses the model's names.
-    unit : str or None
-        Unit of all channels, see `factor_to_m_s2`; None: the file's, and m/s2 where it states none.
-    sensitivity_mv_per_g : float or None
-        For voltages.
-    full_scale : float or None
-        What full scale of an integer WAV file means, in the unit.
-    tacho : str or None
-        Column with the tacho's waveform, or with pulse times [s] where it is called `tacho_s`.
-    tacho_pulses : int
-        Pulses of the tacho per pinion revolution.
-    row : int or None
-        Row of a Parquet file with one record per row.
-    """
-
-    fs_hz: float | None = None
-    columns: Mapping[str, str] = field(default_factory=dict)
-    unit: str | None = None
-    sensitivity_mv_per_g: float | None = None
-    full_scale: float | None = None
-    tacho: str | None = None
-    tacho_pulses: int = 1
-    row: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class MeasuredRecording:
     """Channels (n,) by the model's names, rate, and pulse times [s] of the pinion where there is a tacho.
 
-    `simulated`: whether the file says that siggen wrote it. `units`: of channels that are not in m/s^2.
+    `simulated`: whether the file says that siggen wrote it. `units`: of channels that are not in m/s^2, `unknown` where
+    nobody names it. `speed_span_hz`: least and largest speed of the first shaft, where a column of speed tells them.
     """
 
     path: Path
@@ -98,6 +68,7 @@ class MeasuredRecording:
     tacho_s: np.ndarray | None
     simulated: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    speed_span_hz: tuple[float, float] | None = None
 
     @property
     def duration_s(self) -> float:
@@ -120,7 +91,7 @@ class MeasuredRecording:
 
 
 def read_recording(
-    path: Path, names: tuple[str, ...], facts: RecordingFacts, units: tuple[str, ...] = ()
+    path: Path, names: tuple[str, ...] | None, facts: RecordingFacts, units: tuple[str, ...] = ()
 ) -> MeasuredRecording:
     """Read the named channels of a file.
 
@@ -128,8 +99,8 @@ def read_recording(
     ----------
     path : Path
         The file.
-    names : tuple of str
-        Channels that the model takes.
+    names : tuple of str, optional
+        Channels that the model takes; None: those that the user names, else all vibration of the file.
     facts : RecordingFacts
         Rate, columns, unit, tacho.
     units : tuple of str, optional
@@ -141,9 +112,12 @@ def read_recording(
         Naming the file and the way out: unreadable, unknown rate, columns that are not there, signals that are not
         finite, constant, clipped or of another quantity than is wanted.
     """
-    found = read_columns(path, facts.row)
-    fs_hz = _rate(path, found, facts.fs_hz)
-    mapping = _mapping(path, found, names, facts.columns)
+    taken = take(path, facts)
+    found = taken.found
+    names = names or tuple(facts.columns) or channel_names(taken)
+    mapping = _mapping(path, taken, names, facts.columns)
+    wanted = dict(zip(names, units or (ACCELERATION_UNIT,) * len(names), strict=True))
+    _refuse_other_roles(taken, mapping, wanted)
     signals = {name: found.values[column] for name, column in mapping.items()}
     problems = {name: signal_problem(signal, mapping[name]) for name, signal in signals.items()}
     if any(problems.values()):
@@ -151,37 +125,67 @@ def read_recording(
         raise UsageError(f"{path}: cannot be used\n{listed}")
     if len({signal.size for signal in signals.values()}) > 1:
         listed = ", ".join(f"{name} {signal.size}" for name, signal in signals.items())
-        raise UsageError(f"{path}: channels differ in their number of samples ({listed}); record them together")
-    scale = _full_scale(path, found, facts)
-    wanted = dict(zip(names, units or (ACCELERATION_UNIT,) * len(names), strict=True))
-    factors = {name: scale * _factor(path, found, column, facts, wanted[name]) for name, column in mapping.items()}
+        raise UsageError(
+            f"{path}: channels differ in their number of samples ({listed}); record them together, or name those of "
+            "one length: --channel NAME=COLUMN"
+        )
+    fs_hz, factors = _rate_and_factors(taken, mapping, wanted, facts)
     channels = {name: factors[name] * signal for name, signal in signals.items()}
     others = {name: unit for name, unit in wanted.items() if unit != ACCELERATION_UNIT}
-    return MeasuredRecording(path, channels, fs_hz, _tacho(path, found, fs_hz, facts), found.simulated, others)
+    if facts.unit == UNKNOWN_UNIT:
+        others |= dict.fromkeys(names, UNKNOWN_UNIT)
+    tacho = _tacho(taken, fs_hz, facts)
+    span = _speed_span_hz(taken) if tacho is None else None
+    return MeasuredRecording(path, channels, fs_hz, tacho, found.simulated, others, span)
 
 
-def _rate(path: Path, found: Columns, said: float | None) -> float:
-    if found.fs_hz and said and abs(said / found.fs_hz - 1.0) > RATES_ALIKE:
+def _rate_and_factors(
+    taken: TakenRecording, mapping: Mapping[str, str], wanted: Mapping[str, str], facts: RecordingFacts
+) -> tuple[float, dict[str, float]]:
+    """Return the rate and the factor of each channel; what is missing of both is asked for at once."""
+    try:
+        scale = _full_scale(taken.path, taken.found, facts)
+        factors = {name: scale * _factor(taken, column, facts, wanted[name]) for name, column in mapping.items()}
+    except UsageError as error:
+        if taken.fs_hz is None:
+            try:
+                _rate(taken)
+            except UsageError as other:
+                raise UsageError(f"{other}. {str(error).removeprefix(f'{taken.path}: ')}") from error
+        raise
+    return _rate(taken), factors
+
+
+def _rate(taken: TakenRecording) -> float:
+    if taken.fs_hz is not None:
+        return float(taken.fs_hz)
+    hint = taken.found.hint_hz
+    said = f"; words above the samples say {hint:g}: --fs {hint:g}" if hint else ", e.g. --fs 51200"
+    raise UsageError(f"{taken.path}: sampling rate: received None; give the true one in Hz{said}")
+
+
+def _refuse_other_roles(taken: TakenRecording, mapping: Mapping[str, str], wanted: Mapping[str, str]) -> None:
+    """Refuse columns that are no vibration by unit, name or values as channels of acceleration."""
+    for name, column in mapping.items():
+        one = taken.column(column)
+        if one.role is ColumnUse.VIBRATION or wanted[name] != ACCELERATION_UNIT:
+            continue
         raise UsageError(
-            f"{path}: states {found.fs_hz:g} Hz, received --fs {said:g}; leave --fs out or correct the file"
+            f"{taken.path}: column {column} is a {one.role} ({one.why}), not channel {name}; allowed are columns of "
+            "vibration. Name another (--channel NAME=COLUMN), or write its unit behind its name in the file: a [g]"
         )
-    rate = said or found.fs_hz
-    if rate is None or not (np.isfinite(rate) and rate > 0.0):
-        rates = ", ".join(f"{name} {rate:g} Hz" for name, rate in found.clocks.items() if rate is not None)
-        against = f" (columns that rise evenly state {rates})" if rates else ""
-        raise UsageError(f"{path}: sampling rate: received {rate}{against}; give the true one in Hz, e.g. --fs 51200")
-    return float(rate)
 
 
-def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[str, str]) -> dict[str, str]:
+def _mapping(path: Path, taken: TakenRecording, names: tuple[str, ...], said: Mapping[str, str]) -> dict[str, str]:
     """Return column by channel: as said, else the channel's own name, else the name this package gives its columns."""
     unknown = sorted(set(said) - set(names))
     if unknown:
         raise UsageError(f"{path}: no channel {', '.join(unknown)} is wanted; wanted are {', '.join(names)}")
-    signals = [column for column in found.values if column not in found.clocks]
+    found = taken.found
+    signals = [column.name for column in taken.of_role(ColumnUse.VIBRATION)]
     # a recorder of one channel gives it no name; a column that has one may be another than the user means
     alone = signals[0] if len(names) == len(signals) == 1 and signals[0].isdigit() else None
-    chosen = {name: _column(found, name, said.get(name)) or alone for name in names}
+    chosen = {name: column_called(found, name, said.get(name)) or alone for name in names}
     missing = [said.get(name, name) for name, column in chosen.items() if not column]
     if missing:
         example = " ".join(f"--channel {name}=COLUMN" for name in names)
@@ -190,34 +194,15 @@ def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[s
             f"{', '.join(list(found.values)[:20])}. Say which is which: {example}. They have to be the same sensors in "
             "the same directions."
         )
-    if timed := [name for name, column in chosen.items() if column in found.clocks]:
-        raise UsageError(
-            f"{path}: column {chosen[timed[0]]} rises by equal steps: it is a time, not channel {timed[0]}"
-        )
     if len(set(chosen.values())) < len(chosen):
         raise UsageError(f"{path}: one column was named for several channels ({chosen}); each needs its own sensor")
     return {name: column for name, column in chosen.items() if column}
 
 
-def _column(found: Columns, name: str, said: str | None) -> str | None:
-    for wanted in (said,) if said else (found.own.get(name), name, OWN_COLUMN.format(name)):
-        if wanted in found.values:
-            return str(wanted)
-        if said and said.isdigit() and 1 <= int(said) <= len(found.values):
-            return list(found.values)[int(said) - 1]
-    return None
-
-
-def _factor(path: Path, found: Columns, column: str, facts: RecordingFacts, wanted: str) -> float:
-    """Return the factor, of columns that are vibration by name and unit; a rig's own channels are what they are."""
-    by_name = named_role(unit_of_name(column)[0], "").role
-    of_rig = wanted != ACCELERATION_UNIT or column in found.own.values()
-    if not of_rig and by_name is not ColumnUse.VIBRATION and known_unit(found.units.get(column, "")) is None:
-        raise UsageError(
-            f"{path}: column {column} is called as a {by_name} is; allowed are columns of vibration. Name another "
-            "(--channel NAME=COLUMN), or call it as what it is, with its unit: a [g]"
-        )
-    return channel_factor(path, column, found.units.get(column), facts.unit, facts.sensitivity_mv_per_g, wanted)
+def _factor(taken: TakenRecording, column: str, facts: RecordingFacts, wanted: str) -> float:
+    unit = taken.column(column).unit
+    stated = None if unit in (UNKNOWN_UNIT, "") or unit == facts.unit else unit
+    return channel_factor(taken.path, column, stated, facts.unit, facts.sensitivity_mv_per_g, wanted)
 
 
 def _full_scale(path: Path, found: Columns, facts: RecordingFacts) -> float:
@@ -226,22 +211,110 @@ def _full_scale(path: Path, found: Columns, facts: RecordingFacts) -> float:
     if facts.full_scale is None or not facts.full_scale > 0.0:
         raise UsageError(
             f"{path}: holds shares of full scale; received full scale {facts.full_scale}. Say what it means in "
-            f"{facts.unit or ASSUMED}, e.g. --full-scale 50"
+            f"{facts.unit or 'its unit'}, e.g. --full-scale 50"
         )
     return facts.full_scale
 
 
-def _tacho(path: Path, found: Columns, fs_hz: float, facts: RecordingFacts) -> np.ndarray | None:
-    if facts.tacho is None:
-        return None
-    column = _column(found, facts.tacho, facts.tacho)
+def _tacho(taken: TakenRecording, fs_hz: float, facts: RecordingFacts) -> np.ndarray | None:
+    """Return the times of whole turns (k,) [s], from the column that tells the angle."""
+    path, found = taken.path, taken.found
+    column = _tacho_column(taken, facts)
     if column is None:
-        raise UsageError(f"{path}: no column {facts.tacho} for --tacho; the file holds {', '.join(found.values)}")
-    values = found.values[column]
-    times_s = values if column == OWN_TACHO else pulse_edges(values, fs_hz)
-    if times_s.size < 2 or not np.isfinite(times_s).all() or not (np.diff(times_s) > 0).all():
+        return None
+    values, one = found.values[column], taken.column(column)
+    unit = known_unit(one.unit)
+    if one.role is ColumnUse.ANGLE and unit is not None and unit.quantity == "angle":
+        return _whole_turns(path, column, _unwrapped(values * unit.factor, 1.0), fs_hz)
+    pulses = facts.tacho_pulses or (1 if column == OWN_TACHO else None)
+    if pulses is None:
+        what = "a turn of the encoder counts to" if one.role is ColumnUse.COUNTER else "pulses per turn it gives"
         raise UsageError(
-            f"{path}: {times_s.size} pulses in column {column}, or not increasing; an angle needs two or more. Leave "
-            "--tacho out and give --speed-range."
+            f"{path}: column {column} is a {one.role}; say how many {what}: --tacho-pulses 1. Without it: --speed-range"
         )
-    return np.asarray(times_s[:: facts.tacho_pulses])
+    if one.role is ColumnUse.ANGLE:
+        raise UsageError(
+            f"{path}: column {column} is an angle without a unit; write it behind its name: {column} [deg]"
+        )
+    if one.role is ColumnUse.COUNTER:
+        return _whole_turns(path, column, _unwrapped(values, _wraps_at(values)) / pulses, fs_hz)
+    is_times = column == OWN_TACHO or values.size < taken.rows
+    times_s = values if is_times else pulse_edges(values, fs_hz, facts.tacho_level)
+    if times_s.size < FEWEST_PULSES or not np.isfinite(times_s).all() or not (np.diff(times_s) > 0).all():
+        raise UsageError(
+            f"{path}: {times_s.size} pulses in column {column}, or not increasing; an angle needs two or more. Name "
+            "the level they cross (--tacho-level), or leave --tacho out and give --speed-range."
+        )
+    return np.asarray(times_s[::pulses])
+
+
+def _tacho_column(taken: TakenRecording, facts: RecordingFacts) -> str | None:
+    found = taken.found
+    if facts.tacho is not None:
+        column = column_called(found, facts.tacho, facts.tacho)
+        if column is None:
+            raise UsageError(
+                f"{taken.path}: no column {facts.tacho} for --tacho; the file holds {', '.join(found.values)}"
+            )
+        return column
+    if not facts.tacho_by_name:
+        return None
+    named = [one.name for one in taken.of_role(ColumnUse.TACHO)]
+    angles = [one.name for one in taken.of_role(ColumnUse.ANGLE) if known_unit(one.unit) is not None]
+    if len(named or angles) > 1:
+        raise UsageError(
+            f"{taken.path}: columns {', '.join(named or angles)} may each tell the angle of the first shaft; say "
+            f"which: --tacho {(named or angles)[0]}"
+        )
+    return next(iter(named or angles), None)
+
+
+def _unwrapped(values: np.ndarray, period: float) -> np.ndarray:
+    """Return what begins anew every period (0: never) as what goes on rising, by the nearest way."""
+    steps = np.diff(values)
+    if period > 0.0:
+        steps = steps - period * np.rint(steps / period)
+    whole = np.concatenate([values[:1], values[0] + np.cumsum(steps)])
+    return whole if whole[-1] >= whole[0] else -whole
+
+
+def _wraps_at(counts: np.ndarray) -> float:
+    """Return the period of a counter that begins anew: the next power of two over its reach; 0 where it never does."""
+    steps = np.diff(counts)
+    reach = float(np.ptp(counts)) + 1.0
+    if not (np.abs(steps) > 0.5 * reach).any():
+        return 0.0
+    power = float(2.0 ** np.ceil(np.log2(reach)))
+    return power if reach > 0.95 * power else reach
+
+
+def _whole_turns(path: Path, column: str, turns: np.ndarray, fs_hz: float) -> np.ndarray:
+    """Return when an angle in turns (n,) passes whole ones, (k,) [s].
+
+    Raises
+    ------
+    UsageError
+        If it does not rise, or by less than two turns.
+    """
+    rising = np.maximum.accumulate(turns)
+    if not np.isfinite(turns).all() or (rising - turns).max() > 0.5 or rising[-1] - rising[0] < FEWEST_PULSES:
+        raise UsageError(
+            f"{path}: column {column} turns by {np.ptp(turns):.3g}, or back; allowed: an angle that rises by two turns "
+            "or more. Is --tacho-pulses right? Else leave --tacho out and give --speed-range"
+        )
+    marks = np.arange(np.ceil(rising[0]), np.floor(rising[-1]) + 1.0)
+    after = np.clip(np.searchsorted(rising, marks), 1, rising.size - 1)
+    before = rising[after - 1]
+    # of a counter the sample that reaches a mark is the first one at or over it; an angle is straight between samples
+    share = np.clip((marks - before) / np.maximum(rising[after] - before, 1e-300), 0.0, 1.0)
+    return np.asarray((after - 1 + share) / fs_hz)
+
+
+def _speed_span_hz(taken: TakenRecording) -> tuple[float, float] | None:
+    """Return the span of a column of speed, if there is one with a unit that turns."""
+    for one in taken.of_role(ColumnUse.SPEED):
+        unit, values = known_unit(one.unit), np.abs(taken.found.values[one.name])
+        if unit is not None and unit.quantity == "speed" and np.isfinite(values).all() and values.min() > 0.0:
+            low, high = (unit.factor * float(value) for value in np.quantile(values, [0.001, 0.999]))
+            return low * (1.0 - SPEED_MARGIN), high * (1.0 + SPEED_MARGIN)
+    return None

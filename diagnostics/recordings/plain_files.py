@@ -1,103 +1,32 @@
-"""Files of arrays and samples that say little about themselves: NumPy, MATLAB, WAV, text and Parquet."""
+"""Files of arrays and samples: NumPy, MATLAB, WAV and Parquet."""
 
 from __future__ import annotations
 
-import re
+import io
 import warnings
 import zipfile
-from itertools import islice
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
-from diagnostics.recordings.recorded_columns import Columns, numbered, refuse_many, refuse_twice
+from diagnostics.recordings.recorded_columns import Columns, numbered, refuse_twice
+from diagnostics.recordings.recorder_files import (
+    INCREMENTS,
+    RATES,
+    UNITS,
+    StatedSignal,
+    rate_from_increment,
+    read_hdf5,
+    stated_columns,
+)
 from siggen.errors import UsageError
-
-SEPARATORS = ("\t", ";", ",")
-COMMENTS = ("#", "%")
-
-UNIT = re.compile(r"[\[(].*[\])]|(m/s(2|²|\^2|\*\*2)|g|[mµu]?V|[mµun]?s|sec|k?Hz|-|)", re.IGNORECASE)
-"""Cell of a row of units: anything in brackets, or one of the units that an acceleration or its time comes in."""
 
 IDENTITY = b"siggen.identity"
 """Key of the schema's metadata in every file that siggen writes."""
-
-
-def read_csv(path: Path) -> Columns:
-    """Read a text file; with semicolons or tabs a comma is a decimal comma.
-
-    Lines that start with # or % and empty ones above the first row are skipped, and below a line of names one line of
-    units.
-
-    Raises
-    ------
-    UsageError
-        If it holds no samples, a cell is not a number, rows differ in length or two columns have one name.
-    """
-    import pyarrow as pa
-    from pyarrow import csv
-
-    try:
-        lines = _first_lines(path)
-        if not lines:
-            raise UsageError(f"{path}: holds no samples: nothing but comments or empty lines")
-        first = lines[0][1]
-        separator = next((mark for mark in SEPARATORS if mark in first), ",")
-        decimal = "," if separator != "," and any("," in text for _, text in lines[1:]) else "."
-        refuse_many(path, first.count(separator) + 1)
-        rows = [_cells(text, separator) for _, text in lines]
-        named = not all(_is_number(cell, decimal) for cell in rows[0])
-        above = int(named) + int(named and len(rows) > 1 and _are_units(rows[1], len(rows[0]), decimal))
-        if above == len(rows):
-            raise UsageError(f"{path}: holds no samples, only a header ({first})")
-        names = rows[0] if named else [str(k) for k in range(1, len(rows[0]) + 1)]
-        refuse_twice(path, names)
-        table = csv.read_csv(
-            path,
-            read_options=csv.ReadOptions(column_names=names, skip_rows=lines[above][0]),
-            parse_options=csv.ParseOptions(delimiter=separator),
-            convert_options=csv.ConvertOptions(decimal_point=decimal, column_types=dict.fromkeys(names, pa.float64())),
-        )
-    except (UnicodeDecodeError, pa.ArrowInvalid) as error:
-        raise UsageError(
-            f"{path}: cannot be read as a table of numbers ({error}); one row per sample, please, and text "
-            f"above the names begins with {' or '.join(COMMENTS)}"
-        ) from error
-    filled = (np.asarray(column.to_numpy(), dtype=np.float64) for column in table.columns)
-    units = {name: unit.strip("[]() ") for name, unit in zip(names, rows[1], strict=True)} if above == 2 else {}
-    columns = dict(zip(names, filled, strict=True))
-    return Columns(columns, units={name: unit for name, unit in units.items() if unit not in ("", "-")})
-
-
-def _first_lines(path: Path) -> list[tuple[int, str]]:
-    """Return up to three lines that hold something, with their number from zero: names, units, first samples."""
-    with path.open(encoding="utf-8-sig") as file:
-        numbered = ((number, line.rstrip("\r\n")) for number, line in enumerate(file))
-        held = ((number, text) for number, text in numbered if text.strip() and not text.startswith(COMMENTS))
-        return list(islice(held, 3))
-
-
-def _cells(text: str, separator: str) -> list[str]:
-    return [cell.strip().strip('"') for cell in text.split(separator)]
-
-
-def _are_units(cells: list[str], columns: int, decimal: str) -> bool:
-    """Return whether a row holds units only, one at least; a row with any number or word is for the reader to judge."""
-    return (
-        len(cells) == columns
-        and any(cells)
-        and not any(_is_number(cell, decimal) for cell in cells)
-        and all(UNIT.fullmatch(cell) for cell in cells)
-    )
-
-
-def _is_number(cell: str, decimal: str) -> bool:
-    try:
-        float(cell.replace(decimal, "."))
-    except ValueError:
-        return False
-    return True
+MOST_DEPTH = 8
+"""Of structures within structures in a MAT file."""
 
 
 def read_parquet(path: Path, row: int | None = None) -> Columns:
@@ -121,15 +50,15 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
     try:
         schema = parquet.read_schema(path)
         refuse_twice(path, schema.names)
+        audio = [field.name for field in schema if _is_audio(field.type)]
         lists = [field.name for field in schema if _is_list(field.type)]
-        numbers = [
-            field.name for field in schema if pa.types.is_floating(field.type) or pa.types.is_integer(field.type)
-        ]
-        table = parquet.read_table(path, columns=lists or numbers)
+        numbers = [field.name for field in schema if _is_number(field.type) or pa.types.is_timestamp(field.type)]
+        table = parquet.read_table(path, columns=[*audio, *lists] or numbers, use_threads=False)
     except (OSError, pa.ArrowInvalid) as error:
         raise UsageError(f"{path}: cannot be read as Parquet ({error})") from error
-    about: Any = {"simulated": IDENTITY in (schema.metadata or {}), **_channels(schema)}
-    if not lists:
+    about: Any = {"simulated": IDENTITY in (schema.metadata or {}), "layout": {"format": "Parquet"}}
+    about |= _channels(schema)
+    if not (lists or audio):
         return Columns({name: _numbers(table.column(name).combine_chunks()) for name in numbers}, **about)
     chosen = 0 if row is None and table.num_rows == 1 else row
     if chosen is None or not 0 <= chosen < table.num_rows:
@@ -137,7 +66,41 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
             f"{path}: holds {table.num_rows} records, one per row; received row {row}. Choose one as "
             f"{path.name}:ROW, from 0 to {table.num_rows - 1}."
         )
+    if audio:
+        return _audio(path, {name: table.column(name)[chosen].as_py() or {} for name in audio})
     return Columns({name: _numbers(table.column(name)[chosen].values) for name in lists}, **about)
+
+
+def _audio(path: Path, cells: Mapping[str, Mapping[str, Any]]) -> Columns:
+    """Return audio cells: an array with its rate, or a WAV file within the cell."""
+    signals, scaled = [], False
+    for name, cell in cells.items():
+        content = cell.get("bytes")
+        if content:
+            found = _wav(path, io.BytesIO(content))
+            many = len(found.values) > 1
+            scaled |= found.full_scale
+            for part, values in found.values.items():
+                signals.append(StatedSignal((f"{name}:{part}" if many else name,), values, found.fs_hz))
+        elif cell.get("array") is not None:
+            values = np.asarray(cell["array"], dtype=np.float64)
+            signals.append(StatedSignal((name,), values, float(cell.get("sampling_rate") or 0.0) or None))
+    return stated_columns(signals, "Parquet", full_scale=scaled)
+
+
+def _is_audio(kind: Any) -> bool:
+    import pyarrow as pa
+
+    if not pa.types.is_struct(kind):
+        return False
+    names = {kind.field(k).name for k in range(kind.num_fields)}
+    return {"array", "sampling_rate"} <= names or {"bytes", "path"} <= names
+
+
+def _is_number(kind: Any) -> bool:
+    import pyarrow as pa
+
+    return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_boolean(kind))
 
 
 def _channels(schema: Any) -> dict[str, dict[str, str]]:
@@ -145,7 +108,8 @@ def _channels(schema: Any) -> dict[str, dict[str, str]]:
     said = {field.name: {k: v.decode(errors="replace") for k, v in (field.metadata or {}).items()} for field in schema}
     facts = {name: found for name, found in said.items() if {b"sensor", b"axis", b"unit"} <= found.keys()}
     own = {f"{found[b'sensor']}_{found[b'axis']}": name for name, found in facts.items()}
-    return {"own": own, "units": {name: found[b"unit"] for name, found in facts.items()}}
+    clocks = {field.name: "s" for field in schema if str(field.type).startswith("timestamp")}
+    return {"own": own, "units": clocks | {name: found[b"unit"] for name, found in facts.items()}}
 
 
 def _is_list(kind: Any) -> bool:
@@ -156,32 +120,72 @@ def _is_list(kind: Any) -> bool:
 
 
 def _numbers(array: Any) -> np.ndarray:
+    """Return a column as numbers; times of a calendar in seconds from the first one."""
+    import pyarrow as pa
+
+    if pa.types.is_timestamp(array.type):
+        ticks = np.asarray(array.cast(pa.int64()).to_numpy(zero_copy_only=False))
+        unit = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[array.type.unit]
+        return np.asarray((ticks - ticks[0]) * unit, dtype=np.float64)
+    if pa.types.is_boolean(array.type):
+        array = array.cast(pa.int8())
     return np.asarray(array.to_numpy(zero_copy_only=False), dtype=np.float64)
 
 
 def read_mat(path: Path) -> Columns:
-    """Read the numeric vectors and matrices of a MAT file; structures, cells and text are passed over.
+    """Read the vectors and matrices of numbers of a MAT file, those in structures and cells as `a.b`.
+
+    A single number called as a rate or a step is one, for what lies beside and below it; so is a text called unit.
 
     Raises
     ------
     UsageError
-        If it cannot be read, or is of version 7.3, which is another format.
+        If it cannot be read, or h5py is missing for version 7.3.
     """
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
     try:
-        found = loadmat(path)
-    except NotImplementedError as error:
-        raise UsageError(f"{path}: is a MAT file of version 7.3; save it with `save(..., '-v7')`") from error
+        found = loadmat(path, simplify_cells=True)
+    except NotImplementedError:
+        return read_hdf5(path)
     except (MatReadError, ValueError, OSError) as error:
         raise UsageError(f"{path}: cannot be read as a MAT file ({error})") from error
-    values: dict[str, np.ndarray] = {}
-    for name, array in found.items():
-        is_array = not name.startswith("__") and isinstance(array, np.ndarray)
-        if is_array and array.ndim == 2 and array.dtype.kind in "biuf" and array.size > 1:
-            values |= numbered(array, name)
-    return Columns(values)
+    held = {name: value for name, value in found.items() if not name.startswith("__")}
+    return stated_columns(list(_tree_signals(held)), "MAT 5")
+
+
+def _tree_signals(
+    tree: Mapping[str, Any], prefix: str = "", rate_hz: float | None = None, unit: str | None = None, depth: int = 0
+) -> Iterator[StatedSignal]:
+    """Yield the signals of structures, each with the rate and unit that stand nearest."""
+    stated = {name.lower(): value for name, value in tree.items()}
+    rate_hz = next((hz for hz in (_stated_hz(stated, name) for name in (*RATES, *INCREMENTS)) if hz), rate_hz)
+    said = next((stated[name] for name in UNITS if isinstance(stated.get(name), str)), None)
+    unit = said or unit
+    for name, item in tree.items():
+        long, value = f"{prefix}{name}", item
+        if isinstance(value, (list, tuple)):
+            value = {str(k): part for k, part in enumerate(value, start=1)}
+        elif isinstance(value, np.ndarray) and value.dtype == object and value.ndim <= 2:
+            value = {str(k): part for k, part in enumerate(value.ravel().tolist(), start=1)}
+        if isinstance(value, Mapping):
+            if depth < MOST_DEPTH:
+                yield from _tree_signals(value, f"{long}.", rate_hz, unit, depth + 1)
+        elif isinstance(value, np.ndarray) and value.ndim in (1, 2) and value.dtype.kind in "biuf" and value.size > 1:
+            for called, signal in numbered(value, long).items():
+                yield StatedSignal((called,), signal, rate_hz, unit)
+
+
+def _stated_hz(stated: Mapping[str, Any], name: str) -> float | None:
+    for key in (name, f"{name}_hz", f"{name}_s"):
+        value = np.asarray(stated.get(key, np.nan))
+        if value.size != 1 or value.dtype.kind not in "biuf":
+            continue
+        number = float(value.reshape(-1)[0])
+        if np.isfinite(number) and number > 0.0:
+            return number if name in RATES else rate_from_increment(number)
+    return None
 
 
 def read_wav(path: Path) -> Columns:
@@ -192,20 +196,26 @@ def read_wav(path: Path) -> Columns:
     UsageError
         If it is not one.
     """
+    return _wav(path, path)
+
+
+def _wav(path: Path, source: Path | BinaryIO) -> Columns:
     from scipy.io import wavfile
 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of notes that are passed over
-            fs_hz, samples = wavfile.read(path)
+            fs_hz, samples = wavfile.read(source)
     except (ValueError, OSError, EOFError) as error:
         raise UsageError(f"{path}: cannot be read as WAV ({error})") from error
+    layout = {"format": "WAV"}
     if samples.dtype.kind == "f":
-        return Columns(numbered(samples), float(fs_hz))
+        return Columns(numbered(samples), float(fs_hz), layout=layout)
     middle = 128.0 if samples.dtype == np.uint8 else 0.0  # 8-bit WAV is unsigned
     # 24 bits come shifted up into 32, so that the type's range is the full scale in every case
     scale = 128.0 if samples.dtype == np.uint8 else float(np.iinfo(samples.dtype).max) + 1.0
-    return Columns(numbered((samples.astype(np.float64) - middle) / scale), float(fs_hz), full_scale=True)
+    values = numbered((samples.astype(np.float64) - middle) / scale)
+    return Columns(values, float(fs_hz), full_scale=True, layout=layout)
 
 
 def read_numpy(path: Path) -> Columns:
@@ -219,16 +229,17 @@ def read_numpy(path: Path) -> Columns:
     try:
         found = np.load(path, allow_pickle=False)
         if isinstance(found, np.ndarray):
-            return Columns(numbered(found))
+            return Columns(numbered(found), layout={"format": "NumPy"})
         with found as archive:
             arrays = {name: archive[name] for name in archive.files}
-        values: dict[str, np.ndarray] = {}
-        for name, array in arrays.items():
-            if array.size > 1:  # a single number is a note, such as the rate, not a signal
-                values |= numbered(array, name)
+        if wrong := [name for name, array in arrays.items() if array.size > 1 and array.ndim > 2]:
+            raise ValueError(f"array {wrong[0]} has {arrays[wrong[0]].ndim} dimensions")
+        # a single number is a note, such as the rate, not a signal
+        notes = {name: array.item() if array.ndim == 0 else array for name, array in arrays.items()}
+        signals = list(_tree_signals(notes))
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         why = "it holds objects, or is no NumPy file" if "pickle" in str(error) else error
         raise UsageError(
             f"{path}: cannot be read as arrays of numbers ({why}); save float arrays with numpy.save or numpy.savez"
         ) from error
-    return Columns(values)
+    return stated_columns(signals, "NumPy")

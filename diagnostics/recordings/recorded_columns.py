@@ -39,9 +39,12 @@ class Columns:
         Unit of columns where the file states it, as spelled there.
     own : mapping of str to str
         Channel -> its column, where the file says so of its columns, as those of siggen do.
-    clocks : mapping of str to float or None
-        Columns that are no signals: times, with the rate [Hz] that they state, and counters of samples or turns, with
-        None.
+    layout : mapping of str to str
+        What a text file was taken for: format, encoding, separator, decimal mark; of others the format.
+    notes : tuple of str
+        What was left out, cut or shifted.
+    hint_hz : float or None
+        A rate that words of the header may mean; offered, never taken.
     """
 
     values: Mapping[str, np.ndarray]
@@ -50,7 +53,9 @@ class Columns:
     simulated: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
     own: Mapping[str, str] = field(default_factory=dict)
-    clocks: Mapping[str, float | None] = field(default_factory=dict)
+    layout: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    hint_hz: float | None = None
 
 
 def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Files of recorders, which state rate and unit: HDF5, TDMS and universal files.
+"""Files of recorders, which state rate and unit: HDF5, TDMS, universal files and MDF.
 
 HDF5 files: every vector or matrix of numbers; rate and unit from its attributes, or those of what it lies in.
 
@@ -12,7 +12,8 @@ Columns of formats that state rate, unit and name of every signal in the file it
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,6 +21,7 @@ import numpy as np
 
 from diagnostics.base.extras import require_packages
 from diagnostics.recordings.recorded_columns import Columns, numbered
+from diagnostics.recordings.sample_times import OFF_STEPS
 from siggen.errors import UsageError
 
 TYPE, TIME_RESPONSE, REAL, EVEN = 58, 1, (2, 4), 1
@@ -28,21 +30,25 @@ INCREMENT_DIGITS = 6
 UNEVEN_STEP = 1e-3
 """Largest deviation from even steps; uneven files keep their times with six digits."""
 
-RATES = ("fs", "sampling_rate", "sample_rate", "sampling_frequency", "sample_frequency")
+RATES = (
+    *("fs", "sr", "sampling_rate", "sample_rate", "sampling_frequency", "sample_frequency"),
+    *("samplerate", "samplingrate", "fsample", "sampling_freq"),
+)
 INCREMENTS = ("dt", "sampling_interval", "sample_interval", "wf_increment")
 UNITS = ("unit", "units")
 
 
 class StatedSignal(NamedTuple):
-    """One signal: its possible names, the shortest first; values (n,); rate [Hz] and unit where stated."""
+    """One signal: its possible names, the shortest first; values (n,); rate [Hz] and unit where stated; its start."""
 
     names: tuple[str, ...]
     values: np.ndarray
     fs_hz: float | None = None
     unit: str | None = None
+    start_s: float = 0.0
 
 
-def stated_columns(signals: Sequence[StatedSignal]) -> Columns:
+def stated_columns(signals: Sequence[StatedSignal], kind: str, *, full_scale: bool = False) -> Columns:
     """Return the signals of the highest stated rate, and those without one, under the shortest names that differ.
 
     A recorder that samples a temperature slowly beside the vibration writes several rates into one file. One recording
@@ -52,9 +58,36 @@ def stated_columns(signals: Sequence[StatedSignal]) -> Columns:
     highest = max(rates, default=None)
     kept = [s for s in signals if not s.fs_hz or highest is None or math.isclose(s.fs_hz, highest, rel_tol=1e-9)]
     names = _names([signal.names for signal in kept])
-    values = {name: signal.values for name, signal in zip(names, kept, strict=True)}
+    notes = [
+        f"{signal.names[0]} at {signal.fs_hz:g} Hz left out: a recording has one rate, here {highest:g} Hz"
+        for signal in signals
+        if not any(signal is one for one in kept)
+    ]
+    cut, said = _common_span(kept, names, highest)
+    values = dict(zip(names, cut, strict=True))
     units = {name: signal.unit for name, signal in zip(names, kept, strict=True) if signal.unit}
-    return Columns(values, highest, units=units)
+    return Columns(values, highest, full_scale, units=units, layout={"format": kind}, notes=(*notes, *said))
+
+
+def _common_span(
+    kept: Sequence[StatedSignal], names: Sequence[str], fs_hz: float | None
+) -> tuple[list[np.ndarray], list[str]]:
+    """Return the signals from where all have begun to where the first ends, where their starts differ, and say so."""
+    starts = np.array([signal.start_s for signal in kept])
+    if fs_hz is None or not kept or np.ptp(starts) * fs_hz < 0.5:
+        return [signal.values for signal in kept], []
+    skip = np.rint((starts.max() - starts) * fs_hz).astype(int)
+    left = min(signal.values.size - int(k) for signal, k in zip(kept, skip, strict=True))
+    if left < 2:
+        raise UsageError(
+            f"channels do not overlap: their starts lie {np.ptp(starts):.6g} s apart; record them together"
+        )
+    notes = [
+        f"{name} begins {start - starts.min():.6g} s later than the first: all cut to the common span"
+        for name, start in zip(names, starts.tolist(), strict=True)
+        if (start - starts.min()) * fs_hz >= 0.5
+    ]
+    return [signal.values[k : k + left] for signal, k in zip(kept, skip.tolist(), strict=True)], notes
 
 
 def rate_from_increment(increment_s: object, digits: int = 15) -> float | None:
@@ -105,8 +138,22 @@ def read_tdms(path: Path) -> Columns:
             rate_hz = rate_from_increment(channel.properties.get("wf_increment"))
             unit = channel.properties.get("unit_string") or channel.properties.get("NI_UnitDescription")
             names = (channel.name, f"{channel.group_name}/{channel.name}")
-            signals.append(StatedSignal(names, values.astype(np.float64), rate_hz, str(unit) if unit else None))
-    return stated_columns(signals)
+            start_s = _start_s(channel.properties)
+            signals.append(
+                StatedSignal(names, values.astype(np.float64), rate_hz, str(unit) if unit else None, start_s)
+            )
+    earliest = min((signal.start_s for signal in signals), default=0.0)
+    return stated_columns([one._replace(start_s=one.start_s - earliest) for one in signals], "TDMS")
+
+
+def _start_s(properties: Mapping[str, Any]) -> float:
+    """Return when a channel begins [s]: its start time, and its offset from that."""
+    offset = properties.get("wf_start_offset", 0.0)
+    start = properties.get("wf_start_time")
+    ticks = start.astype("datetime64[ns]").astype(np.int64) if isinstance(start, np.datetime64) else 0
+    # whole seconds of all times since 1970 have few digits behind the point: ten minutes of a day are kept exactly
+    seconds = float(int(ticks) % 86_400_000_000_000) * 1e-9
+    return seconds + (float(offset) if isinstance(offset, (int, float)) else 0.0)
 
 
 def read_universal(path: Path) -> Columns:
@@ -131,7 +178,7 @@ def read_universal(path: Path) -> Columns:
             f"{path}: holds no time record: {len(found)} data sets of type 58, none of them function type 1 with real "
             "values; export the time signals"
         )
-    return stated_columns([_signal(path, one) for one in times])
+    return stated_columns([_signal(path, one) for one in times], "UFF 58")
 
 
 def _signal(path: Path, found: dict[str, Any]) -> StatedSignal:
@@ -158,7 +205,8 @@ def _rate_hz(path: Path, found: dict[str, Any]) -> float | None:
 def read_hdf5(path: Path) -> Columns:
     """Read the vectors and matrices of numbers, called as there, with their groups before them where names repeat.
 
-    Attributes are looked for at the data, then at its groups, then at the file: a rate as one of `RATES` (also with
+    In files of MATLAB single numbers count as attributes. These
+    are looked for at the data, then at its groups, then at the file: a rate as one of `RATES` (also with
     `_hz` after it), or a step as one of `INCREMENTS` (also with `_s`), and a unit as one of `UNITS`. Data that lies in
     other files is passed over, so that a file cannot make others be read.
 
@@ -174,18 +222,30 @@ def read_hdf5(path: Path) -> Columns:
     with h5py.File(path, "r") as file:
         held: list[Any] = []
         file.visititems(lambda _, item: held.append(item) if isinstance(item, h5py.Dataset) else None)
+        about = _scalars(held)
         for data in held:
+            if data.name.startswith("/#") or data.attrs.get("MATLAB_class") in (b"char", b"cell", b"function_handle"):
+                continue
             own = not data.is_virtual and not data.external
             if own and data.dtype.kind in "biuf" and data.ndim in (1, 2) and data.size > 1:
-                signals += _signals(data)
-    return stated_columns(signals)
+                signals += _signals(data, about)
+    return stated_columns(signals, "HDF5")
 
 
-def _signals(data: Any) -> list[StatedSignal]:
+def _scalars(held: Sequence[Any]) -> dict[str, dict[str, float]]:
+    """Return single numbers by the group they lie in, as MAT files of version 7.3 hold rates."""
+    found: dict[str, dict[str, float]] = {}
+    for data in held:
+        if not data.is_virtual and not data.external and data.size == 1 and data.dtype.kind in "iuf":
+            found.setdefault(data.parent.name, {})[data.name.rpartition("/")[2].lower()] = _number(data[()]) or 0.0
+    return found
+
+
+def _signals(data: Any, about: Mapping[str, Mapping[str, float]]) -> list[StatedSignal]:
     stated: dict[str, Any] = {}
     place = data
     while True:
-        stated = {name.lower(): value for name, value in place.attrs.items()} | stated
+        stated = {**about.get(place.name, {}), **{name.lower(): value for name, value in place.attrs.items()}} | stated
         if place.name == "/":
             break
         place = place.parent
@@ -217,3 +277,51 @@ def _unit(stated: dict[str, Any]) -> str | None:
     found = next((stated[name] for name in UNITS if name in stated), None)
     text = found.decode("utf-8", "replace") if isinstance(found, bytes) else found
     return text if isinstance(text, str) else None
+
+
+def read_mdf(path: Path) -> Columns:
+    """Read the channels of numbers of the groups with the highest rate.
+
+    Raises
+    ------
+    UsageError
+        If asammdf is missing, or groups of one rate have uneven times that differ.
+    """
+    require_packages(f"{path}: reading MDF", "asammdf")
+    from asammdf import MDF
+
+    signals: list[StatedSignal] = []
+    times: list[np.ndarray] = []
+    with MDF(path) as file:
+        for index, group in enumerate(file.groups):
+            masters = {file.masters_db.get(index)}
+            for number, channel in enumerate(group.channels):
+                if number in masters:
+                    continue
+                found = file.get(group=index, index=number)
+                stamps = np.asarray(found.timestamps, dtype=np.float64)
+                if found.samples.ndim != 1 or found.samples.dtype.kind not in "biuf" or found.samples.size < 2:
+                    continue
+                span = float(stamps[-1] - stamps[0])
+                rate = rate_from_increment(span / (stamps.size - 1))
+                names = (channel.name, f"{index}/{channel.name}")
+                values = found.samples.astype(np.float64)
+                signals.append(StatedSignal(names, values, rate, str(found.unit) or None, float(stamps[0])))
+                times.append(stamps)
+    highest = max((one.fs_hz for one in signals if one.fs_hz), default=0.0)
+    kept = [k for k, one in enumerate(signals) if one.fs_hz and math.isclose(one.fs_hz, highest, rel_tol=1e-6)]
+    if not kept:
+        raise UsageError(f"{path}: holds no channel of numbers over time")
+    first = times[kept[0]]
+    if all(np.array_equal(times[k], first) for k in kept):
+        # even or not: the times are judged as those of any other file
+        found = stated_columns([signals[k]._replace(fs_hz=None, start_s=0.0) for k in kept], "MDF")
+        left = [f"{one.names[0]} left out: at another rate" for k, one in enumerate(signals) if k not in kept]
+        units = {**found.units, "time": "s"}
+        return replace(found, values={"time": first, **found.values}, units=units, notes=(*found.notes, *left))
+    for k in kept:
+        steps = np.diff(times[k])
+        if np.abs(steps - steps.mean()).max() > OFF_STEPS * steps.mean():
+            raise UsageError(f"{path}: groups of one rate have uneven times that differ; export them on one time")
+    alike = [one._replace(fs_hz=highest) if k in kept else one for k, one in enumerate(signals)]
+    return stated_columns(alike, "MDF")

@@ -61,7 +61,7 @@ def shaft_pulses(
     teeth : (int, int)
         Teeth of pinion and gear.
     speed_range_hz : (float, float), optional
-        Slowest and fastest pinion speed; needed without a tacho, and not left.
+        Slowest and fastest pinion speed; needed without a tacho or a column of speed, and not left.
     planets : Planets, optional
         Of a planetary set, whose tacho is on the shaft of the sun.
 
@@ -74,14 +74,14 @@ def shaft_pulses(
         found = _against_carrier(recording, planets)
     elif recording.tacho_s is not None:
         found = ShaftPulses(recording.tacho_s, "tacho")
-    elif speed_range_hz is None:
+    elif (span := speed_range_hz or recording.speed_span_hz) is None:
         raise UsageError(
             f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, or the range the first "
             "shaft can have run in with --speed-range LOW,HIGH"
         )
     else:
         try:
-            lines = mesh_pulses(recording.channels, recording.fs_hz, teeth, speed_range_hz)
+            lines = mesh_pulses(recording.channels, recording.fs_hz, teeth, span)
         except UsageError as error:
             raise UsageError(f"{recording.path}: {error}") from error
         found = ShaftPulses(lines.times_s, lines.channel, lines.certainty)

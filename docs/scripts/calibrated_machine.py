@@ -19,7 +19,7 @@ from diagnostics.calibration.healthy_blocks import HealthyBlocks, healthy_blocks
 from diagnostics.calibration.likeness import Likeness, likeness, sample_of, simulated_blocks
 from diagnostics.calibration.rig import read_rig
 from diagnostics.calibration.source_library import at_recordings
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.rig.rig import Rig
 from siggen.rig.rig_text import rig_text
 
@@ -42,7 +42,11 @@ def recordings(folder: Path, seed: int) -> HealthyBlocks:
     records = siggen.simulate(config, range(FITTED + JUDGED))
     files = [write_recording(one, folder / f"run{k}.npz") for k, one in enumerate(records)]
     return healthy_blocks(
-        [(file, None) for file in files], CHANNELS, RecordingFacts(FS_HZ, {}, tacho="tacho"), TEETH, None
+        [(file, None) for file in files],
+        CHANNELS,
+        RecordingFacts(FS_HZ, {}, unit="m/s2", tacho="tacho", tacho_pulses=1),
+        TEETH,
+        None,
     )
 
 

@@ -21,7 +21,7 @@ from scipy.stats import t as student
 import siggen
 from diagnostics.machine.comparable import comparable, slip_loads
 from diagnostics.machine.machine import Machine
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import Mesh
 from diagnostics.statistics.change_score import change_score
 
@@ -91,7 +91,7 @@ def as_machine(held: dict[str, np.ndarray], rows: np.ndarray, way: str) -> Machi
     elif way != "given":
         load = np.full(rows.size, np.nan)
     names = tuple(str(k) for k in range(held["rows"].shape[1]))
-    facts = RecordingFacts(fs_hz=FS_HZ)
+    facts = RecordingFacts(fs_hz=FS_HZ, unit="m/s2")
     called = tuple(str(row) for row in rows)
     return Machine(
         (Mesh("", (18, 47)),), CHANNELS, facts, None, FS_HZ, 1.5, 0.05, names, held["rows"][rows], called,

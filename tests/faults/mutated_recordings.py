@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.row import Row
 from diagnostics.machine.recording_indicators import recording_indicators
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.errors import EXIT_USAGE, SiggenError
 from tests.faults.mutated_configurations import Case, outcomes_row
 from tests.faults.recorder_files import recorder_files
@@ -107,7 +107,7 @@ def mutated_recordings(count: int, whole: Sequence[Path], seed: int = 0) -> Iter
 
 
 def _judged(path: Path) -> Case:
-    facts = RecordingFacts(None if path.suffix == ".wav" else FS_HZ, full_scale=10.0)
+    facts = RecordingFacts(None if path.suffix == ".wav" else FS_HZ, unit="m/s2", full_scale=10.0)
     return judged(path.name, lambda: recording_indicators(path, (20, 30), facts, (10.0, 30.0)))
 
 

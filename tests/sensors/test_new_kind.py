@@ -12,7 +12,8 @@ import pytest
 
 import siggen
 from diagnostics.recordings.columns import read_columns
-from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import read_recording
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.config import parse
 from siggen.errors import UsageError
 from tests.diagnostics.explore.unpacked import held

@@ -34,7 +34,7 @@ def tacho_waveform(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
 
 def write_recording(record: Any, file: Path, *, tacho: bool = True) -> Path:
     """Write channels as text, a tacho's waveform beside them if there is one."""
-    signals = {f"ch{k + 1}": signal for k, signal in enumerate(record.channels.values())}
+    signals = {f"ch{k + 1} [m/s2]": signal for k, signal in enumerate(record.channels.values())}
     if tacho:
         time_s = np.arange(next(iter(signals.values())).size) / FS_HZ
         signals["tacho"] = tacho_waveform(time_s, record.tacho_s)

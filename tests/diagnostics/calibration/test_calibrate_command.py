@@ -52,7 +52,7 @@ def calibrated(recordings: list[Path]) -> tuple[Path, Path, str]:
     drawing = ["--teeth", "18,47", "--module", "3", "--face-width", "20", "--speed", "33,36", "--torque", "20,50"]
     made = CliRunner().invoke(siggen_app, ["init", *drawing, "--out", str(rig)], catch_exceptions=False)
     assert made.exit_code == 0, made.output
-    said = ["calibrate", str(rig), *map(str, recordings[:3]), "--fs", "25600", "--tacho", "tacho"]
+    said = ["calibrate", str(rig), *map(str, recordings[:3]), "--fs", "25600", "--tacho-pulses", "1"]
     judged = ["--held-out", str(recordings[3]), "--compared", "3"]
     options = ["--gearboxes", "3", "--paths", "6", *judged, "--out", str(mine)]
     result = CliRunner().invoke(app, [*said, *options], catch_exceptions=False)
@@ -94,8 +94,8 @@ def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
         columns = np.loadtxt(file, delimiter=",", skiprows=1)
         slow.append(tmp_path / f"{file.stem}.npz")
         halved = np.stack([*decimate(columns[:, :2], 2, axis=0).T, columns[::2, 2]])
-        np.savez(slow[-1], **dict(zip(("ch1", "ch2", "tacho"), halved, strict=True)))
-    said = ["calibrate", str(calibrated[0]), *map(str, slow), "--fs", "12800", "--tacho", "tacho"]
+        np.savez(slow[-1], **dict(zip(("ch1_m_s2", "ch2_m_s2", "tacho"), halved, strict=True)))
+    said = ["calibrate", str(calibrated[0]), *map(str, slow), "--fs", "12800", "--tacho-pulses", "1"]
     few = ["--gearboxes", "2", "--paths", "2", "--compared", "0", "--out", str(tmp_path / "slow.yaml")]
     result = CliRunner().invoke(app, [*said, *few], catch_exceptions=False)
     assert result.exit_code == 0, result.output
@@ -128,8 +128,8 @@ def test_a_call_that_cannot_work_says_why(
         str(recordings[0]),
         "--fs",
         "25600",
-        "--tacho",
-        "tacho",
+        "--tacho-pulses",
+        "1",
         "--out",
         "x.yaml",
     ]
@@ -144,7 +144,7 @@ def test_a_recording_that_is_fitted_is_not_held_out_even_under_another_name(
 ) -> None:
     again = shutil.copy(recordings[1], tmp_path / f"again{recordings[1].suffix}")
     fitted, out = map(str, recordings[:3]), tmp_path / "x.yaml"
-    options = ["--fs", "25600", "--tacho", "tacho", "--held-out", str(recordings[3]), "--held-out", str(again)]
+    options = ["--fs", "25600", "--tacho-pulses", "1", "--held-out", str(recordings[3]), "--held-out", str(again)]
     result = CliRunner().invoke(app, ["calibrate", str(calibrated[0]), *fitted, *options, "--out", str(out)])
     assert isinstance(result.exception, UsageError)
     assert f"has the same samples as {recordings[1].name}, which is fitted" in str(result.exception)
@@ -168,13 +168,13 @@ def test_noise_without_mesh_lines_and_a_wrong_unit_are_refused(
     noise = rows.copy()
     noise[:, :2] = np.random.default_rng(0).standard_normal((len(rows), 2))
     for name, values in (("noise.csv", noise), ("loud.csv", rows * [1e6, 1e6, 1.0])):
-        np.savetxt(tmp_path / name, values, delimiter=",", header="ch1,ch2,tacho", comments="")
+        np.savetxt(tmp_path / name, values, delimiter=",", header="ch1 [m/s2],ch2 [m/s2],tacho", comments="")
     common = [
         str(calibrated[0]),
         "--fs",
         "25600",
-        "--tacho",
-        "tacho",
+        "--tacho-pulses",
+        "1",
         "--gearboxes",
         "2",
         "--out",

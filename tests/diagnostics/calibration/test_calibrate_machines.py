@@ -94,7 +94,20 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def calibrate(folder: Path, rig: str, out: str, *more: object) -> str:
     files = [folder / f"run{k}.npz" for k in range(3)]
-    told = ("--fs", FS_HZ, "--tacho", "tacho_s", "--gearboxes", GEARBOXES, "--paths", 6, "--out", folder / out)
+    told = (
+        "--fs",
+        FS_HZ,
+        "--unit",
+        "m/s2",
+        "--tacho",
+        "tacho_s",
+        "--gearboxes",
+        GEARBOXES,
+        "--paths",
+        6,
+        "--out",
+        folder / out,
+    )
     return run("calibrate", folder / rig, *files, *told, *more)
 
 

@@ -14,7 +14,7 @@ from diagnostics.calibration.noise_fit import noise_fit, smallest_step
 from diagnostics.calibration.order_record import order_record
 from diagnostics.calibration.own_lines import own_lines
 from diagnostics.calibration.path_draws import housing_mass_kg, liftered, minimum_phase, path_level_db, path_level_doubt
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 
 FS_HZ, TEETH, SAMPLES = 25_600.0, (18, 47), 102_400
 TIME_S = np.arange(SAMPLES) / FS_HZ
@@ -159,7 +159,7 @@ def test_one_recording_stays_whole_and_what_it_cannot_tell_is_drawn_wide(tmp_pat
     signal = np.sin(2 * np.pi * 18 * 30.0 * TIME_S) + 0.1 * np.random.default_rng(6).standard_normal(SAMPLES)
     signal += 0.3 * np.sin(2 * np.pi * 4.35 * 30.0 * TIME_S)
     np.savez(tmp_path / "run.npz", c=signal, pulse=np.where((TIME_S * 30.0) % 1.0 < 0.1, 5.0, 0.0))
-    facts = RecordingFacts(FS_HZ, {}, tacho="pulse")
+    facts = RecordingFacts(FS_HZ, {}, unit="m/s2", tacho="pulse", tacho_pulses=1)
     found = healthy_blocks([(tmp_path / "run.npz", None)], ("c",), facts, TEETH, None)
     (one,) = found.blocks
     assert one.channels["c"].size == SAMPLES

@@ -13,7 +13,7 @@ import pytest
 from diagnostics.explore.beside_page import write_beside_page
 from diagnostics.explore.measured_page import ShownRecording
 from diagnostics.machine.recording_indicators import RecordingIndicators, recording_indicators
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, FS_HZ, TEETH, MemoryDataset, memory_dataset, shaft_record
 from tests.diagnostics.explore.test_explorer import Read
@@ -27,7 +27,7 @@ def recorded(
     signal, pulses = shaft_record(rng, 0.0, speed_hz=speed_hz)
     signals = {channel: (k + 1.0) * signal for k, channel in enumerate(channels)}
     np.savez(folder / name, **signals, tacho_s=pulses)
-    return recording_indicators(folder / name, TEETH, RecordingFacts(fs_hz=FS_HZ, tacho="tacho_s"))
+    return recording_indicators(folder / name, TEETH, RecordingFacts(fs_hz=FS_HZ, unit="m/s2", tacho="tacho_s"))
 
 
 def with_speeds(dataset: MemoryDataset, speeds: list[float]) -> MemoryDataset:

@@ -14,7 +14,7 @@ from diagnostics.cli.app import app
 from diagnostics.explore.measured_page import ShownRecording, recordings_source
 from diagnostics.machine.check import PastCheck
 from diagnostics.machine.recording_indicators import recording_indicators
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.errors import UsageError
 from tests.diagnostics.explore.test_explorer import Read
 from tests.diagnostics.explore.unpacked import held, listed, rows
@@ -65,7 +65,7 @@ def test_a_machine_gives_its_references_and_verdicts_but_no_samples(tmp_path: Pa
 
 def test_recordings_of_another_rate_or_other_channels_are_refused_by_name(tmp_path: Path) -> None:
     one = write_recording(tmp_path / "one.npz", seed=1)
-    found = recording_indicators(one, (20, 31), RecordingFacts(fs_hz=FS_HZ), (20.0, 30.0))
+    found = recording_indicators(one, (20, 31), RecordingFacts(fs_hz=FS_HZ, unit="m/s2"), (20.0, 30.0))
     slow = replace(found, name="slow.npz", recording=replace(found.recording, fs_hz=4000.0))
     with pytest.raises(UsageError, match=r"slow.npz: recorded at 4000 Hz, one.npz at 8000 Hz"):
         recordings_source([ShownRecording(found, "unchanged", 0.0), ShownRecording(slow, "unchanged", 0.0)])

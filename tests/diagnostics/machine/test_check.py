@@ -16,7 +16,7 @@ from siggen.errors import SiggenError, UsageError
 
 FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0
 RIG = ("--fs", FS_HZ, "--teeth", "20,31")
-SEARCHED, TOLD = (*RIG, "--speed-range", "20,30"), (*RIG, "--tacho", "pulse")
+SEARCHED, TOLD = (*RIG, "--speed-range", "20,30"), (*RIG, "--tacho-pulses", 1)
 """Without a tacho the search for the speed takes nine tenths of a check: it is done where it is the subject."""
 
 
@@ -135,7 +135,7 @@ def test_teeth_whose_mesh_lines_are_not_there_are_refused(tmp_path: Path) -> Non
         held["pulse"] = np.where((held["t"] * 25.0) % 1.0 < 0.1, 5.0, 0.0)
         rng = np.random.default_rng(seed)
         np.savez(file, **{k: v if k in {"t", "pulse"} else rng.standard_normal(v.size) for k, v in held.items()})
-    facts = ["--fs", FS_HZ, "--teeth", "20,31", "--tacho", "pulse", "--channel", "lid=lid", "--out", tmp_path / "rig"]
+    facts = ["--fs", FS_HZ, "--teeth", "20,31", "--tacho-pulses", 1, "--channel", "lid=lid", "--out", tmp_path / "rig"]
     with pytest.raises(SiggenError, match="no mesh line of 20 teeth"):
         run("baseline", *files, *facts)
 

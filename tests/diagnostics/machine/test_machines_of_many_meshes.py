@@ -93,7 +93,7 @@ def test_a_machine_in_own_names_has_the_meshes_of_its_short_form(tmp_path: Path)
 def test_gears_are_told_once_and_planets_need_a_tacho(tmp_path: Path) -> None:
     file = recording(tmp_path / "one.npz", of_planets, seed=1)
     (tmp_path / "gearbox.yaml").write_text(yaml.safe_dump(planets()), encoding="utf-8")
-    told = ("--fs", FS_HZ, "--config", tmp_path / "gearbox.yaml", "--out", tmp_path / "out")
+    told = ("--fs", FS_HZ, "--unit", "m/s2", "--config", tmp_path / "gearbox.yaml", "--out", tmp_path / "out")
     for more, words in (
         (("--teeth", "25,26"), "received --teeth and --config"),
         (("--channel", "lid=lid", "--speed-range", "20,30"), "no tacho; the speed of planetary sets"),

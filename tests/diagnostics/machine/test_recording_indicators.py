@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from diagnostics.cli.app import app
 from diagnostics.machine.recording_indicators import indicator_title, recording_indicators
-from diagnostics.recordings.measured_recording import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.errors import SiggenError
 
 FS_HZ = 8000.0
@@ -30,7 +30,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_closed_forms_of_a_modulated_line(recording: Path) -> None:
-    found = recording_indicators(recording, (20, 31), RecordingFacts(FS_HZ), (20.0, 30.0))
+    found = recording_indicators(recording, (20, 31), RecordingFacts(FS_HZ, unit="m/s2"), (20.0, 30.0))
     assert list(found.recording.channels) == ["lid"]
     assert found.pulses.speed_hz == pytest.approx(25.0, abs=0.01)  # the phase at the ends errs by 0.01 turns in 2 s
     values = found.channel("lid")
@@ -41,13 +41,24 @@ def test_closed_forms_of_a_modulated_line(recording: Path) -> None:
 
 
 def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_path: Path) -> None:
-    facts = ["--fs", "8000", "--teeth", "20,31", "--speed-range", "20,30", "--out", str(tmp_path / "found")]
+    facts = [
+        "--fs",
+        "8000",
+        "--unit",
+        "m/s2",
+        "--teeth",
+        "20,31",
+        "--speed-range",
+        "20,30",
+        "--out",
+        str(tmp_path / "found"),
+    ]
     result = CliRunner().invoke(app, ["indicators", str(recording), *facts], catch_exceptions=False)
     assert result.exit_code == 0
     assert "mesh 500." in result.output
     with (tmp_path / "found" / "indicators.csv").open() as file:
         (row,) = csv.DictReader(file)
-    called = recording_indicators(recording, (20, 31), RecordingFacts(FS_HZ), (20.0, 30.0))
+    called = recording_indicators(recording, (20, 31), RecordingFacts(FS_HZ, unit="m/s2"), (20.0, 30.0))
     assert float(row["rms"]) == pytest.approx(called.values["rms__lid"], rel=1e-12)
     assert "run.csv" in (tmp_path / "found" / "indicators.html").read_text()
 
@@ -55,7 +66,7 @@ def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_pat
 def test_slips_are_named(recording: Path, tmp_path: Path) -> None:
     for arguments, told in (
         ([str(recording)], "teeth unknown"),
-        ([str(recording), "--teeth", "20,31"], "neither tacho nor speed"),
+        ([str(recording), "--unit", "m/s2", "--teeth", "20,31"], "neither tacho nor speed"),
         ([str(recording), "--teeth", "20,31", "--state", "severe"], "--state: for sets only"),
         ([str(tmp_path / "none.csv"), "--teeth", "20,31"], "no such file"),
         ([str(tmp_path), str(tmp_path)], "a second argument"),

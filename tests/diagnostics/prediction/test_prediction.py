@@ -19,7 +19,8 @@ from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.training_distance import fit_part
-from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import read_recording
+from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.statistics.calibration import tempered
 from siggen.dataset.seal import sealed
 from siggen.errors import UsageError
@@ -229,7 +230,7 @@ def test_probabilities_are_calibrated_as_the_models_own_are(
 ) -> None:
     model = load_model(models_folder)
     file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)
-    recording = replace(read_recording(file, model.facts.channels, RecordingFacts(FS_HZ)), simulated=True)
+    recording = replace(read_recording(file, model.facts.channels, RecordingFacts(FS_HZ, unit="m/s2")), simulated=True)
     found = {}
     for temperature in (1.0, 3.0):
         tempered_model = replace(model, classifier=replace(model.classifier, temperature=temperature))

@@ -10,9 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 from diagnostics.cli.app import app
-from diagnostics.recordings.columns import clocks, read_columns
-from diagnostics.recordings.file_channels import file_channels
-from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import read_recording
+from diagnostics.recordings.roles import ColumnUse
+from diagnostics.recordings.taken import RecordingFacts, file_channels, take
 from siggen.errors import UsageError
 
 FS_HZ, SAMPLES = 25_600, 5_000
@@ -42,7 +42,7 @@ def test_the_rate_comes_from_the_times_however_they_are_rounded(
     tmp_path: Path, header: str, scale: float, digits: int
 ) -> None:
     file = write(tmp_path, [f"{scale * at:.{digits}f}" for at in TIMES_S], header)
-    assert file_channels(file) == ("lid",)
+    assert file_channels(file, RecordingFacts()) == ("lid",)
     found = read_recording(file, ("lid",), RecordingFacts(unit="g"))
     # five digits behind the point leave the rate open by 1e-5 s in 0.2 s
     assert found.fs_hz == (FS_HZ if digits > 5 or scale > 1.0 else pytest.approx(FS_HZ, rel=1e-4))
@@ -50,8 +50,8 @@ def test_the_rate_comes_from_the_times_however_they_are_rounded(
 
 def test_a_counter_of_samples_is_no_channel_and_states_no_rate(tmp_path: Path) -> None:
     file = write(tmp_path, [str(k) for k in range(SAMPLES)], "sample;lid")
-    assert file_channels(file) == ("lid",)
-    assert read_columns(file).fs_hz is None
+    assert file_channels(file, RecordingFacts()) == ("lid",)
+    assert take(file, RecordingFacts()).fs_hz is None
     with pytest.raises(UsageError, match="--fs 51200"):
         read_recording(file, ("lid",), RecordingFacts(unit="g"))
 
@@ -60,16 +60,16 @@ def test_a_rate_that_contradicts_the_times_is_refused_and_so_is_a_time_as_a_chan
     file = write(tmp_path, [f"{at:.6f}" for at in TIMES_S])
     with pytest.raises(UsageError, match=r"states 25600 Hz, received --fs 51200"):
         read_recording(file, ("lid",), RecordingFacts(fs_hz=51_200.0))
-    assert read_recording(file, ("lid",), RecordingFacts(fs_hz=25_600.0)).fs_hz == FS_HZ
-    with pytest.raises(UsageError, match="column time rises by equal steps: it is a time, not channel lid"):
-        read_recording(file, ("lid",), RecordingFacts(columns={"lid": "time"}))
-    assert file_channels(file, row=None) == ("lid",)
+    assert read_recording(file, ("lid",), RecordingFacts(fs_hz=25_600.0, unit="g")).fs_hz == FS_HZ
+    with pytest.raises(UsageError, match=r"column time is a time \(name\), not channel lid"):
+        read_recording(file, ("lid",), RecordingFacts(columns={"lid": "time"}, unit="g"))
 
 
 def test_a_signal_that_rises_now_and_then_and_pulses_of_a_tacho_are_no_times(tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     np.savez(tmp_path / "run.npz", ramp=TIMES_S + 3e-5 * rng.standard_normal(SAMPLES), tacho_s=np.arange(60) / 30.0)
-    assert read_columns(tmp_path / "run.npz").clocks == {}
+    taken = take(tmp_path / "run.npz", RecordingFacts(fs_hz=FS_HZ))
+    assert {one.name: one.role for one in taken.columns} == {"ramp": ColumnUse.VIBRATION, "tacho_s": ColumnUse.TACHO}
 
 
 def test_an_angle_in_radians_states_no_rate_however_evenly_it_rises(tmp_path: Path) -> None:
@@ -77,26 +77,21 @@ def test_an_angle_in_radians_states_no_rate_however_evenly_it_rises(tmp_path: Pa
     angle = 0.7 * np.arange(SAMPLES)
     np.savez(tmp_path / "run.npz", time=TIMES_S, angle_rad=angle, lid=rng.standard_normal(SAMPLES))
     assert read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts(unit="g")).fs_hz == FS_HZ
-    assert file_channels(tmp_path / "run.npz") == ("lid",)
+    assert file_channels(tmp_path / "run.npz", RecordingFacts()) == ("lid",)
 
 
-def test_an_angle_that_rises_evenly_beside_the_time_leaves_the_rate_to_the_user(tmp_path: Path) -> None:
+def test_an_angle_that_rises_evenly_beside_the_time_leaves_the_rate_to_the_time(tmp_path: Path) -> None:
     rng = np.random.default_rng(2)
-    np.savez(tmp_path / "run.npz", time=TIMES_S, angle=0.7 * np.arange(SAMPLES), lid=rng.standard_normal(SAMPLES))
-    with pytest.raises(UsageError, match=r"columns that rise evenly state time 25600 Hz, angle .*--fs"):
-        read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts())
-    assert read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts(fs_hz=25_600.0)).fs_hz == FS_HZ
+    np.savez(tmp_path / "run.npz", time=TIMES_S, alpha=0.7 * np.arange(SAMPLES), lid=rng.standard_normal(SAMPLES))
+    found = take(tmp_path / "run.npz", RecordingFacts(unit="g"))
+    assert found.fs_hz == FS_HZ
+    assert found.column("alpha").role is ColumnUse.COUNTER
 
 
 def test_a_wrong_name_is_refused_where_the_only_signal_has_another(tmp_path: Path) -> None:
     np.savez(tmp_path / "run.npz", time=TIMES_S, oil=np.random.default_rng(2).standard_normal(SAMPLES))
     with pytest.raises(UsageError, match="no column lid"):
         read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts())
-
-
-def test_a_record_s_list_of_angles_is_no_time_of_its_samples() -> None:
-    samples = np.random.default_rng(3).normal(size=100)
-    assert clocks({"lid": samples, "angles_deg": np.array([0.0, 120.0, 240.0])}, {}, "tacho_s") == {}
 
 
 @pytest.mark.parametrize(
@@ -106,10 +101,15 @@ def test_a_record_s_list_of_angles_is_no_time_of_its_samples() -> None:
             "time;lid",
             1200,
             0.25,
-            r"column time jumps from 3\.04683\d* to 3\.29687\d* behind sample 1200, by 6401 steps",
+            r"time, has a gap: it jumps from 3\.04683\d* to 3\.29687\d* behind sample 1200, by 6401 steps",
         ),
-        ("x;lid", 1200, 2.0 / FS_HZ, r"column x jumps .* behind sample 1200, by 3 steps of 3\.91e-05"),
-        ("time;lid", 4000, -3.0, r"column time jumps .* behind sample 4000, by -76799 steps"),
+        (
+            "x;lid",
+            1200,
+            2.0 / FS_HZ,
+            r"x, a time, has a gap: .* behind sample 1200, by 3 steps of 3\.91e-05",
+        ),
+        ("time;lid", 4000, -3.0, r"time, steps back: .* behind sample 4000, by -76799 steps"),
     ],
     ids=["a gap", "two samples lost", "a clock set back"],
 )
@@ -123,9 +123,3 @@ def test_a_gap_in_the_times_is_refused_with_its_place_and_the_longest_whole_piec
     assert isinstance(result.exception, UsageError)
     assert re.search(said, str(result.exception))
     assert f"{whole} are the longest whole piece" in str(result.exception)
-
-
-def test_an_angle_that_begins_anew_every_turn_is_no_time_with_jumps(tmp_path: Path) -> None:
-    rng = np.random.default_rng(3)
-    np.savez(tmp_path / "run.npz", phase=(0.01 * np.arange(SAMPLES)) % 1.0, lid=rng.standard_normal(SAMPLES))
-    assert read_columns(tmp_path / "run.npz").clocks == {}

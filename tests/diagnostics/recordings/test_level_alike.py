@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from diagnostics.recordings.level_alike import check_levels_alike, level_note
-from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
-from diagnostics.recordings.plain_files import read_csv
+from diagnostics.recordings.measured_recording import read_recording
+from diagnostics.recordings.taken import RecordingFacts
+from diagnostics.recordings.text_files import read_text
 from siggen.errors import UsageError
 
 CHANNELS = ("a", "b")
@@ -21,7 +22,7 @@ def recordings(folder: Path, *factors: tuple[float, float]) -> list[object]:
     for k, scale in enumerate(factors):
         file = folder / f"run{k}.npz"
         np.savez(file, **{name: f * rng.standard_normal(2000) for name, f in zip(CHANNELS, scale, strict=True)})
-        found.append(read_recording(file, CHANNELS, RecordingFacts(fs_hz=25_600.0)))
+        found.append(read_recording(file, CHANNELS, RecordingFacts(fs_hz=25_600.0, unit="m/s2")))
     return found
 
 
@@ -49,6 +50,6 @@ def test_a_level_that_no_machine_has_is_noted(tmp_path: Path) -> None:
 
 def test_a_name_that_stands_for_two_columns_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "run.csv"
-    file.write_text("x,x,tacho\n1,2,3\n4,5,6\n")
+    file.write_text("x,x,tacho\n1,2,3\n4,5,6\n7,8,9\n")
     with pytest.raises(UsageError, match="2 columns are called x"):
-        read_csv(file)
+        read_text(file)

@@ -11,8 +11,8 @@ import pyarrow.parquet as pq
 import pytest
 from scipy.io import savemat, wavfile
 
-from diagnostics.recordings.file_channels import file_channels
-from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import read_recording
+from diagnostics.recordings.taken import RecordingFacts, file_channels
 from siggen.errors import UsageError
 
 FS_HZ = 8000
@@ -56,8 +56,8 @@ def test_integer_wav_needs_its_full_scale(tmp_path: Path) -> None:
     wavfile.write(tmp_path / "run.wav", FS_HZ, samples)
     columns = {"vertical": "1", "horizontal": "2"}
     with pytest.raises(UsageError, match=r"run.wav: holds shares of full scale.*--full-scale 50"):
-        read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(columns=columns))
-    found = read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(columns=columns, full_scale=50.0))
+        read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(unit="m/s2", columns=columns))
+    found = read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(unit="m/s2", columns=columns, full_scale=50.0))
     np.testing.assert_array_equal(found.channels["vertical"][:3], [-25.0, 25.0, 0.0])
 
 
@@ -71,7 +71,7 @@ def test_millivolts_take_the_sensitivity(tmp_path: Path) -> None:
 
 def test_semicolons_with_decimal_commas(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("vertical;horizontal\n" + "1,5;-2,25\n0,5;3,0\n-1,0;1,0\n")
-    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
     np.testing.assert_array_equal(found.channels["horizontal"], [-2.25, 3.0, 1.0])
 
 
@@ -81,12 +81,12 @@ def test_semicolons_with_decimal_commas(tmp_path: Path) -> None:
         "# recorder 7, 12 bit\n# 8000 Hz\nvertical,horizontal\n",
         "% recorder 7\n\nvertical,horizontal\n",
         "vertical,horizontal\n[m/s2],[m/s2]\n",
-        "# recorder 7\nvertical,horizontal\nm/s²,g\n",
+        "# recorder 7\nvertical,horizontal\nm/s²,m/s2\n",
     ],
 )
 def test_comments_and_units_above_the_samples_are_skipped(above: str, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text(above + "1.5,-2.25\n0.5,3.0\n-1.0,1.0\n", encoding="utf-8")
-    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
     np.testing.assert_array_equal(found.channels["vertical"], [1.5, 0.5, -1.0])
 
 
@@ -94,14 +94,14 @@ def test_comments_and_units_above_the_samples_are_skipped(above: str, tmp_path: 
 def test_a_second_row_that_is_not_plainly_units_is_no_sample_and_refused(second: str, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text(f"vertical,horizontal\n{second}\n1.5,2.5\n0.5,3.0\n")
     with pytest.raises(UsageError, match="cannot be read as a table of numbers"):
-        read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+        read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
 
 
 @pytest.mark.parametrize("text", ["vertical,horizontal\n", "vertical,horizontal\ng,g\n", "# only this\n", ""])
 def test_a_text_file_without_samples_says_so(text: str, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text(text)
     with pytest.raises(UsageError, match=r"run.csv: holds no samples"):
-        read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+        read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
 
 
 def test_a_record_of_this_package_is_read_by_row_with_its_pulses(tmp_path: Path) -> None:
@@ -109,8 +109,8 @@ def test_a_record_of_this_package_is_read_by_row_with_its_pulses(tmp_path: Path)
     rows = {"accel_vertical_m_s2": [first, second], "accel_horizontal_m_s2": [second, first]}
     pq.write_table(pa.table({**rows, "tacho_s": [[0.1, 0.2], [0.1, 0.3]], "record_id": [0, 1]}), tmp_path / "a.parquet")
     with pytest.raises(UsageError, match=r"holds 2 records.*a.parquet:ROW, from 0 to 1"):
-        read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(fs_hz=FS_HZ))
-    found = read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(fs_hz=FS_HZ, row=1, tacho="tacho_s"))
+        read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
+    found = read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(FS_HZ, unit="m/s2", row=1, tacho="tacho_s"))
     np.testing.assert_array_equal(found.channels["vertical"], second)
     assert found.tacho_s is not None
     np.testing.assert_array_equal(found.tacho_s, [0.1, 0.3])
@@ -122,7 +122,7 @@ def test_pulses_of_a_sampled_tacho_lie_between_samples(tmp_path: Path) -> None:
     tacho = np.clip(40.0 * np.sin(2 * np.pi * 25.3 * time_s - 1.0), -1.0, 1.0) + noise
     first, second = signals()
     np.savez(tmp_path / "run.npz", vertical=first, horizontal=second, t=tacho)
-    found = read_recording(tmp_path / "run.npz", NAMES, RecordingFacts(fs_hz=FS_HZ, tacho="t"))
+    found = read_recording(tmp_path / "run.npz", NAMES, RecordingFacts(FS_HZ, unit="m/s2", tacho="t", tacho_pulses=1))
     assert found.tacho_s is not None
     expected = (np.arange(found.tacho_s.size) + 1.0 / (2 * np.pi)) / 25.3
     np.testing.assert_allclose(found.tacho_s, expected, atol=0.2 / FS_HZ)  # a fifth of a sample
@@ -142,21 +142,21 @@ def test_unusable_signals_name_file_and_way_out(spoil: object, message: str, tmp
     first, second = signals()
     np.savez(tmp_path / "run.npz", vertical=spoil(first), horizontal=second)  # type: ignore[operator]
     with pytest.raises(UsageError, match=message) as error:
-        read_recording(tmp_path / "run.npz", NAMES, RecordingFacts(fs_hz=FS_HZ))
+        read_recording(tmp_path / "run.npz", NAMES, RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
     assert "run.npz" in str(error.value)
 
 
 def test_rate_channels_and_pickled_arrays_are_refused(tmp_path: Path) -> None:
-    file = write(tmp_path, "npz")
-    with pytest.raises(UsageError, match=r"run.npz: sampling rate: received None.*--fs"):
-        read_recording(file, NAMES, RecordingFacts())
+    file = write(tmp_path, "mat")
+    with pytest.raises(UsageError, match=r"run.mat: sampling rate: received None.*--fs"):
+        read_recording(file, NAMES, RecordingFacts(unit="m/s2"))
     with pytest.raises(UsageError, match=r"no column axial.*--channel axial=COLUMN"):
-        read_recording(file, ("axial",), RecordingFacts(fs_hz=FS_HZ))
+        read_recording(file, ("axial",), RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
     np.save(tmp_path / "objects.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
     (tmp_path / "pickled.npy").write_bytes(pickle.dumps([1.0, 2.0]))
     for name in ("objects.npy", "pickled.npy"):
         with pytest.raises(UsageError, match="cannot be read as arrays of numbers"):
-            read_recording(tmp_path / name, NAMES, RecordingFacts(fs_hz=FS_HZ))
+            read_recording(tmp_path / name, NAMES, RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
 
 
 @pytest.mark.parametrize(
@@ -180,7 +180,7 @@ def test_a_unit_in_a_name_or_in_a_row_is_that_of_the_values(above: str, factor: 
     "other", ["time", "rpm", "speed", "ticks", "motor_speed", "angle", "index", "label", "n [rpm]"]
 )
 def test_columns_of_other_quantities_are_never_vibration(other: str, tmp_path: Path) -> None:
-    (tmp_path / "run.csv").write_text(f"lid,{other}\n" + "1.5,3\n0.5,7\n-1.0,9\n2.0,1\n")
-    assert file_channels(tmp_path / "run.csv") == ("lid",)
-    with pytest.raises(UsageError, match=r"no acceleration|allowed are columns of vibration"):
-        read_recording(tmp_path / "run.csv", ("a",), RecordingFacts(fs_hz=FS_HZ, columns={"a": other}))
+    (tmp_path / "run.csv").write_text(f"lid,{other}\n" + "1.5,0.0\n0.5,0.0001\n-1.0,0.0002\n2.0,0.0003\n")
+    assert file_channels(tmp_path / "run.csv", RecordingFacts()) == ("lid",)
+    with pytest.raises(UsageError, match=r"is a .*allowed are columns of vibration"):
+        read_recording(tmp_path / "run.csv", ("a",), RecordingFacts(fs_hz=10_000.0, unit="g", columns={"a": other}))

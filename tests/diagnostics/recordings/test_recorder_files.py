@@ -16,8 +16,9 @@ from diagnostics.cli.app import main
 from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.file_columns import file_columns
-from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.recordings.measured_recording import read_recording
 from diagnostics.recordings.recorder_files import rate_from_increment
+from diagnostics.recordings.taken import RecordingFacts
 from siggen.errors import UsageError
 from tests.faults.mutated_recordings import judged, mutated_bytes
 
@@ -198,6 +199,8 @@ def test_a_missing_library_names_its_extra(
     path.write_bytes(b"anything")
     found = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == package else found(name))
-    with pytest.raises(UsageError, match=rf"needs {package}, which is not installed; .*siggen\[recordings\]") as caught:
+    with pytest.raises(
+        UsageError, match=rf"needs {package}, which is not installed; `pip install '.\[recordings\]'"
+    ) as caught:
         file_columns(path)
     assert "\n" not in str(caught.value)
