@@ -200,8 +200,9 @@ def _mapping(path: Path, taken: TakenRecording, names: tuple[str, ...], said: Ma
 
 
 def _factor(taken: TakenRecording, column: str, facts: RecordingFacts, wanted: str) -> float:
-    unit = taken.column(column).unit
-    stated = None if unit in (UNKNOWN_UNIT, "") or unit == facts.unit else unit
+    one = taken.column(column)
+    by_user = one.unit == UNKNOWN_UNIT or one.why.endswith("--unit")
+    stated = None if by_user else one.unit or None
     return channel_factor(taken.path, column, stated, facts.unit, facts.sensitivity_mv_per_g, wanted)
 
 
