@@ -1,4 +1,7 @@
-"""What all indicators of a record of 10 s cost: from the raw record as a sum, from given averages, and a set's."""
+"""What indicators of a record of 10 s cost: from the raw record as a sum, from given averages, and a set's.
+
+And what its angle costs without a tacho.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +25,7 @@ from diagnostics.records.recording import Recording
 from diagnostics.records.usable_records import refused_parts
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, angle_grid, resample_to_angle
+from diagnostics.signal.shaft_angle import shaft_angle
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
 from diagnostics.signal.spectrum import order_lines
 from diagnostics.signal.synchronous_average import synchronous_average
@@ -33,6 +37,7 @@ TEETH = (18, 47)
 GOAL_RAW_S = 80e-3
 GOAL_AVERAGE_S = 20e-3
 GOAL_SET_S = 50.0
+GOAL_ANGLE_S, ANGLE_CHANNELS, ANGLE_LIMITS_HZ = 1.0, 4, (26.0, 34.0)
 SET_RECORDS = 1000
 WORKERS = 2
 
@@ -54,6 +59,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
         met=whole <= GOAL_RAW_S,
     )
     yield cost_row("from given averages of both shafts, CPU", average, "raw record", whole, GOAL_AVERAGE_S)
+    yield _angle_row(record, rounds=2 if quick else 10)
     yield _set_row(record, 100 if quick else SET_RECORDS)
 
 
@@ -69,6 +75,21 @@ def modulated_record() -> Recording:
     gears = {"teeth_pinion": TEETH[0], "teeth_gear": TEETH[1]}
     labels = {"record_id": 0, **gears, "speed_hz": SPEED_HZ, "torque_nm": 50.0}
     return Recording(labels, {"casing": signal.astype(np.float32)}, pulses, FS_HZ)
+
+
+def _angle_row(record: Recording, rounds: int) -> Row:
+    signal, rng = record.channels["casing"], np.random.default_rng(1)
+    channels = {str(k): signal + rng.standard_normal(signal.size) for k in range(ANGLE_CHANNELS)}
+    found = shaft_angle(channels, FS_HZ, TEETH, ANGLE_LIMITS_HZ)
+    candidate = Candidate(lambda _: shaft_angle(channels, FS_HZ, TEETH, ANGLE_LIMITS_HZ))
+    cost = medians({"angle": candidate}, rounds)["angle"]
+    return Row(
+        f"angle without a tacho, 10 s of {ANGLE_CHANNELS} channels, CPU",
+        duration_text(cost),
+        f"outcome: {found.outcome}",
+        goal=f"<= {GOAL_ANGLE_S:g} s",
+        met=cost <= GOAL_ANGLE_S and found.given,
+    )
 
 
 def _candidates(record: Recording) -> dict[str, Candidate]:

@@ -66,12 +66,13 @@ def jackknife(values: np.ndarray, statistic: Callable[[np.ndarray], float] = np.
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """One recording: name, channels (n,) [m/s²], rate and pulse times [s] of the first shaft."""
+    """One recording: name, channels (n,) [m/s²], rate, pulse times [s] of the first shaft and where they come from."""
 
     name: str
     channels: Mapping[str, np.ndarray]
     fs_hz: float
     pulses_s: np.ndarray
+    origin: str = "tacho"
 
     @property
     def speed_hz(self) -> float:
@@ -107,14 +108,15 @@ def healthy_blocks(
     _check_alike(read)
     found = []
     for recording, (path, row) in zip(read, sources, strict=True):
-        pulses = shaft_pulses(recording, teeth, speed_range_hz).times_s
+        turning = shaft_pulses(recording, teeth, speed_range_hz)
+        pulses = turning.times_s
         if pulses.size <= FEWEST_TURNS:
             raise UsageError(
                 f"{path}: {pulses.size - 1} whole turns of the first shaft; allowed: at least {FEWEST_TURNS}. Record "
                 "longer"
             )
         name = path.name if row is None else f"{path.name}:{row}"
-        found.append(Block(name, recording.channels, recording.fs_hz, pulses))
+        found.append(Block(name, recording.channels, recording.fs_hz, pulses, turning.origin))
     return HealthyBlocks(tuple(found), channels, read[0].fs_hz)
 
 

@@ -66,6 +66,8 @@ def baseline(
     shaft = names_of(train).shafts[0]
     speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
     echo(f"{len(sources)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
+    for reference, speed_hz, angle in zip(machine.references, machine.speed_hz, machine.angles, strict=True):
+        echo(f"{reference}: {speed_hz:.4f} Hz ({angle})", err=True)
     for doubt in machine.doubts:
         echo(f"doubtful: {doubt}", err=True)
     echo(rate_sentence(len(sources), false_alarms), err=True)

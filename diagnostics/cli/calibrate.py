@@ -126,6 +126,8 @@ def calibrate(
     with terminal_stage("gearboxes", draws.gearboxes) as advance:
         found = calibrated(machine, blocks, newtons, draws.gearboxes, family, seed, advance)
     write_calibration(found, out)
+    for block in (*blocks.blocks, *(judges.blocks if judges else ())):
+        echo(f"{block.name}: {block.speed_hz:.4f} Hz ({block.origin})", err=True)
     siggen.load_config(out)  # what would be refused is said now
     _tell(found)
     echo(str(out))

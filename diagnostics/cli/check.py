@@ -78,7 +78,7 @@ def check(
         echo_json({"machine": str(machine), "checks": [asdict(one) for one in found], "refused": unread})
     else:
         for one in found:
-            echo(f"{one.recording}: {one.verdict}: {one.reason}")
+            echo(f"{one.recording}: {one.verdict}: {one.reason}{one.turning}")
         for name, reason in unread.items():
             echo(f"{name}: {CANNOT_TELL}: {reason}")
     used = [one.used for one in found if one.score is not None]

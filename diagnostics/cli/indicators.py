@@ -188,7 +188,7 @@ def _of_recordings(
         shaft = names_of(one.train).shafts[0]
         speed = f"{shaft} {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
         if not as_json:
-            echo(f"{one.name}: {speed}; rms {levels}")
+            echo(f"{one.name}: {speed} ({one.pulses.origin}); rms {levels}")
         for doubt in one.doubts:
             echo(f"doubtful: {doubt}", err=True)
     folder = out or sources[0][0].resolve().with_name(f"{sources[0][0].stem}_indicators")

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from diagnostics.records.gear_train import Mesh
 
 ROWS = re.compile(r"\d+(,\d+)*")
+RPM = ("rpm", "1/min", "min-1", "u/min")
+SPEED = re.compile(r"(\d+(?:\.\d*)?|\.\d+) *(hz|rpm|1/min|min-1|u/min)?", re.IGNORECASE)
+KNOWN_WITHIN = 0.03
+"""Relative: slip of a loaded motor, or a nameplate's rounding."""
 
 Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed where the file states it.")]
 Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")]
@@ -74,7 +78,15 @@ class RecordingOptions:
         typer.Option(
             "--speed-range",
             metavar="LOW,HIGH",
-            help="Range of pinion speed [Hz] to search without a tacho; 1 s a record, in a wide range 4 to 6 s.",
+            help="Without a tacho: range of the pinion's speed [Hz] in which its angle is searched in the mesh lines.",
+        ),
+    ] = None
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed",
+            metavar="SPEED",
+            help="Without a tacho: the pinion's speed where it is known to 3 %, in Hz or as 1780rpm.",
         ),
     ] = None
     channel: Annotated[
@@ -141,7 +153,7 @@ class RecordingOptions:
             self.tacho_pulses,
             tacho_level=self.tacho_level,
             resample_hz=self.resample,
-            tacho_by_name=not self.speed_range,
+            tacho_by_name=not (self.speed_range or self.speed),
         )
 
     def speed_range_hz(self) -> tuple[float, float] | None:
@@ -150,14 +162,33 @@ class RecordingOptions:
         Raises
         ------
         UsageError
-            If it is no range.
+            If it is no range, or no speed, or both are given.
         """
+        if self.speed and self.speed_range:
+            raise UsageError("received --speed and --speed-range; allowed: one of them")
+        if self.speed:
+            return known_speed_range_hz(self.speed)
         if not self.speed_range:
             return None
         low, high = two_numbers(self.speed_range, "--speed-range", "14,26")
         if not 0.0 < low < high < inf:
             raise UsageError(f"--speed-range: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
         return low, high
+
+
+def known_speed_range_hz(said: str) -> tuple[float, float]:
+    """Return the range of a known speed: 3 % about it, as nameplates and slip leave it.
+
+    Raises
+    ------
+    UsageError
+        If it is no positive number, of Hz or with `rpm` behind.
+    """
+    match = SPEED.fullmatch(said.strip())
+    hz = float(match[1]) / (60.0 if (match[2] or "").lower() in RPM else 1.0) if match else 0.0
+    if not 0.0 < hz < inf:
+        raise UsageError(f"--speed: received {said!r}; allowed is a speed in Hz or rpm, such as 29.7 or 1780rpm")
+    return (1.0 - KNOWN_WITHIN) * hz, (1.0 + KNOWN_WITHIN) * hz
 
 
 def file_rows(said: str) -> list[tuple[Path, int | None]]:

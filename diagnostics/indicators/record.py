@@ -26,9 +26,9 @@ from diagnostics.records.record_problems import RecordProblem, clipped_channels,
 from diagnostics.records.recording import Recording
 from diagnostics.records.sample_bytes import sample_bytes
 from diagnostics.records.usable_records import refused_parts
-from diagnostics.signal.mesh_pulses import mesh_pulses
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, speed_variation_percent
+from diagnostics.signal.shaft_angle import shaft_angle
 from diagnostics.signal.spectrum import OrderLines
 from siggen.errors import UsageError
 
@@ -182,7 +182,7 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
         bad = {problem.channel for problem in problems}
         good = {name: signal for name, signal in usable.items() if name not in bad}
         try:
-            pulses = mesh_pulses(good or usable, record.fs_hz, _teeth(record), chosen.speed_range_hz).times_s
+            pulses = _mesh_pulses(good or usable, record, chosen.speed_range_hz)
         except UsageError as error:
             problems, usable = [*problems, RecordProblem(int(record.labels["record_id"]), "", str(error))], {}
     channels = {name: ChannelResult({}, conditions=channel_conditions(s)) for name, s in record.channels.items()}
@@ -195,6 +195,15 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
             channels[name] = _channel_result(meshes, name, taken, channels[name].conditions, pulses)
     conditions = _pulse_conditions(pulses)
     return RecordResult(record.labels, channels, pulses, turns, conditions, notes, problems, refused, clipped)
+
+
+def _mesh_pulses(
+    channels: Mapping[str, np.ndarray], record: Recording, speed_range_hz: tuple[float, float]
+) -> np.ndarray:
+    angle = shaft_angle(channels, record.fs_hz, _teeth(record), speed_range_hz)
+    if not angle.given:
+        raise UsageError(f"{angle.speed_hz:.4g} Hz, {angle.words}")
+    return angle.pulses_s
 
 
 def _channel_result(

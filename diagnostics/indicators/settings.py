@@ -32,7 +32,7 @@ class IndicatorSettings:
     frame_samples : int
         Frame of the spectral kurtosis.
     speed_range_hz : (float, float), optional
-        Where given, angles come from the lines of both shafts within this range of pinion speed, not from the pulses.
+        Where given, angles come from the mesh lines within this range of pinion speed, not from the pulses.
     """
 
     mesh_harmonics: int = 5

@@ -8,7 +8,7 @@ Earlier checks of a machine, one line of JSON each beside its facts: what a tren
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from math import isfinite
 from pathlib import Path
@@ -19,6 +19,7 @@ from diagnostics.machine.comparable import FEWEST_OVER_SPEED, LOAD_RATIO, SPEED_
 from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import CHECKS, Machine
 from diagnostics.machine.recording_indicators import indicator_title
+from diagnostics.prediction.record_pieces import RecordPieces
 from diagnostics.recordings.level_alike import MOST_DB
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
@@ -107,6 +108,8 @@ class Check:
         Largest deviations first.
     used : int
         References that it was compared with.
+    angle : str
+        Where its angle comes from, and how sure it is.
     """
 
     recording: str
@@ -116,6 +119,12 @@ class Check:
     score: ChangeScore | None = None
     moved: tuple[Moved, ...] = ()
     used: int = 0
+    angle: str = ""
+
+    @property
+    def turning(self) -> str:
+        """Speed and where the angle comes from, to be put behind the reason; empty where neither is known."""
+        return f"; {self.speed_hz:.4f} Hz ({self.angle})" if self.angle else ""
 
 
 def check_recording(machine: Machine, recording: MeasuredRecording, name: str, load: float | None = None) -> Check:
@@ -138,25 +147,29 @@ def check_recording(machine: Machine, recording: MeasuredRecording, name: str, l
         pieces, pulses = pieces_of(recording, machine.fs_hz, machine.train, machine.speed_range_hz, machine.duration_s)
     except UsageError as error:
         return Check(name, CANNOT_TELL, str(error), float("nan"))
+    return replace(_compared(machine, pieces, pulses.speed_hz, name, load), angle=pulses.origin)
+
+
+def _compared(machine: Machine, pieces: RecordPieces, speed_hz: float, name: str, load: float | None) -> Check:
     logs = log_values(pieces.medians(machine.names)[None])[0]
-    beside = comparable(machine, pulses.speed_hz, load)
+    beside = comparable(machine, speed_hz, load)
     if beside is None:
-        return Check(name, OTHER_CONDITIONS, _conditions(machine, pulses.speed_hz, load), pulses.speed_hz)
+        return Check(name, OTHER_CONDITIONS, _conditions(machine, speed_hz, load), speed_hz)
     healthy = log_values(machine.values[beside.used])
     if (same := _same(machine, logs)) is not None:
-        return Check(name, CANNOT_TELL, f"it is the reference {same}; give another recording", pulses.speed_hz)
+        return Check(name, CANNOT_TELL, f"it is the reference {same}; give another recording", speed_hz)
     try:
         score = change_score(healthy, logs, machine.false_alarms, beside.conditions)
     except UsageError as error:
-        return Check(name, CANNOT_TELL, str(error), pulses.speed_hz)
+        return Check(name, CANNOT_TELL, str(error), speed_hz)
     level = _level_db(machine, score.mean, logs)
     if abs(level) > MOST_DB:
-        return Check(name, CANNOT_TELL, _other_level(level), pulses.speed_hz)
+        return Check(name, CANNOT_TELL, _other_level(level), speed_hz)
     moved = _moved(machine, logs, score)
     verdict = CHANGED if score.changed else UNCHANGED
     used = int(np.count_nonzero(beside.used))
     doubt = f"; {_other_level(level)}" if score.changed and abs(level) > DOUBTFUL_DB else ""
-    return Check(name, verdict, _reason(score, moved) + doubt, pulses.speed_hz, score, moved, used)
+    return Check(name, verdict, _reason(score, moved) + doubt, speed_hz, score, moved, used)
 
 
 def load_sentence(machine: Machine, load: float | None) -> str:

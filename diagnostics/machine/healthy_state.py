@@ -70,12 +70,13 @@ def healthy_state(
     check_levels_alike(read)
     fs_hz = min(recording.fs_hz for recording in read)
     duration_s = min(LONGEST_PIECE_S, *(recording.duration_s for recording in read))
-    rows, speeds = [], []
+    rows, speeds, angles = [], [], []
     for recording in read:
         pieces, pulses = pieces_of(recording, fs_hz, train, speed_range_hz, duration_s)
         check_mesh_lines(recording, pulses, train[0])
         rows.append(pieces)
         speeds.append(pulses.speed_hz)
+        angles.append(pulses.origin)
         advance()
     names = rows[0].names
     values = np.stack([pieces.medians(names) for pieces in rows])
@@ -87,7 +88,7 @@ def healthy_state(
     doubts = odd_sentences(odd_references(levels, np.array(speeds), channels), called)
     return Machine(
         train, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, called,
-        np.array(speeds), load, loads is None, tuple(doubts),
+        np.array(speeds), load, loads is None, tuple(doubts), tuple(angles),
     )  # fmt: skip
 
 
@@ -103,7 +104,7 @@ def pieces_of(
     Raises
     ------
     UsageError
-        If it was sampled too slowly, no speed is found, or a piece holds too few turns.
+        If it was sampled too slowly, no angle is certain, or a piece holds too few turns.
     """
     if recording.fs_hz < fs_hz * (1.0 - 1e-6):
         raise UsageError(

@@ -15,7 +15,7 @@ from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
 FACTS, TABLE, CHECKS = "machine.json", "references.parquet", "checks.jsonl"
-VERSION = 3
+VERSION = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,8 @@ class Machine:
         Whether differences of speed tell the load.
     doubts : tuple of str
         What is said of references that are unlike the others.
+    angles : tuple of str
+        Where the angles of the references come from, and how sure they are.
     """
 
     train: tuple[Mesh, ...]
@@ -63,6 +65,7 @@ class Machine:
     load: np.ndarray
     load_from_slip: bool = False
     doubts: tuple[str, ...] = ()
+    angles: tuple[str, ...] = ()
 
 
 def save_machine(machine: Machine, folder: Path) -> None:
@@ -94,6 +97,7 @@ def save_machine(machine: Machine, folder: Path) -> None:
         "false_alarms": machine.false_alarms,
         "load_from_slip": machine.load_from_slip,
         "doubts": machine.doubts,
+        "angles": machine.angles,
     }
     write_file(folder / FACTS, json.dumps(content, indent=1) + "\n")
 
@@ -136,7 +140,8 @@ def load_machine(folder: Path) -> Machine:
         _column(table, "speed_hz"),
         _column(table, "load"),
         content["load_from_slip"],
-        tuple(content.get("doubts", ())),
+        tuple(content["doubts"]),
+        tuple(content["angles"]),
     )
 
 

@@ -20,6 +20,7 @@ from diagnostics.indicators.record import record_values
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page import html
+from diagnostics.page.angle_figure import ANGLE_CAPTION, angle_figure
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.prediction.prediction_page import sideband_figure
 from diagnostics.recordings.level_alike import level_note
@@ -61,7 +62,8 @@ def recording_rows(found: Sequence[RecordingIndicators]) -> list[dict[str, Any]]
 
 def _row(found: RecordingIndicators, channel: str) -> dict[str, Any]:
     values = {name: None if np.isnan(value) else value for name, value in found.channel(channel).items()}
-    return {"recording": found.name, "channel": channel, "speed_hz": found.pulses.speed_hz, **values}
+    known = {"speed_hz": found.pulses.speed_hz, **found.pulses.facts}
+    return {"recording": found.name, "channel": channel, **known, **values}
 
 
 def _overview(found: Sequence[RecordingIndicators]) -> str:
@@ -76,13 +78,16 @@ def _overview(found: Sequence[RecordingIndicators]) -> str:
         ]
         for one in found
     ]
-    head = ("Recording", "Pinion [Hz]", "Mesh [Hz]", "Turns averaged", "Speed from", "Length [s]")
+    head = ("Recording", "Pinion [Hz]", "Mesh [Hz]", "Turns averaged", "Angle from", "Length [s]")
     return html.table(head, rows, caption="What was found in each recording.", text=True)
 
 
 def _section(found: RecordingIndicators) -> list[str]:
     blocks = []
-    for channel in found.recording.channels:
+    if (angle := found.pulses.angle) is not None:
+        with styled():
+            blocks.append(html.figure_block(png_bytes(angle_figure(angle)), ANGLE_CAPTION))
+    for channel in found.recording.channels if found.pulses.outcome == "angle" else ():
         with styled():
             png = png_bytes(sideband_figure(found.recording, found.train[0], found.pulses, channel))
         blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
@@ -158,7 +163,7 @@ class RecordingIndicators:
         In m/s².
     teeth : (int, int)
     pulses : ShaftPulses
-        Of the pinion, from the tacho or from the mesh lines.
+        Of the pinion, from the tacho or from the mesh lines; none where these gave the speed only.
     values : dict of str to float
         Indicators of the whole recording, `<indicator>__<channel>`; NaN where undefined.
     revolutions : (int, int)
@@ -217,22 +222,27 @@ def recording_indicators(
     Raises
     ------
     UsageError
-        If the file cannot be read or used, or no speed is found; names the file and the way out.
+        If the file cannot be read or used, or no speed is certain; names the file and the way out.
     """
     facts = facts or RecordingFacts()
     recording = read_recording(path, None, facts)
     meshes = train or (Mesh("", teeth),)
-    pulses = shaft_pulses(recording, teeth, speed_range_hz, meshes[0].planets)
+    pulses = shaft_pulses(recording, teeth, speed_range_hz, meshes[0].planets, speed_alone=True)
     settings = IndicatorSettings()
     found = record_values(recording.channels, pulses.times_s, recording.fs_hz, teeth, settings, train=meshes)
     name = path.name if facts.row is None else f"{path.name}:{facts.row}"
     doubts = _doubts(recording, pulses, meshes[0])
+    if pulses.outcome != "angle":
+        angled = f"{pulses.origin}. Only indicators of the raw signal are given"
+        return RecordingIndicators(name, recording, teeth, pulses, found.values, (0, 0), angled, doubts, meshes)
     return RecordingIndicators(
         name, recording, teeth, pulses, found.values, found.revolutions, found.notes, doubts, meshes
     )
 
 
 def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, mesh: Mesh) -> tuple[str, ...]:
+    if pulses.outcome != "angle":
+        return tuple(text for text in (level_note(recording),) if text)
     try:
         check_mesh_lines(recording, pulses, mesh)
     except UsageError as error:

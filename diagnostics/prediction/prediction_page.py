@@ -77,8 +77,8 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
         "distance_without_reference": _nearness(found.plain_nearness),
         "pinion_speed_hz": found.pulses.speed_hz,
         "mesh_frequency_hz": found.pulses.speed_hz * found.teeth[0],
-        "speed_from": found.pulses.source,
-        "speed_certainty": found.pulses.certainty,
+        "speed_from": found.pulses.origin,
+        **found.pulses.facts,
         "teeth": list(found.teeth),
         "pieces": len(found.pieces.values),
         "revolutions_per_piece": found.pieces.revolutions,
@@ -181,7 +181,7 @@ def prediction_summary(found: Prediction) -> list[str]:
         *([f"The most probable {found.class_kind} is {joined(votes)}.{withheld}"] if votes else []),
         f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
         f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
-        f"revolutions. The pinion speed is {speed}, from the {found.pulses.origin}.",
+        f"revolutions. The pinion speed is {speed} ({found.pulses.origin}).",
     ]
 
 

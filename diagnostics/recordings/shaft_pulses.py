@@ -1,4 +1,4 @@
-"""Pulse times of the pinion of a recording: from its tacho, or from the lines of both shafts in a range of speed."""
+"""Pulse times of the pinion of a recording: from its tacho, or from the mesh lines of all channels."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.records.planetary_members import Planets
-from diagnostics.signal.mesh_pulses import mesh_pulses
 from diagnostics.signal.order_domain import geared_pulses
+from diagnostics.signal.shaft_angle import ShaftAngle, shaft_angle
 from siggen.errors import UsageError
 
 FEWEST_REVOLUTIONS = 2
@@ -17,20 +17,31 @@ FEWEST_REVOLUTIONS = 2
 
 @dataclass(frozen=True, slots=True)
 class ShaftPulses:
-    """Pulse times (k,) [s] of the pinion, and where they come from: `tacho` or the channel whose mesh lines led.
+    """Pulse times (k,) [s] of the pinion, and where they come from.
 
-    `certainty` (0 to 1) is that of the speed; 1 with a tacho. Of a planetary set pulses are those of the sun against
-    its carrier, `turns` per turn of its shaft.
+    `angle`: what the mesh lines gave; None with a tacho. Where they gave the speed only, there are no pulses. Of a
+    planetary set pulses are those of the sun against its carrier, `turns` per turn of its shaft.
     """
 
     times_s: np.ndarray
-    source: str
-    certainty: float = 1.0
     turns: float = 1.0
+    angle: ShaftAngle | None = None
+
+    @property
+    def outcome(self) -> str:
+        """What is known: `angle` or `speed only`."""
+        return "angle" if self.angle is None else self.angle.outcome
+
+    @property
+    def agreement_pitches(self) -> float | None:
+        """How far two halves of the mesh lines differ at most [pitches]; None with a tacho."""
+        return None if self.angle is None else self.angle.halves.apart
 
     @property
     def pulses_hz(self) -> float:
         """Mean rate of the pulses."""
+        if self.times_s.size < 2 and self.angle is not None:
+            return self.angle.speed_hz
         return float((self.times_s.size - 1) / (self.times_s[-1] - self.times_s[0]))
 
     @property
@@ -41,9 +52,13 @@ class ShaftPulses:
     @property
     def origin(self) -> str:
         """Where the pulses come from, in words."""
-        if self.source == "tacho":
-            return "tacho"
-        return f"mesh lines of {self.source}, certain to {min(self.certainty, 0.999):.1%}"
+        return "tacho" if self.angle is None else self.angle.words
+
+    @property
+    def facts(self) -> dict[str, str | float | None]:
+        """Outcome, agreement of the halves [pitches] and evidence [nats], for programs; None with a tacho."""
+        nats = None if self.angle is None else self.angle.nats
+        return {"angle": self.outcome, "halves_pitches": self.agreement_pitches, "evidence_nats": nats}
 
 
 def shaft_pulses(
@@ -51,6 +66,8 @@ def shaft_pulses(
     teeth: tuple[int, int],
     speed_range_hz: tuple[float, float] | None,
     planets: Planets | None = None,
+    *,
+    speed_alone: bool = False,
 ) -> ShaftPulses:
     """Return the pulses of the pinion.
 
@@ -64,27 +81,32 @@ def shaft_pulses(
         Slowest and fastest pinion speed; needed without a tacho or a column of speed, and not left.
     planets : Planets, optional
         Of a planetary set, whose tacho is on the shaft of the sun.
+    speed_alone : bool
+        Whether a speed without an angle is an answer too.
 
     Raises
     ------
     UsageError
-        Naming the file: no tacho and no range, no speed that is certain, or fewer than two revolutions of either shaft.
+        Naming the file: no tacho and no range, no angle that is certain, or fewer than two revolutions of either shaft.
     """
     if planets is not None:
         found = _against_carrier(recording, planets)
     elif recording.tacho_s is not None:
-        found = ShaftPulses(recording.tacho_s, "tacho")
+        found = ShaftPulses(recording.tacho_s)
     elif (span := speed_range_hz or recording.speed_span_hz) is None:
         raise UsageError(
-            f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, or the range the first "
-            "shaft can have run in with --speed-range LOW,HIGH"
+            f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, the speed with --speed, "
+            "or the range the first shaft can have run in with --speed-range LOW,HIGH"
         )
     else:
-        try:
-            lines = mesh_pulses(recording.channels, recording.fs_hz, teeth, span)
-        except UsageError as error:
-            raise UsageError(f"{recording.path}: {error}") from error
-        found = ShaftPulses(lines.times_s, lines.channel, lines.certainty)
+        found = _by_mesh_lines(recording, teeth, span)
+        if found.outcome != "angle":
+            if speed_alone:
+                return found
+            raise UsageError(
+                f"{recording.path}: {found.speed_hz:.4g} Hz, {found.origin}. Averages need the angle: record longer or "
+                "with more channels, or give a tacho."
+            )
     turns = found.times_s.size - 1
     if min(turns, turns * teeth[0] / teeth[1]) < FEWEST_REVOLUTIONS:
         needed = int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, teeth[1] / teeth[0])))
@@ -93,6 +115,16 @@ def shaft_pulses(
             "longer."
         )
     return found
+
+
+def _by_mesh_lines(
+    recording: MeasuredRecording, teeth: tuple[int, int], speed_range_hz: tuple[float, float]
+) -> ShaftPulses:
+    try:
+        angle = shaft_angle(recording.channels, recording.fs_hz, teeth, speed_range_hz)
+    except UsageError as error:
+        raise UsageError(f"{recording.path}: {error}") from error
+    return ShaftPulses(angle.pulses_s if angle.given else np.empty(0), angle=angle)
 
 
 def _against_carrier(recording: MeasuredRecording, planets: Planets) -> ShaftPulses:
@@ -104,4 +136,4 @@ def _against_carrier(recording: MeasuredRecording, planets: Planets) -> ShaftPul
     pulses = geared_pulses(recording.tacho_s, planets.sun_turns)
     if pulses.size < 2:
         raise UsageError(f"{recording.path}: no whole turn of the sun against the carrier. Record longer.")
-    return ShaftPulses(pulses, "tacho", turns=float(planets.sun_turns))
+    return ShaftPulses(pulses, float(planets.sun_turns))

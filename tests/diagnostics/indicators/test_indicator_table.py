@@ -116,7 +116,7 @@ def test_record_without_lines_is_a_problem_of_that_record(small: Any) -> None:
     record = next(recordings(small))
     noise = np.random.default_rng(1).standard_normal(12_800)
     found = record_result(replace(record, channels={"a": noise}), WITHOUT_TACHO)
-    assert str(found.problems[0]).startswith("record 0: no lines of these shafts stand above the noise")
+    assert str(found.problems[0]).startswith("record 0: no lines of 18/47 teeth stand above the noise")
 
 
 def test_the_arrow_table_has_labels_values_and_settings(table: IndicatorTable) -> None:

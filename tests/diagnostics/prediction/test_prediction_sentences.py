@@ -29,7 +29,7 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
         reasons=reasons,
         state="abstains" if reasons else "severe",
         pieces=SimpleNamespace(values=np.zeros((pieces, 3)), revolutions=53),
-        pulses=ShaftPulses(np.arange(4) / 36.325, "tacho"),
+        pulses=ShaftPulses(np.arange(4) / 36.325),
     )
 
 
@@ -39,7 +39,7 @@ def test_an_answer_comes_with_its_votes_its_distance_and_its_length() -> None:
         "The most probable state is severe by indicators (95\xa0%; right in 45\xa0% of its test records) and healthy "
         "by the network (60\xa0%; 50\xa0% of the windows agree).",
         "Its distance to the training records is 0.83, within the threshold of 2.00.",
-        "The models used 1\xa0piece of 53 or more pinion revolutions. The pinion speed is 36.33\xa0Hz, from the tacho.",
+        "The models used 1\xa0piece of 53 or more pinion revolutions. The pinion speed is 36.33\xa0Hz (tacho).",
     ]
 
 
