@@ -71,8 +71,8 @@ HEAD = """# Columns of a set
 
 This page is printed by `make reference` from the columns that siggen writes; the files carry the same texts as metadata
 (`unit`, `meaning`, `role`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. Of a pair the meaning
-is that of the pinion's. In brackets stand unit, type (double where a unit stands alone), role and the section of the
-YAML file that a column needs; without one every set has it. Sets with numbers from files have besides
+is that of the pinion's. In brackets stand unit, type (double where a unit stands alone) and role. Above a list stands
+the section of the YAML file that brings its columns; every set has the first. Sets with numbers from files have besides
 `path_number_CHANNEL` (which file of its path a gearbox drew, from 0), `noise_spectrum_CHANNEL_m_s2` and
 `lines_CHANNEL_m_s2` (RMS).
 
@@ -127,8 +127,9 @@ def channels(full: pa.Schema) -> list[str]:
 
 
 def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable[str]) -> Iterator[str]:
-    """Yield one line for every column, channels together."""
+    """Yield one line for every column, channels together, under the section that brings it."""
     fields, seen = list(fields), set()
+    groups: dict[str, list[str]] = {"": []}
     names = {general(field.name, named) for field in fields}
     for field in fields:
         name = general(field.name, named)
@@ -140,25 +141,28 @@ def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable
         facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
         meaning = general(facts.get("meaning", "signal of the channel" if "sensor" in facts else ""), named)
         kind = re.sub(r"<element: (\w+)[^>]*>(\[\d+\])?", r" of \1", str(field.type)).replace("fixed_size_list", "list")
-        unit, needed = facts.get("unit", ""), brought.get(field.name, "")
-        known = (unit, "" if unit and kind == "double" else kind, facts["role"], f"needs {needed}" if needed else "")
-        yield f"* {shown}: {meaning} ({'; '.join(part for part in known if part)})"
+        unit = facts.get("unit", "")
+        known = (unit, "" if unit and kind == "double" else kind, facts["role"])
+        line = f"* {shown}: {meaning} ({'; '.join(part for part in known if part)})"
+        groups.setdefault(brought.get(field.name, ""), []).append(line)
+    for needed, lines in groups.items():
+        yield from (["", f"With {needed}:", ""] if needed else [])
+        yield from lines
 
 
 def internals() -> Iterator[str]:
-    """Yield one line for every internal quantity of a gearbox with casing, tooth pairs and oil friction."""
-    seen = set()
+    """Yield the internal quantities of a gearbox with casing, tooth pairs and oil friction, a line for each meaning."""
+    names: dict[str, list[str]] = {}
     for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml")):
         column = quantity_column(name, NO_NAMES)
         shown = re.sub(r"pair_\d+", "pair_k", name)
-        if shown in seen:
-            continue
-        seen.add(shown)
         spelled = column.meaning.startswith(name.replace("_", " "))
         note = column.meaning.removeprefix(name.replace("_", " ")) if spelled else ""
         meaning = next((text for pattern, text in NAMES.items() if re.fullmatch(pattern, shown)), "") if spelled else ""
         unit = f" ({column.unit})" if column.unit else ""
-        yield f"* `{shown}`: {meaning + note if spelled else column.meaning}{unit}"
+        same = names.setdefault(f"{meaning + note if spelled else column.meaning}{unit}", [])
+        same += [f"`{shown}`"] if f"`{shown}`" not in same else []
+    yield from (f"* {', '.join(same)}: {text}" for text, same in names.items())
 
 
 def page() -> str:

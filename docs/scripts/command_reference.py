@@ -21,7 +21,8 @@ OPTION = re.compile(r"^\* `([^`]*)`: (.*)\n", re.MULTILINE)
 NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
 HEAD = """# Commands
 
-This page is printed by `make reference` from the help of the programs; `siggen COMMAND -h` shows it in a terminal.
+This page is printed by `make reference` from the help of the programs. `siggen COMMAND -h` shows it in a terminal, with
+examples.
 
 | exit code | meaning |
 | --- | --- |
@@ -49,6 +50,10 @@ def helped(program: str, app: str) -> str:
     text = re.sub(r"\n{3,}", "\n\n", text.replace(" range>", ">"))
     text = re.sub(r"\*\*Arguments\*\*:\n\n((?:\* .*\n)+)\n(?:\*\*Options\*\*:\n\n)?", r"\1", text)
     text = text.replace("**Options**:\n\n", "")
+    text = re.sub(r"^(Example|Begin with): .*\n\n?", "", text, flags=re.MULTILINE)  # the guides run them
+    text = re.sub(r" <(int|float|str|path|list\[\w+\])>`", "`", text)  # what a value is, its sentence says
+    text = re.sub(r"\[default: (\S+?)(; [^\]]*)?\]", r"[\1\2]", text)
+    text = text.replace("&lt;", "<").replace("&gt;", ">").replace("&#x27;", "'")
     return re.sub(r"^#", "##", text, flags=re.MULTILINE).strip()
 
 
@@ -75,7 +80,7 @@ def with_references(text: str, options: Mapping[str, str]) -> str:
         lines = [(found[0], found[1], found[2]) for found in OPTION.finditer(match[0])]
         own = [line for line, option, meaning in lines if options.get(option) != meaning]
         names = [f"`{name(option)}`" for _, option, meaning in lines if options.get(option) == meaning]
-        return "".join(own) + (f"* as [below](#options-of-several-commands): {', '.join(names)}\n" if names else "")
+        return "".join(own) + (f"* [Shared](#options-of-several-commands): {', '.join(names)}\n" if names else "")
 
     return re.sub(r"(?:^\* `[^`]*`: .*\n)+", listed, text, flags=re.MULTILINE)
 

@@ -55,8 +55,8 @@ def digits(value: float) -> str:
 def limits(schema: Mapping[str, Any]) -> str:
     """Return the range of a number in signs, or nothing."""
     signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
-    parts = [f"{sign} {digits(schema[key])}" for key, sign in signs.items() if key in schema]
-    return ", ".join(part for part in parts if "9223372036854775808" not in part)
+    parts = [f"{sign}{digits(schema[key])}" for key, sign in signs.items() if key in schema]
+    return " ".join(part for part in parts if "9223372036854775808" not in part)
 
 
 def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
@@ -77,7 +77,7 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
         return f"{text} or a list of them" if any(items in alternatives for items in listed) else text
     if value.get("type") == "array":
         return listing(schema, value)
-    words = {"integer": "whole number", "number": "number", "string": "text", "null": "`null`", "boolean": "yes or no"}
+    words = {"integer": "integer", "number": "number", "string": "text", "null": "`null`", "boolean": "yes or no"}
     words["object"] = "mapping of keys"
     return f"{words[value['type']]} {limits(value)}".strip()
 
@@ -97,7 +97,7 @@ def several(schema: Schema, alternatives: list[Mapping[str, Any]]) -> str:
         found = [f"section with {', '.join(f'`{key}`' for key in keys)}" for keys in needed] + found[len(needed) :]
     kinds = [each.removeprefix(SECTION_KIND).rstrip(")") for each in found if each.startswith(SECTION_KIND)]
     if len(kinds) > 1:
-        found = [f"section of kind {', '.join(kinds)}", *(each for each in found if not each.startswith(SECTION_KIND))]
+        found = [f"kind {', '.join(kinds)}", *(each for each in found if not each.startswith(SECTION_KIND))]
     return " or ".join(dict.fromkeys(found))
 
 
@@ -105,8 +105,8 @@ def listing(schema: Schema, value: Mapping[str, Any]) -> str:
     """Return what a list may hold."""
     if "prefixItems" in value:
         return f"list of {len(value['prefixItems'])} numbers"
-    least = f" (at least {value['minItems']})" if value.get("minItems") else ""
-    return f"list{least} of: {allowed(schema, value['items'])}"
+    least = f" ≥{value['minItems']}" if value.get("minItems") else ""
+    return f"list{least} of {allowed(schema, value['items'])}"
 
 
 def default(key: Key) -> str:
