@@ -17,6 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = {"siggen": "siggen/cli/app.py", "siggen-diagnostics": "diagnostics/cli/app.py"}
 OFTEN = 2
 """An option that so many commands describe in the same words stands once, in a table of its own."""
+ALIKE = ("--set",)
+"""Options whose words differ between commands by their example alone."""
 OPTION = re.compile(r"^\* `([^`]*)`: (.*)\n", re.MULTILINE)
 NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
 HEAD = """# Commands
@@ -78,8 +80,9 @@ def with_references(text: str, options: Mapping[str, str]) -> str:
 
     def listed(match: re.Match[str]) -> str:
         lines = [(found[0], found[1], found[2]) for found in OPTION.finditer(match[0])]
-        own = [line for line, option, meaning in lines if options.get(option) != meaning]
-        names = [f"`{name(option)}`" for _, option, meaning in lines if options.get(option) == meaning]
+        is_shared = [options.get(option) == meaning or name(option) in ALIKE for _, option, meaning in lines]
+        own = [line for (line, _, _), known in zip(lines, is_shared, strict=True) if not known]
+        names = [f"`{name(option)}`" for (_, option, _), known in zip(lines, is_shared, strict=True) if known]
         return "".join(own) + (f"* [Shared](#options-of-several-commands): {', '.join(names)}\n" if names else "")
 
     return re.sub(r"(?:^\* `[^`]*`: .*\n)+", listed, text, flags=re.MULTILINE)

@@ -28,14 +28,14 @@ HEAD = """# Keys of the YAML file
 This page is printed by `make reference` from `siggen schema` and the files in `configs/`. Begin with
 [the twenty keys that matter](twenty_keys.md).
 
-* **Number** may be a constant, or a distribution that siggen draws once per gearbox ([below](#distributions)).
-* **extends** names a preset or another file. Mappings are merged key by key; numbers, lists, null, and distributions are
-  replaced. The set's own `config.yaml` holds the result.
+* **Number**, or a range alone, may be a constant, or a distribution that siggen draws once per gearbox
+  ([below](#distributions)).
+* A key of `pinion` stands for that of `gear` too, where the gear has no line of its own.
+* **extends** names a preset or another file. Mappings are merged key by key, all else is replaced. The set's own
+  `config.yaml` holds the result.
 * The default stands last, in brackets. A key without brackets is required wherever its section stands.
 * **expert**: no shipped configuration sets the key.
-* A line is one thing to learn. Keys of one meaning share it: in several places, along x and y, of pinion and gear, with
-  the unit of each sensor. What differs between them is divided by a slash.
-* Sections are not counted, and one that holds nothing but its keys has no line.
+* Keys of one meaning share a line; what differs between them is divided by a slash. Sections are not counted.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
   `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
@@ -54,9 +54,13 @@ def digits(value: float) -> str:
 
 def limits(schema: Mapping[str, Any]) -> str:
     """Return the range of a number in signs, or nothing."""
-    signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
-    parts = [f"{sign}{digits(schema[key])}" for key, sign in signs.items() if key in schema]
-    return " ".join(part for part in parts if "9223372036854775808" not in part)
+    low, high = (
+        [(sign, digits(schema[key])) for key, sign in signs.items() if key in schema]
+        for signs in ({"exclusiveMinimum": "<", "minimum": "≤"}, {"exclusiveMaximum": "<", "maximum": "≤"})
+    )
+    if high and "9223372036854775808" not in high[0][1]:
+        return f"{low[0][1]}{low[0][0]}x{high[0][0]}{high[0][1]}" if low else "".join(high[0])
+    return f"{low[0][0].replace('<', '>').replace('≤', '≥')}{low[0][1]}" if low else ""
 
 
 def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
@@ -97,7 +101,7 @@ def several(schema: Schema, alternatives: list[Mapping[str, Any]]) -> str:
         found = [f"section with {', '.join(f'`{key}`' for key in keys)}" for keys in needed] + found[len(needed) :]
     kinds = [each.removeprefix(SECTION_KIND).rstrip(")") for each in found if each.startswith(SECTION_KIND)]
     if len(kinds) > 1:
-        found = [f"kind {', '.join(kinds)}", *(each for each in found if not each.startswith(SECTION_KIND))]
+        found = [f"section of kind {', '.join(kinds)}", *(each for each in found if not each.startswith(SECTION_KIND))]
     return " or ".join(dict.fromkeys(found))
 
 
@@ -284,11 +288,14 @@ def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str 
         return None
     # What a section cannot do without is never for experts, as in `siggen schema`.
     mark = "" if used or "" in entry.defaults else " (expert)"
-    names = ", ".join(f"`{name}`" for name in entry.names)
+    alike = {name.replace("pinion", "gear") for name in entry.names if "pinion" in name}
+    names = ", ".join(f"`{name}`" for name in entry.names if name not in alike)
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
     if (of := TAKEN_OVER.get(f"{first.path}[]")) is not None:
         values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
+    if re.fullmatch(r"Number \S+", values):
+        values = values.removeprefix("Number ")
     ending = f" ({defaults})" if defaults else ""
     return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
 

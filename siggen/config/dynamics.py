@@ -71,8 +71,10 @@ class Rotor(PlainRotor):
     bearing_stiffness_z_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1e8, description=BEARINGS)
     bearing: BallGeometry | None = Field(
         default=None,
-        description="null: the stiffnesses above, at any load (damage is in one of the defaults); given: each of two "
-        "such ball bearings, whose stiffness follows load and clearance and takes their place",
+        description=(
+            "null: the stiffnesses above (damage is in one of the defaults); given: each of two such ball bearings, "
+            "whose stiffness follows load and clearance"
+        ),
     )
 
 

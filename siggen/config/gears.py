@@ -69,8 +69,10 @@ class Gears(Pair):
 
     pairs: Annotated[Pairs, PAIRS] = Field(
         default=(),
-        description="pairs of the set, each gearbox has one; all other numbers of the file are those of the pair above "
-        "and are carried over to each; null: no other pairs",
+        description=(
+            "pairs of the set, one for each gearbox; other numbers are those of the pair above, carried over; null: "
+            "no other pairs"
+        ),
     )
 
     def teeth_of(self, which: str) -> tuple[int, ...]:

@@ -17,7 +17,7 @@ CLASS = (
     "drawn like the pinion's, for itself"
 )
 CROWNING = (
-    "lead crowning: a parabola across the face that takes so much at both ends and nothing in the middle; of the "
+    "lead crowning: a parabola that takes so much at both ends of the face; of the "
     "driven gear, null: drawn like the pinion's, for itself"
 )
 
@@ -43,13 +43,13 @@ class Manufacture(Section):
     )
     helix: Literal["off", "iso_1328"] = Field(
         default="off",
-        description="iso_1328: helix slope and form of each gear, alike on its teeth, within tolerance_share of its "
-        "class; the slope anywhere up to its limit, either way, the form at its limit",
+        description="iso_1328: helix slope and form of each gear within tolerance_share of its class",
     )
     lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",))] = Field(
         default=0.0,
-        description="by how much the flanks are apart at one end of the face, either end; iso_1328: what the helix "
-        "slopes of both gears make together, each drawn within tolerance_share of its class",
+        description=(
+            "by how much the flanks are apart at one end of the face, either end; iso_1328: what both helix slopes make"
+        ),
     )
     flank_waves: Literal["off", "on"] = Field(
         default="off",

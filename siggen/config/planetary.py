@@ -18,8 +18,8 @@ NAMES = {role: name for name, role in ROLES.items()}
 POSITIONS = AllowedText("a list of 3 to 5 angles in degrees, 0 first, ascending, below 360")
 
 SUPPORTS = (
-    "bearings of the sun's shaft (soft: it floats); pin and bearing of each planet; what holds the ring round its rim, "
-    "and from turning; both bearings of the carrier"
+    "bearings of the sun's shaft (soft: it floats), pin and bearing of each planet, hold of the ring, bearings of the "
+    "carrier"
 )
 
 

@@ -21,8 +21,8 @@ STAGE_NAME = AllowedText("lower-case letters, digits and _, beginning with a let
 IDLER = "idler"
 Span: TypeAlias = Annotated[Number | Literal["idler"] | None, Within(above=0, most=2000, words=(IDLER, None))]
 SPAN = (
-    "distance of the bearings of the shaft with two gears, which is as thick as the thinner bore of both; idler: one "
-    "gear in two meshes, with the same numbers in both; null: twice both face widths (assumed)"
+    "distance of the bearings of the shaft with two gears; idler: one gear in two meshes; null: twice both face "
+    "widths (assumed)"
 )
 DIRECTION = (
     "of the line from the driving to the driven gear against that of the first mesh, in the sense in which the first "

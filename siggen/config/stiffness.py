@@ -14,8 +14,10 @@ class Stiffness(Section):
 
     beam: Literal["base_circle", "root_circle", "rack_trochoid", "calibrated"] = Field(
         default="calibrated",
-        description="where the tooth's cantilever begins (base_circle is the choice of paper A), or calibrated: "
-        "rack_trochoid and its gear body, scaled to finite elements",
+        description=(
+            "where the tooth's cantilever begins, or calibrated: rack_trochoid and its gear body, scaled to finite "
+            "elements"
+        ),
     )
     coupling: Literal["none", "body", "auto"] = Field(
         default="auto",

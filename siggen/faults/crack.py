@@ -58,8 +58,10 @@ class RootCracks(Fault):
         default=45.0, description="between the crack and the tooth's centre line; it runs straight into the body"
     )
     face_share: Annotated[Number | None, Within(above=0, most=LONGEST_RUN, words=(None,))] = Field(
-        default=None, description="where the depth, which falls from one end of the face, comes to 0, over the face "
-        "width; above 1: it still has depth at the other end; null: the same depth everywhere",
+        default=None, description=(
+            "where the depth, which falls from one end, comes to 0, over the face width; null: the same depth "
+            "everywhere"
+        ),
     )  # fmt: skip
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:

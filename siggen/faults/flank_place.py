@@ -35,8 +35,8 @@ AnyGear: TypeAlias = Annotated[
 """`either`: drawn per gearbox, the same for all of its states; before a dot the name of a further stage."""
 
 DAMAGED_GEAR = (
-    "damaged gear: pinion, gear, or either, drawn per gearbox, one gear in all states; of a further stage with its "
-    "name, such as slow.pinion; of a planetary set sun, ring, or planet, which is the first one"
+    "damaged gear: pinion, gear, or either, drawn per gearbox; of a further stage slow.pinion; of a planetary set "
+    "sun, ring, or planet, the first one"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
@@ -58,8 +58,8 @@ READING = (
     "along the radius, along the flank"
 )
 MIDDLE_HEIGHT = (
-    "height of the middle above the base circle, or pitch; irregular spalls also below_pitch: half way along the flank "
-    "from the lowest point of single contact to the pitch line, where the full load meets negative sliding"
+    "height of the middle above the base circle, or pitch; irregular spalls also below_pitch: half way from the "
+    "lowest point of single contact to the pitch line"
 )
 FACE_CENTRE = "middle across the face; null: of the face"
 PROFILE_LENGTH = "length along the profile; of irregular spalls the mean"

@@ -80,10 +80,7 @@ Teeth = Annotated[TeethValue, TeethParser()]
 
 Stages: TypeAlias = Annotated[Number | tuple[Number, ...], Within(above=0, most=1, many=True)]
 
-STAGES = (
-    "lengths and depth of a tooth's spall over those given here; a number or distribution, drawn for each tooth, or a "
-    "list with one for each tooth, in the order of their indices from the first on"
-)
+STAGES = "lengths and depth of a tooth's spall over those given here, drawn for each tooth, or a list with one for each"
 
 
 def stage_of(stages: Number | tuple[Number, ...], index: int) -> Number:

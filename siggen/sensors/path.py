@@ -54,8 +54,10 @@ class MeasuredPath(Section):
     kind: Annotated[Literal["measured"], KIND] = Field(default="measured", description="frequency response from a file")
     file: OneOrMore | None = Field(
         default=None,
-        description="CSV, Parquet or npz; its path counts from the folder of the configuration; of a list every "
-        "gearbox draws one: sensors with as many files the same number, since what one number says belongs together",
+        description=(
+            "CSV, Parquet or npz, from the folder of the configuration; of a list every gearbox draws one, sensors "
+            "with as many files the same number"
+        ),
     )
     sha256: str | None = Field(
         default=None,
