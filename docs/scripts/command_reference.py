@@ -23,8 +23,7 @@ OPTION = re.compile(r"^\* `([^`]*)`: (.*)\n", re.MULTILINE)
 NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
 HEAD = """# Commands
 
-This page is printed by `make reference` from the help of the programs. `siggen COMMAND -h` shows it in a terminal, with
-examples.
+This page is printed by `make reference` from the help of the programs. `siggen COMMAND -h` says more, with examples.
 
 | exit code | meaning |
 | --- | --- |
@@ -53,6 +52,7 @@ def helped(program: str, app: str) -> str:
     text = re.sub(r"\*\*Arguments\*\*:\n\n((?:\* .*\n)+)\n(?:\*\*Options\*\*:\n\n)?", r"\1", text)
     text = text.replace("**Options**:\n\n", "")
     text = re.sub(r"^(Example|Begin with): .*\n\n?", "", text, flags=re.MULTILINE)  # the guides run them
+    text = re.sub(r"^(#+ .*\n\n[^\n]+\n)\n(?:(?![#*]).*\n)*", r"\1\n", text, flags=re.MULTILINE)  # a sentence for each
     text = re.sub(r" <(int|float|str|path|list\[\w+\])>`", "`", text)  # what a value is, its sentence says
     text = re.sub(r"\[default: (\S+?)(; [^\]]*)?\]", r"[\1\2]", text)
     text = text.replace("&lt;", "<").replace("&gt;", ">").replace("&#x27;", "'")
