@@ -17,8 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = {"siggen": "siggen/cli/app.py", "siggen-diagnostics": "diagnostics/cli/app.py"}
 OFTEN = 2
 """An option that so many commands describe in the same words stands once, in a table of its own."""
-ALIKE = ("--set",)
-"""Options whose words differ between commands by their example alone."""
+ALIKE = ("--set", "CONFIG")
+"""What commands describe in words of their own that say the same."""
 OPTION = re.compile(r"^\* `([^`]*)`: (.*)\n", re.MULTILINE)
 NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
 HEAD = """# Commands
