@@ -1,15 +1,22 @@
-"""The one way in which a file is written: beside its name, flushed to the disk, renamed."""
+"""The one way in which a file is written: beside its name, flushed to the disk, renamed.
+
+A killed process cannot delete its draft. So a draft's name tells its process, and the next write of the same file
+deletes what a process left that is gone.
+"""
 
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
+import re
 import secrets
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from siggen.errors import UsageError
+from siggen.live_process import is_gone, this_process
 
 LEFTOVER_SUFFIX = ".siggen-part"
 """Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
@@ -38,6 +45,7 @@ def write_file(path: Path, content: str | bytes | Callable[[Path], object]) -> N
         if target.exists() and not target.is_file():
             raise UsageError(f"{path} is no regular file; name another one")
         target.parent.mkdir(parents=True, exist_ok=True)
+        _delete_leftovers(target)
         with drafted(target) as draft:
             if callable(content):
                 content(draft)
@@ -61,7 +69,8 @@ def drafted(target: Path) -> Iterator[Path]:
 
     Errors of the file system stay what they are: of a set, whoever writes it says how to go on.
     """
-    draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}{LEFTOVER_SUFFIX}")
+    machine, pid = _writer()
+    draft = target.with_name(f".{target.name}.{machine}-{pid}-{secrets.token_hex(4)}{LEFTOVER_SUFFIX}")
     try:
         yield draft
         _flush(draft)
@@ -69,6 +78,21 @@ def drafted(target: Path) -> Iterator[Path]:
         _flush(target.parent)
     finally:
         draft.unlink(missing_ok=True)
+
+
+def _writer() -> tuple[str, int]:
+    """Return a short form of this machine since its start, and the number of this process."""
+    here = this_process()
+    return hashlib.sha256(f"{here['host']} {here['boot']}".encode()).hexdigest()[:8], here["pid"]
+
+
+def _delete_leftovers(target: Path) -> None:
+    """Delete drafts of a file whose processes are gone; those of other machines stay."""
+    machine, _ = _writer()
+    draft = re.compile(rf"\.{re.escape(target.name)}\.{machine}-(\d+)-[0-9a-f]{{8}}{re.escape(LEFTOVER_SUFFIX)}")
+    for path in target.parent.iterdir():
+        if (match := draft.fullmatch(path.name)) and is_gone({**this_process(), "pid": match[1]}):
+            path.unlink(missing_ok=True)
 
 
 def _flush(path: Path) -> None:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import resource
+import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -63,3 +67,41 @@ def test_a_link_is_followed_and_no_folder_or_device_replaced(tmp_path: Path) -> 
     for path in (tmp_path, Path("/dev/null")):
         with pytest.raises(UsageError, match="is no regular file"):
             write_file(path, "text")
+
+
+KILLED = """
+import os, signal, sys, time
+from pathlib import Path
+from siggen.file_writing import write_file
+def half(draft):
+    draft.write_text("half")
+    print(os.getpid(), flush=True)
+    time.sleep(60)
+write_file(Path(sys.argv[1]), half)
+"""
+
+
+def test_what_a_killed_process_left_goes_with_the_next_write_and_a_living_ones_stays(tmp_path: Path) -> None:
+    path = tmp_path / "page.html"
+    dead, alive = (
+        subprocess.Popen([sys.executable, "-P", "-c", KILLED, path], stdout=subprocess.PIPE, text=True)
+        for _ in range(2)
+    )
+    try:
+        for one in (dead, alive):
+            assert one.stdout is not None
+            one.stdout.readline()
+        other = tmp_path / ".page.html.0123abcd-1-0123abcd.siggen-part"
+        other.write_text("of another machine")
+        os.kill(dead.pid, signal.SIGKILL)
+        dead.communicate()
+        assert len(list(tmp_path.iterdir())) == 3
+        write_file(path, "whole")
+        left = {file.name for file in tmp_path.iterdir()} - {path.name, other.name}
+        assert len(left) == 1
+        assert f"-{alive.pid}-" in left.pop()
+    finally:
+        alive.kill()
+        alive.communicate()
+    write_file(path, "again")
+    assert {file.name for file in tmp_path.iterdir()} == {path.name, other.name}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path, PurePath
 from typing import Any
 
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
@@ -15,6 +16,7 @@ from siggen.dataset.shard_index import write_index
 from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError, VerificationError
+from siggen.keys.problems import nearest
 
 MANIFEST = "manifest.json"
 CONFIG = "config.yaml"
@@ -121,10 +123,23 @@ def read_manifest(storage: Storage) -> Inventory:
         ) from error
 
 
+def _nearest_folder(path: PurePath) -> str:
+    """Return which folder may be meant: the one next in name to the first part of a path that is not there."""
+    try:
+        if not isinstance(path, Path) or path.is_dir():
+            return ""
+        absent = path
+        while not absent.parent.is_dir():
+            absent = absent.parent
+        return nearest(absent.name, [one.name for one in absent.parent.iterdir() if one.is_dir()])
+    except OSError:
+        return ""
+
+
 def _why_no_manifest(storage: Storage) -> str:
     where = storage.location
     if not storage.names():
-        return f"{where}: there is no data set here (no such folder, or an empty one)"
+        return f"{where}: there is no data set here (no such folder, or an empty one){_nearest_folder(storage.path)}"
     if not storage.exists(CONFIG):
         return f"{where}: not a siggen data set (it has neither {MANIFEST} nor {CONFIG})"
     return (

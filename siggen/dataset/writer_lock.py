@@ -11,18 +11,16 @@ so a refusal counts only where the lock is another writer's, by its token.
 from __future__ import annotations
 
 import json
-import os
-import platform
 import secrets
 import threading
 from collections.abc import Mapping
 from datetime import datetime
 from email.utils import parsedate_to_datetime
-from pathlib import Path
 from typing import Any
 
 from siggen.dataset.s3_client import error_code, in_words
 from siggen.errors import DatasetError
+from siggen.live_process import is_gone, this_process
 
 RENEW_S = 20.0
 STALE_S = 120.0
@@ -45,7 +43,7 @@ class WriterLock:
 
     def __init__(self, client: Any, place: Mapping[str, str], location: str) -> None:
         self._client, self._place, self._location = client, dict(place), location
-        self._facts = {**_this_process(), "token": secrets.token_hex(8)}
+        self._facts = {**this_process(), "token": secrets.token_hex(8)}
         self._tag = ""
         self._released = threading.Event()
         self._lost = False
@@ -119,7 +117,7 @@ class WriterLock:
         holder = _facts(found["Body"].read())
         now = parsedate_to_datetime(found["ResponseMetadata"]["HTTPHeaders"]["date"])
         silent_s = (now - _aware(found["LastModified"])).total_seconds()
-        if silent_s < STALE_S and not _is_dead(holder):
+        if silent_s < STALE_S and not is_gone(holder):
             self._refuse(holder)
         return self._put(IfMatch=found["ETag"]) or self._refuse(holder)
 
@@ -157,20 +155,6 @@ def _facts(content: bytes) -> dict[str, Any]:
         return dict(json.loads(content))
     except (ValueError, TypeError):
         return {}
-
-
-def _this_process() -> dict[str, Any]:
-    boot = Path("/proc/sys/kernel/random/boot_id")
-    start = boot.read_text(encoding="ascii").strip() if boot.is_file() else ""
-    return {"host": platform.node(), "boot": start, "pid": os.getpid()}
-
-
-def _is_dead(holder: dict[str, Any]) -> bool:
-    """Tell whether a lock's process is known to be gone: it ran on this machine, since its last start, and does not."""
-    here = _this_process()
-    if not here["boot"] or any(holder.get(name) != here[name] for name in ("host", "boot")):
-        return False
-    return not Path(f"/proc/{holder.get('pid')}").exists()
 
 
 def _aware(time: datetime) -> datetime:

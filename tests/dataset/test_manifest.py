@@ -102,3 +102,13 @@ def test_another_schema_version_is_refused(tmp_path: Path) -> None:
     (tmp_path / "manifest.json").write_bytes(sealed(content))
     with pytest.raises(DatasetError, match="schema version 99"):
         read_manifest(LocalFolder(tmp_path))
+
+
+def test_a_mistyped_folder_is_answered_with_the_nearest_one(tmp_path: Path) -> None:
+    (tmp_path / "runs" / "quickstart").mkdir(parents=True)
+    for mistyped, meant in (("runs/quickstrat", "quickstart"), ("rums/quickstart", "runs")):
+        with pytest.raises(DatasetError, match=rf"no such folder, or an empty one\); did you mean '{meant}'\?$"):
+            siggen.open(tmp_path / mistyped)
+    for other in ("runs/quickstart", "runs/what"):
+        with pytest.raises(DatasetError, match=r"or an empty one\)$"):
+            siggen.open(tmp_path / other)

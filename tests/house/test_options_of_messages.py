@@ -7,18 +7,14 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import pytest
-import typer
 
-import diagnostics.cli.app
-import siggen.cli.app
 from diagnostics.cli.check import _in_words_of_check
+from tests.every_command import COMMANDS, LEAVES
 from tests.house.reachable import Code, executed
 from tests.house.source_tree import modules
 
-APPS = {"siggen": siggen.cli.app.app, "siggen-diagnostics": diagnostics.cli.app.app}
 OPTION = re.compile(r"(?<![\w-])(?<!var\()--[a-z][a-z-]*[a-z](?![\w-]*:\S)")
 """Not the colours of a style sheet, `--ink:#123456` and `var(--ink)`."""
 REFUSED = re.compile(r"--[a-z-]+(?=: | \{|$)")
@@ -27,18 +23,10 @@ READ_AS = {"siggen-diagnostics check": "siggen-diagnostics baseline"}
 """`check` reads files as the machine was told by `baseline`, and its messages say so."""
 
 
-def commands(name: str, command: Any) -> Iterator[tuple[str, Any]]:
-    yield name, command
-    for word, below in getattr(command, "commands", {}).items():
-        yield from commands(f"{name} {word}", below)
-
-
-COMMANDS = dict(pair for program, app in APPS.items() for pair in commands(program, typer.main.get_command(app)))
 OPTIONS = {
     name: {"--help", "--version", *(word for one in command.params for word in (*one.opts, *one.secondary_opts))}
     for name, command in COMMANDS.items()
 }
-LEAVES = [name for name, command in COMMANDS.items() if not hasattr(command, "commands")]
 NAMES = sorted({*LEAVES, *(f"`{name.partition(' ')[2]}" for name in LEAVES)}, key=len, reverse=True)
 NAMED = re.compile(rf"({'|'.join(map(re.escape, NAMES))})(?![\w-])")
 

@@ -13,10 +13,13 @@ import pytest
 
 import siggen
 from siggen import file_writing
-from siggen.errors import UsageError
+from siggen.dataset.manifest import MANIFEST
+from siggen.dataset.storage_at import storage_at
+from siggen.errors import DatasetError, UsageError
 from siggen.publication import publish as publication_module
 from siggen.publication.publish import publish
 from tests.dataset.fake_set import file_bytes, write_fake_set
+from tests.dataset.s3_server import BUCKET, object_bytes, s3_server
 from tests.publication.conftest import facts_file
 
 MOMENTS = 10
@@ -93,3 +96,26 @@ def test_a_folder_that_holds_something_is_never_touched(place: Path, tmp_path: P
     (tmp_path / "empty").mkdir()
     publish(place / "set", tmp_path / "empty", place / "publication.yaml")
     assert siggen.open(tmp_path / "empty").labels().num_rows
+
+
+def test_in_a_store_the_manifest_comes_last_and_a_stopped_publish_goes_on(
+    place: Path, whole: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    upload, facts = f"s3://{BUCKET}/some/upload", place / "publication.yaml"
+    with s3_server(monkeypatch):
+        with (
+            patch.object(publication_module, "sealed", side_effect=KeyboardInterrupt),
+            pytest.raises(KeyboardInterrupt),
+        ):
+            publish(place / "set", upload, facts)
+        assert set(object_bytes(upload)) == set(whole) - {MANIFEST}
+        with pytest.raises(DatasetError, match="is not finished"):
+            siggen.open(upload)
+        publish(place / "set", upload, facts)
+        assert object_bytes(upload) == whole
+        assert siggen.open(upload).labels().equals(siggen.open(place / "set").labels())
+        storage_at(upload).put("mine.txt", b"mine")
+        storage_at(upload).delete(MANIFEST)
+        with pytest.raises(UsageError, match="is not empty"):
+            publish(place / "set", upload, facts)
+        assert object_bytes(upload)["mine.txt"] == b"mine"

@@ -146,6 +146,12 @@ def test_unusable_signals_name_file_and_way_out(spoil: object, message: str, tmp
     assert "run.npz" in str(error.value)
 
 
+def test_a_signal_of_gaps_is_told_before_the_rate_that_is_missing_too(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("vertical\n" + "1.5\nnan\n" * 100)
+    with pytest.raises(UsageError, match=r"of \d+ samples are not finite"):
+        read_recording(tmp_path / "run.csv", ("vertical",), RecordingFacts())
+
+
 def test_rate_channels_and_pickled_arrays_are_refused(tmp_path: Path) -> None:
     file = write(tmp_path, "mat")
     with pytest.raises(UsageError, match=r"run.mat: sampling rate: received None.*--fs"):
