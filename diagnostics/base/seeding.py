@@ -17,7 +17,6 @@ class Purpose(IntEnum):
     LOADER = 5
     AUGMENTATION = 6
     FOLDS = 7
-    LEARNING_CURVE = 8
     CALIBRATION = 9
     AVERAGES = 10
     PATHS = 11

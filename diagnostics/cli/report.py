@@ -52,7 +52,7 @@ def report(
     gearboxes that run to failure it says how well baselines tell their remaining life. Beside it lie metrics.json,
     evaluation.csv with all indicators, figures and models.
 
-    Example: siggen-diagnostics report runs/quickstart --studies
+    Example: siggen-diagnostics report runs/quickstart
 
     Example: siggen-diagnostics report runs/quickstart --models-only --out models --test runs/other_gears
     """
@@ -78,9 +78,9 @@ def report(
     own = load_indicators(indicator)
     classes = check_kind(training.classes, "--classes")
     dataset, second = open_sets(directory, training.test, training.channel or (), classes)
-    options = NetworkOptions(training.cnn, training.device, training.augment, training.studies, classes)
+    options = NetworkOptions(training.cnn, training.device, training.augment, classes)
     if is_lives(dataset):
-        of_states = {"--models-only": models_only, "--test": second, "--studies": training.studies}
+        of_states = {"--models-only": models_only, "--test": second}
         of_pages = {"--predictions": pages.predictions, "--state": pages.state}
         _refuse({**of_states, "--indicator": own, **of_pages}, "for sets of states; this one has lives")
         folder = out or beside(dataset.path, "_report")
@@ -139,10 +139,7 @@ def _models(
 ) -> Path:
     """Train, and write the models and what they reach; return their folder."""
     from diagnostics.base.progress import terminal_stage
-    from diagnostics.indicators.classifier_table import feature_matrix
     from diagnostics.prediction.saved_models import class_text, save_models
-    from diagnostics.records.record_classes import set_classes
-    from diagnostics.training.studies import run_studies, studies_metrics
     from diagnostics.training.training import train_models, training_metrics
     from diagnostics.training.training_sets import other_table, set_table
     from siggen.errors import DatasetError
@@ -158,10 +155,6 @@ def _models(
     with terminal_stage("saving the models", 1):
         notes = save_models(trained, table, dataset, folder)
     metrics = {**training_metrics(trained), "seed": seed, "file_notes": notes}
-    if options.studies:
-        matrix = feature_matrix(table, set_classes(dataset, options.classes))
-        found = run_studies(dataset, matrix, trained.split, seed, second, terminal_stage)
-        metrics["studies"] = studies_metrics(found)
     write_file(folder / "metrics.json", json.dumps(metrics, indent=1, allow_nan=False) + "\n")
     echo(class_text(trained.split, dataset), err=True)
     for note in (*trained.notes, *notes):

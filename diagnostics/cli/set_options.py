@@ -107,13 +107,6 @@ class TrainingOptions:
             "--channel", metavar="NAME", help="Use this channel only. May be given several times.", show_default=False
         ),
     ] = None
-    studies: Annotated[
-        bool,
-        typer.Option(
-            "--studies",
-            help="Also compare ways to split, draw a learning curve and run an ablation. This takes minutes.",
-        ),
-    ] = False
     cnn: Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the networks too.")] = True
     device: Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where to train the networks.")] = "cpu"
     augment: Annotated[

@@ -1,19 +1,15 @@
-"""Tables of a report beside the scores: paired differences, damaged area, another set, splits, learning curve."""
+"""Tables of a report beside the scores: paired differences, damaged area, another set."""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from diagnostics.page.html import Cell, paragraph, table
+from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.training.referenced import Referenced
-from diagnostics.training.split_study import SplitScore
-from diagnostics.training.studies import CurvePoint, Studies
 from diagnostics.training.training import Training
 
 UNDEFINED = Interval(math.nan, math.nan, math.nan)
@@ -122,75 +118,9 @@ def _other_row(there: Judged, here: Judged) -> list[Cell]:
     return [Cell(TITLES[there.name]), *(interval_cell(s) for s in scores), interval_cell(there.calibration.after)]
 
 
-def split_table(rows: tuple[SplitScore, ...]) -> str:
-    """Return what every way to split does to the score."""
-    cells = [
-        [
-            Cell(row.title, "the same gearboxes on both sides" if row.leaky else ""),
-            interval_cell(row.indicators.macro_auroc),
-            interval_cell(row.rms.macro_auroc),
-            interval_cell(row.indicators.accuracy),
-            Cell(str(row.folds), value=float(row.folds)),
-        ]
-        for row in rows
-    ]
-    head = ["Held out", "Macro-AUROC, indicators", "Macro-AUROC, RMS", "Accuracy, indicators", "Folds"]
-    caption = "Scores by the way windows are held out, with 95 % limits. Windows and logistic regression stay the same."
-    return table(head, cells, caption=caption, sortable=True)
-
-
-def curve_table(points: tuple[CurvePoint, ...]) -> str:
-    """Return mean and range of macro-AUROC by number of training specimens."""
-    rows = [
-        [Cell(str(point.specimens), value=float(point.specimens)), _range(point.indicators), _range(point.rms)]
-        for point in points
-    ]
-    head = ["Training specimens", "Macro-AUROC, indicators", "Macro-AUROC, RMS"]
-    caption = (
-        "Learning curve: macro-AUROC on the test specimens, mean and range of up to five draws. C is chosen on the "
-        "validation specimens. The last point is therefore the classifier above."
-    )
-    return table(head, rows, caption=caption, sortable=True)
-
-
-def _range(areas: np.ndarray) -> Cell:
-    defined = areas[np.isfinite(areas)]
-    if not defined.size:
-        return Cell("undefined", value=math.nan)
-    limits = "" if defined.size == 1 else f"{defined.min():.2f} … {defined.max():.2f}"
-    return Cell(f"{defined.mean():.2f}", limits, float(defined.mean()))
-
-
 def score_blocks(training: Training) -> list[str]:
     """Return what the section of scores holds below its first table."""
     blocks = [comparison_table(training), severity_table(training)]
     if training.referenced:
         blocks += [referenced_table(training.referenced), referenced_pairs_table(training.referenced)]
     return [*blocks, other_set_table(training)] if training.other else blocks
-
-
-def study_blocks(studies: Studies | None) -> list[str]:
-    """Return the section of studies, or how to have it."""
-    if studies is None:
-        return [paragraph("The studies were not run. Run them: `siggen-diagnostics report DIR --studies`.")]
-    return [paragraph(split_sentence(studies.splits)), split_table(studies.splits), curve_table(studies.curve)]
-
-
-def split_sentence(rows: tuple[SplitScore, ...]) -> str:
-    """Say how much of the score by random windows is left where the gearbox is unseen."""
-    by_title = {row.title: round(row.indicators.macro_auroc.value, 2) for row in rows}
-    leaky, strict = by_title.get("random windows (leaky)", math.nan), by_title.get("specimens", math.nan)
-    first = "The same windows of 8 pinion revolutions are split in different ways, for the same logistic regression."
-    if not math.isfinite(strict - leaky):
-        return first
-    verdict = f"{leaky - strict:.2f} less" if strict < leaky else "nothing is lost"
-    text = (
-        f"Random windows give a macro-AUROC of {leaky:.2f}, windows held out by specimen give {strict:.2f} ({verdict})."
-        f" {first} Random windows are a mistake: pieces of one record are on both sides."
-    )
-    if by_title.get("records", math.nan) < strict:
-        text += (
-            f" Windows held out by record score lower still ({by_title['records']:.2f}). Most training records of the "
-            "same gearbox show its other states, so their resemblance leads to the wrong state."
-        )
-    return text

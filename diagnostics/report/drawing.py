@@ -28,7 +28,6 @@ from diagnostics.report.examples import Example, ExampleSet, around_mesh, exampl
 from diagnostics.report.indicator_figures import column_title
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.statistics.separability import Separability
-from diagnostics.training.studies import Studies
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
@@ -196,13 +195,12 @@ class Drawing:
     damage: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     scores: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     indicators: dict[str, tuple[Figure, str]] = field(default_factory=dict)
-    studies: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     behind: dict[str, str] = field(default_factory=dict)
 
     def figures(self) -> dict[str, tuple[Figure, str]]:
         """Return all figures by file name."""
-        return {**self.vibration, **self.damage, **self.scores, **self.indicators, **self.studies}
+        return {**self.vibration, **self.damage, **self.scores, **self.indicators}
 
 
 def draw(
@@ -211,9 +209,8 @@ def draw(
     classes: tuple[str, ...],
     training: Training | None,
     found: list[Separability],
-    studies: Studies | None = None,
 ) -> Drawing:
-    """Draw what the report shows of signals, damage, scores and studies; figures lead to records."""
+    """Draw what the report shows of signals, damage and scores; figures lead to records."""
     healthy = {state for state in classes if (matrix.labels["fault"][matrix.labels["state"] == state] == HEALTHY).all()}
     colours = state_colours(classes, healthy)
     drawing = Drawing()
@@ -221,12 +218,6 @@ def draw(
     _draw_damage(drawing, dataset, classes, colours)
     if training:
         _draw_scores(drawing, training)
-    if studies:
-        figure = score_figures.learning_curve_figure(studies.curve)
-        caption = (
-            "Macro-AUROC on the test specimens over the number of training specimens: mean and range of the draws."
-        )
-        drawing.studies["learning_curve"] = (figure, caption)
     shown = distinct_features(found, INDICATORS_SHOWN)
     if shown:
         figure = score_figures.indicator_figure(matrix, shown, classes, colours, channel_quantities(dataset))

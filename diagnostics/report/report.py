@@ -46,7 +46,6 @@ from diagnostics.training.detectors import Detectors, judged_detectors
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.other_set import OtherSet
 from diagnostics.training.realism import is_error_free
-from diagnostics.training.studies import Studies, run_studies, studies_metrics
 from diagnostics.training.training import Training, train_models, training_metrics
 from diagnostics.training.training_sets import checked_table, measured_table, other_table
 from siggen.dataset.reading import Dataset
@@ -107,7 +106,7 @@ def write_report(
     seed : int
         Seeds bootstrap, permutations and network.
     network : NetworkOptions, optional
-        What a class is, whether and how to train the network, and whether to run the studies; without torch the
+        What a class is, whether and how to train the network; without torch the
         network is left out with a note.
     other : siggen Dataset, optional
         Another set to judge on.
@@ -134,18 +133,16 @@ def write_report(
         advance()
     judged = _evaluated(records, dataset, seed, page, stage)
     training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
-    wanted = network.studies
-    studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if wanted else (None, [])
     with stage("detectors", 1) as advance:
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
         advance()
     words, classes = words_of(dataset), ordered_states(matrix.labels)
     with stage("figures", 1) as advance, styled():
-        drawing = draw(dataset, matrix, classes, training, found, studies)
+        drawing = draw(dataset, matrix, classes, training, found)
         opening = _opening(dataset, matrix, classes, detectors)
         in_detail = figures(judged, channel_quantities(dataset))
         advance()
-    drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
+    drawing.notes += [*notes, *clipping_notes(dataset), *undefined_notes(table)]
     write_table(words.table(table), folder / "features.parquet")
     write_evaluation(dataset, judged, folder)
     audit = audit_sentence(dataset, audit_beside(dataset))
@@ -157,12 +154,11 @@ def write_report(
         side: {family: detector.numbers() for family, detector in getattr(detectors, side).items()}
         for side in ("alone", "referenced")
     }
-    metrics["studies"] = studies_metrics(studies) if studies else None
     yours = _scored(dataset, page, folder if training else None, network)
     metrics = {**words.document(metrics), "yours": yours.numbers() if yours else None}
     write_file(folder / "metrics.json", json.dumps(metrics, indent=1, allow_nan=False) + "\n")
     look = _look(dataset, records, judged, folder / "models" if training else None, page, own, stage)
-    reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, judged, look, yours)
+    reported = Reported(dataset, seed, matrix, training, found, detectors, audit, drawing, judged, look, yours)
     path = folder / "report.html"
     with stage("page", 1):
         drawn = {**opening, **drawing.figures(), **in_detail}
@@ -262,18 +258,6 @@ def _trained(
             saved = save_models(training, table, dataset, folder)
         return training, [*dict.fromkeys(notes), *training.notes, *saved]
     return None, notes[-1:]
-
-
-def _studied(
-    dataset: Dataset, matrix: FeatureMatrix, training: Training | None, seed: int, other: Dataset | None, stage: Stage
-) -> tuple[Studies | None, list[str]]:
-    """Run the studies; a set that does not allow them gets a note."""
-    if training is None:
-        return None, ["No studies: no classifier could be trained."]
-    try:
-        return run_studies(dataset, matrix, training.split, seed, other, stage), []
-    except DatasetError as error:
-        return None, [f"No studies: {without_path(error, dataset)}"]
 
 
 def undefined_notes(table: pa.Table) -> list[str]:

@@ -21,7 +21,7 @@ from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.named_set import words_of
 from diagnostics.records.state_classes import CLASS, ordered_states
 from diagnostics.report.answer import answer_sentences
-from diagnostics.report.comparison_tables import score_blocks, study_blocks
+from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.report.confusion import confusion_table
 from diagnostics.report.detector_table import detection_blocks, detector_table
 from diagnostics.report.drawing import Drawing
@@ -43,7 +43,6 @@ from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.detectors import Detectors
 from diagnostics.training.realism import is_error_free, meaning_of_scores
-from diagnostics.training.studies import Studies
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
@@ -98,7 +97,6 @@ class Reported:
     seed: int
     matrix: FeatureMatrix
     training: Training | None
-    studies: Studies | None
     found: list[Separability]
     detectors: Detectors
     audit: str
@@ -164,7 +162,6 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Scores": [*_scores(training), grid(drawing.scores)],
         "Your predictions": your_scores(reported.yours),
         "Records named wrongly": _named(reported),
-        "Splits and training specimens": [*study_blocks(reported.studies), grid(drawing.studies)] if training else [],
         "Signals": [grid(drawing.vibration)],
         "Damage": [grid(drawing.damage)],
         "Definitions of the indicators": [definition_html({channel.quantity for channel in reported.dataset.channels})],

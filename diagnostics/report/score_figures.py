@@ -14,7 +14,6 @@ from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.report.indicator_figures import panel_title, unit_of
 from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.statistics.separability import Separability
-from diagnostics.training.studies import CurvePoint
 from diagnostics.training.training import Training
 
 if TYPE_CHECKING:
@@ -65,28 +64,6 @@ def permutation_figure(training: Training) -> Figure:
     axis.set_yticks(range(len(shown)), [_name(judged) for judged in shown], fontsize=9)
     axis.set_xlabel("Macro-AUROC on test specimens [-]")
     figure.legend(loc="outside upper center", ncols=3, fontsize=9)
-    return figure
-
-
-def learning_curve_figure(points: tuple[CurvePoint, ...]) -> Figure:
-    """Return macro-AUROC over the number of training specimens: mean of the draws, and their range."""
-    figure, axes = new_figure(height_in=2.8)
-    axis = axes[0, 0]
-    places = [point.specimens for point in points]
-    lines = {"indicators": (AREA_COLOUR, "o", "-"), "rms": (ACCURACY_COLOUR, "s", "--")}
-    for name, (colour, marker, dashes) in lines.items():
-        draws = [getattr(point, name)[np.isfinite(getattr(point, name))] for point in points]
-        low, mean, high = np.array([(d.min(), d.mean(), d.max()) if d.size else (np.nan,) * 3 for d in draws]).T
-        axis.fill_between(places, low, high, color=colour, alpha=0.15, linewidth=0)
-        axis.plot(places, mean, color=colour, marker=marker, markersize=4, linestyle=dashes, label=TITLES[name])
-    axis.axhline(0.5, color=CHANCE_COLOUR, linestyle=":", linewidth=1.0)
-    axis.set_xscale("log")
-    axis.set_xticks(places, [str(place) for place in places])
-    axis.minorticks_off()
-    axis.set_ylim(min(0.4, axis.get_ylim()[0]), 1.02)
-    axis.set_xlabel("Training specimens [-]")
-    axis.set_ylabel("Macro-AUROC [-]")
-    figure.legend(loc="outside upper center", ncols=2, fontsize=8)
     return figure
 
 

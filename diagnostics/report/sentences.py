@@ -22,7 +22,7 @@ from diagnostics.records.record_classes import FAULT, STATE
 from diagnostics.report.indicator_figures import in_a_sentence
 from diagnostics.statistics.comparison import SATURATED, Comparison
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
+from diagnostics.statistics.judgement import NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
 from diagnostics.statistics.separability import Separability, best_by_state
 from diagnostics.training.realism import meaning_of_scores
 from diagnostics.training.training import Training
@@ -55,16 +55,16 @@ def summary(config: dict[str, Any], training: Training | None, found: list[Separ
 
 
 def scores_sentence(training: Training) -> str:
-    """Say how often each classifier named the right state; the network without augmentation is for the tables."""
+    """Say how often each classifier named the right state."""
     first = training.judged[0].scores
-    shown = [judged for judged in training.judged if judged.name != PLAIN_NETWORK]
     noun = _noun(training)
+    name = training.judged[0].name
     parts = [
         f"{capitalised(TITLES[judged.name])} "
-        f"{f'names the right {noun}' if judged is shown[0] else 'does so'} in {percent(judged.scores.accuracy.value)}"
-        f"{' of records' if judged is shown[0] else ''} ({percent_limits(judged.scores.accuracy)}, "
+        f"{f'names the right {noun}' if judged.name == name else 'does so'} in {percent(judged.scores.accuracy.value)}"
+        f"{' of records' if judged.name == name else ''} ({percent_limits(judged.scores.accuracy)}, "
         f"macro-AUROC {decimal(judged.scores.macro_auroc.value)})."
-        for judged in shown
+        for judged in training.judged
     ]
     return (
         f"{' '.join(parts)} There are {counted(len(first.classes), noun)}. Always naming the most frequent one gives "
@@ -87,7 +87,7 @@ def comparison_sentence(training: Training) -> str:
     gains = {
         pair.first: pair.macro_auroc
         for pair in training.comparisons
-        if pair.second == RMS_ALONE and pair.first != PLAIN_NETWORK and math.isfinite(pair.macro_auroc.value)
+        if pair.second == RMS_ALONE and math.isfinite(pair.macro_auroc.value)
     }
     if not gains:
         return "Nothing can be compared with RMS alone: macro-AUROC is undefined on these test specimens."
@@ -169,7 +169,7 @@ def control_sentence(training: Training) -> str:
         return ""
     suspicious = [
         TITLES[judged.name]
-        for judged in shown
+        for judged in training.judged
         if judged.permuted_auroc.size > 1 and abs(np.nanmean(judged.permuted_auroc) - 0.5) > CHANCE_MARGIN
     ]
     verdict = (

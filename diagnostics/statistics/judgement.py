@@ -13,14 +13,13 @@ from diagnostics.statistics.detection import Detection, detection, detection_met
 from diagnostics.statistics.evaluation import UNKNOWN, Predictions, macro_auroc
 from diagnostics.statistics.scores import Scores, scores
 
-INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
+INDICATORS, BOOSTING, RMS_ALONE, NETWORK = "indicators", "boosting", "rms", "network"
 CIRCULAR, CIRCULAR_REFERENCED, REFERENCED = "circular", "circular_referenced", "healthy_referenced"
 TITLES = {
     INDICATORS: "logistic regression on indicators",
     BOOSTING: "gradient boosting on indicators",
     RMS_ALONE: "RMS alone",
     NETWORK: "1-D network",
-    PLAIN_NETWORK: "1-D network without augmentation",
     CIRCULAR: "circular network on the average",
     REFERENCED: "logistic regression beside a healthy record",
     CIRCULAR_REFERENCED: "circular network beside a healthy record",

@@ -16,15 +16,18 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.statistics.evaluation import Predictions
-from diagnostics.statistics.scores import Scores
+from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
+from diagnostics.statistics.scores import Scores, area_interval, scores
 from diagnostics.training.baselines import FOLDS, fitted_classifier, state_index, train_classifier
-from diagnostics.training.split_study import Fold, fold_of, fold_scores, held_out
 from diagnostics.training.splits import SpecimenSplit
 
 KNOWN_ACCEPTED = 0.95
 """Share of records of known classes that are not called something else."""
+
+RESAMPLES = 300
+Fold = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,3 +152,35 @@ def nested_metrics(found: Nested) -> dict[str, Any]:
             for one in found.strangers
         ],
     }
+
+
+def fold_of(group: np.ndarray, seed: int) -> np.ndarray:
+    """Return the fold of every row; rows of a group share it."""
+    members, index = np.unique(group, return_inverse=True)
+    return (generator(seed, Purpose.FOLDS).permutation(members.size) % min(FOLDS, members.size))[index]
+
+
+def held_out(part: np.ndarray) -> list[Fold]:
+    """Return one fold per part: trained on the others, tested on it; none where there is a single part."""
+    parts = np.unique(part)
+    return [(part != one, part == one) for one in parts] if parts.size > 1 else []
+
+
+def fold_scores(found: Predictions, fold: np.ndarray, seed: int) -> Scores:
+    """Judge out-of-fold predictions with the macro-AUROC averaged over folds, never ranked across them.
+
+    A state that is rare in a fold is frequent in its training; ranked across folds, even a classifier that knows
+    nothing but these frequencies would fall below chance.
+    """
+    weights = bootstrap_weights(found.specimen, seed, RESAMPLES)
+    areas, sizes = [], []
+    for one in np.unique(fold):
+        mine = fold == one
+        part = Predictions(found.classes, found.truth[mine], found.probability[mine], found.specimen[mine])
+        areas.append(macro_auroc(part, weights[:, mine]))
+        sizes.append(weights[:, mine].sum(axis=1))
+    area, size = np.stack(areas), np.where(np.isfinite(areas), sizes, 0.0)
+    with np.errstate(invalid="ignore"):
+        mean = (np.nan_to_num(area) * size).sum(axis=0) / size.sum(axis=0)
+    specimens = int(np.unique(found.specimen).size)
+    return replace(scores(found, seed, RESAMPLES), macro_auroc=area_interval(mean, specimens))

@@ -12,7 +12,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.record_classes import STATE, check_kind
 from diagnostics.statistics.calibration import calibrated, fitted_temperature
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
-from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, Judged, judged, validation_score
+from diagnostics.statistics.judgement import NETWORK, Judged, judged, validation_score
 from diagnostics.training.baselines import permuted_target, state_index
 from diagnostics.training.splits import SpecimenSplit
 from siggen.dataset.reading import Dataset
@@ -47,9 +47,6 @@ class NetworkOptions:
         `cpu` or `cuda`.
     augment : bool
         Whether training windows pass random paths.
-    studies : bool
-        Whether to do what takes minutes: train a second network without random paths, compare ways to split, and draw a
-        learning curve.
     classes : str
         What every classifier tells apart: `state`, or primary `fault`; healthy ones are one class.
 
@@ -62,7 +59,6 @@ class NetworkOptions:
     cnn: bool = True
     device: str = "cpu"
     augment: bool = True
-    studies: bool = False
     classes: str = STATE
 
     def __post_init__(self) -> None:
@@ -113,7 +109,7 @@ def judge_networks(
     options: NetworkOptions,
     stage: Stage,
 ) -> tuple[list[Judged], TrainedNetworkFile]:
-    """Train and judge the network, and its twin without augmentation where asked for; the first one is saved."""
+    """Train and judge the network."""
     from diagnostics.loader.augmentation import Augmentation
     from diagnostics.training.cnn import TrainingSettings
     from diagnostics.training.cnn_files import describe_network
@@ -121,9 +117,6 @@ def judge_networks(
     settings = TrainingSettings(augmentation=Augmentation() if options.augment else None, device=options.device)
     trained, first = _judge(NETWORK, records, matrix, split, seed, settings, stage)
     results = [replace(first, permuted_auroc=_control(records, matrix, split, seed, settings, stage))]
-    if options.studies and options.augment:
-        plain = replace(settings, augmentation=None)
-        results.append(_judge(PLAIN_NETWORK, records, matrix, split, seed, plain, stage)[1])
     facts = describe_network(trained, records.channels, records.settings, identity)
     return results, TrainedNetworkFile(trained, facts)
 

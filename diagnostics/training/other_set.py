@@ -86,11 +86,6 @@ def strange_states_note(other: OtherSet, split: SpecimenSplit) -> str:
     )
 
 
-def known_rows(matrix: FeatureMatrix, classes: tuple[str, ...]) -> FeatureMatrix:
-    """Return the rows of another set whose class is one of `classes`."""
-    return matrix.rows(state_index(matrix, classes) != UNKNOWN)
-
-
 def classifier_predictions(model: FeatureClassifier, matrix: FeatureMatrix) -> Predictions:
     """Return uncalibrated predictions of the other set by a classifier on indicators."""
     return replace(model, temperature=1.0).predict(matrix)

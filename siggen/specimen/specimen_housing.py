@@ -20,7 +20,7 @@ from siggen.dynamics.structure.body import ModalBody, Point
 MODES_ON_BOLTS = 6
 COUPLED_HZ, MOST = 1500.0, 9
 """Modes below this frequency move with the gears, at least the six on the bolts. With what all others give way in
-series with the bearings k_b |R - R_0| stays below 0.5 nearly everywhere (`-m tests.reference.housing limits`)."""
+series with the bearings k_b |R - R_0| stays below 0.5 nearly everywhere (drawn boxes, November 2026)."""
 SETTLED_DECAYS = 7.0
 """Decay times after which a mode has forgotten how it was started: 1e-3 of it is left."""
 LONGEST_S = 1.2

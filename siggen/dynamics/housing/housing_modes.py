@@ -39,7 +39,7 @@ IN_PLANE = 1
 """Bubbles of motion in the plane, polynomials of degree 4."""
 LEAST_BUBBLES = 4
 REACH = 2.0
-"""95 % of third octaves hold within 6 dB up to so many times `resolved_hz` (`-m tests.reference.housing reach`)."""
+"""95 % of third octaves hold within 6 dB up to so many times `resolved_hz` (drawn boxes, November 2026)."""
 BEYOND = 3.0
 """Modes are kept up to so many times the resolved frequency: they serve as a statistical tail."""
 

@@ -39,7 +39,7 @@ QUARTER_PLANE = 1.1815
 """Derived: see the module's docstring."""
 NOTCH_POWER = 1.25
 NOTCH_SCALE, NOTCH_ON_LAND, NOTCH_SHALLOW, NOTCH_SHALLOW_LINEAR = 0.311, 0.278, 0.262, 0.363
-"""Fitted by `python -m tests.reference.contact notch_fit`."""
+"""Fitted by `python -m tests.reference.contact`."""
 NO_EDGE = 1e30
 """Distance of an edge that does not exist [m]."""
 

@@ -8,7 +8,7 @@ Derived. A line load q(y) on two half spaces displaces the line, relative to the
 for cells of width w: Boussinesq's solution at the surface, with a width ε that gives an endless line exactly the
 secant compliance of Weber and Banaschek, ln(2 h/a) - ν/(2 (1 - ν)); their depth h takes away the rest. Cells are part
 of the model: from w = 0.7 to 3 a the losses of pair stiffness are those of the contact in three dimensions to 0.9
-points (`python -m tests.reference.contact losses`); narrower cells let the short waves become too soft.
+points (`tests.reference.contact.comparisons`); narrower cells let the short waves become too soft.
 
 The law of a is written as an energy (`face_force`): ½ u·K u with a of the load itself gives Weber and Banaschek's
 secant only with ε e^-¼ in place of ε, since a grows with the load that does the work. `diagonal` and `strengths`

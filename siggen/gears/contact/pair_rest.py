@@ -8,7 +8,7 @@ tooth's centre line, so that it adds to the contact's kernel). Of a gear's compl
     l            = 1.75 m (1 - exp(-b/(2.4 m))), m the module: narrow faces stay together more
 
 For the pair 18/47 the tilt compliance and the deflection under loads on a part of the face are within 6.5 % of the
-finite elements from b = 6.7 modules on, 7.1 % at 4 and 10.1 % at 2 (`-m tests.reference.finite_elements face`); of
+finite elements from b = 6.7 modules on, 7.1 % at 4 and 10.1 % at 2 (`tests.reference.finite_elements.face_kernel`); of
 single gears tilt errs by up to 21 %, the other way on either.
 """
 

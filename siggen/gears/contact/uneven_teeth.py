@@ -7,7 +7,7 @@ the one of slice i from 1/C to 1/(C + Δ_i), and with them what slices hang toge
     (k L + 1 - φ_i) t = q,    φ_i = Δ_i/(C + Δ_i),    k = 1 - mean φ
 
 An even crack is C + Δ times the T of the sound tooth. A tooth that is rigid across the face (l → ∞) has the mean
-stiffness of its slices. Finite elements in three dimensions: `python -m tests.reference.finite_elements part_crack`.
+stiffness of its slices. Finite elements in three dimensions: `tests.reference.finite_elements.part_crack`.
 
 Pinion and gear tooth are one kernel of this form. Under an even load it gives way as both together do in each slice.
 """

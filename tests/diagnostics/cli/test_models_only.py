@@ -1,4 +1,4 @@
-"""`report --models-only` with another set, studies and unusable input: exit codes and what is written."""
+"""`report --models-only` with another set and unusable input: exit codes and what is written."""
 
 from __future__ import annotations
 
@@ -61,20 +61,11 @@ def test_states_that_training_does_not_know_are_found_damaged_and_not_named(
 
 
 @pytest.mark.slow
-def test_another_set_and_studies_are_in_the_metrics(
-    sets: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    arguments = ("first", "--out", str(tmp_path), "--test", "second", "--studies", "--no-cnn")
+def test_another_set_is_in_the_metrics(sets: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    arguments = ("first", "--out", str(tmp_path), "--test", "second", "--no-cnn")
     assert run(monkeypatch, sets, *arguments) == 0
     metrics = json.loads((tmp_path / "metrics.json").read_text())
     assert set(metrics["classifiers_on_other_set"]) == {"indicators", "boosting", "rms"}
-    splits = {row["split"]: row for row in metrics["studies"]["splits"]}
-    # all records have the same speed, so there is no speed to leave out
-    assert set(splits) == {
-        *("random windows (leaky)", "records", "specimens", "other set"),
-        *("single channel: specimens", "single channel: one sensor", "single channel: one sensor of other specimens"),
-    }
-    assert [point["training_specimens"] for point in metrics["studies"]["learning_curve"]] == [1, 2, 3, 4]
     assert "calibration error" in (tmp_path / "model_card.md").read_text()
 
 

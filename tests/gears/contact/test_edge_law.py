@@ -56,7 +56,7 @@ def test_a_narrow_contact_at_a_notch_softens_like_a_quarter_plane():
     assert (deep[1] - deep[0]) / log(2.0) == pytest.approx(QUARTER_PLANE, rel=2e-3)
 
 
-# N from `python -m tests.reference.contact notch`: (D [mm], d/a) at 60 N/mm, a = 67.1 µm
+# N from notched half planes of finite elements: (D [mm], d/a) at 60 N/mm, a = 67.1 µm
 FINITE_ELEMENTS = {
     (0.05, -6.0): 1.8311, (0.05, -1.0): 0.6748, (0.05, 0.0): 0.3666, (0.05, 0.5): 0.2261,
     (0.2, -11.0): 4.0072, (0.2, -3.7): 2.8264, (0.2, -1.0): 1.8304, (0.2, 0.0): 1.2809, (0.2, 0.5): 0.9805,

@@ -67,7 +67,7 @@ def test_a_notched_gap_against_fresh_finite_elements():
         assert law.left_share == pytest.approx(left, abs=0.01)
 
 
-# sink [µm] and left share from `python -m tests.reference.contact two_edges`: (l [mm], D [mm], 2 s/l) at 60 N/mm
+# sink [µm] and left share from finite elements: (l [mm], D [mm], 2 s/l) at 60 N/mm
 FINITE_ELEMENTS = {
     (0.3, 0.2, 0.0): (2.187, 0.5), (0.3, 0.2, 0.2): (2.139, 0.176), (0.3, 0.2, 1.0): (0.617, 0.0),
     (0.5, 0.05, 0.05): (5.000, 0.282), (0.5, 0.2, 0.1): (5.206, 0.148), (0.8, 0.2, 0.05): (12.576, 0.125),

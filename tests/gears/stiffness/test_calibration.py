@@ -19,7 +19,7 @@ from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, tooth_compli
 
 PLACES = (0.1, 0.3, 0.5, 0.7, 0.9)
 # Finite-element compliance times E L by (z, h_f, X, pressure angle), plane stress, edge length 0.02 modules:
-# python -m tests.reference.finite_elements spots
+# finite elements, November 2026
 SPOTS = {
     (18, 2.17, 0.0, 20.0): (4.8455, 5.0802, 5.9188, 7.7512, 11.5647),
     (47, 3.894, 0.0, 20.0): (6.2418, 6.9424, 8.1136, 10.1320, 13.7815),

@@ -1,1 +1,1 @@
-"""Contact across the face beside independent solvers: `python -m tests.reference.contact TABLE`."""
+"""Contact across the face beside independent solvers; `python -m tests.reference.contact` fits the notch again."""

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.shipped import ROOT
 from siggen.gears.contact.covered_slice import spread_of_cells
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_force import face_force
@@ -19,9 +17,6 @@ from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import carrying_length
 from siggen.gears.contact.table_options import CELL_WIDTHS
 from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 RADIUS_M, DEPTH_M, FACE_M, POISSON = 6.676e-3, 2.2e-3, 20e-3, 0.3
 KAPPA = 4.0 * (1.0 - POISSON**2) / (pi * 206e9)
@@ -111,17 +106,3 @@ def answer_under(slices: FaceSlices, force_n: float, tilt_rad: float = 0.0) -> t
             return approach, answer.moment_n_m
         approach += (force_n - answer.force_n) / answer.stiffness_n_per_m if answer.force_n else 5e-6
     raise RuntimeError(f"no approach found for {force_n} N")
-
-
-def bench_damages(names: Sequence[str]) -> tuple[GearPair, StiffnessOptions, dict[str, Damage]]:
-    """Return the first gearbox of bench, its stiffness, and its damage in the named states."""
-    from siggen.checks.loading import load_config
-    from siggen.planning.specimen import draw_specimen
-    from siggen.specimen.damage import state_damage
-    from siggen.specimen.gears import gear_pair, stiffness_options
-
-    config = load_config(ROOT / "configs" / "bench.yaml")
-    specimen = draw_specimen(config, 0)
-    pair, states = gear_pair(specimen.gears), [state.name for state in config.states]
-    damages = {name: state_damage(config, 0, pair, states.index(name)) for name in names}
-    return pair, stiffness_options(specimen.stiffness), damages

@@ -8,10 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from siggen.gears.contact import two_edges
-from siggen.gears.contact.edge_law import half_plane_factor, notch_factor
 from tests.reference.contact.case import (
     KAPPA,
-    LINE_LOADS,
     RADIUS_M,
     REST_M_PER_N,
     RIGID,
@@ -19,14 +17,10 @@ from tests.reference.contact.case import (
     answer_under,
     approach_under,
     face_of_land,
-    half_width,
 )
 from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_gap, land_of_pits
-from tests.reference.contact.plane_contact import edge_sink, gap_sink
 
-LENGTHS_M = (0.3e-3, 0.5e-3, 0.8e-3, 1.5e-3)
 AHEAD = (1.5, 1.0, 0.5, 0.0, -1.0, -3.7, -6.0, -11.0)
-NOTCH_DEPTHS_M = (0.05e-3, 0.2e-3)
 SHARES = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2)
 """Offsets of the normal from mid-gap over half its length."""
 LANDS = {
@@ -45,80 +39,8 @@ FINE_M, SLIVER = 0.01e-3, 1e-9
 """Cells from which parts of slices are counted, and the part that does not count."""
 
 
-@dataclass(frozen=True, slots=True)
-class SinkPair:
-    """A sink of the library beside that of a solver [m], for a gap and an offset s [m] under a line load [N/m].
-
-    `share`, `solver_share`: of the left edge; `plain_m`, `solver_plain_m`: the sinks without a notch.
-    """
-
-    length_m: float
-    depth_m: float
-    offset_m: float
-    line_load_n_per_m: float
-    sink_m: float
-    solver_m: float
-    share: float
-    solver_share: float
-    plain_m: float
-    solver_plain_m: float
-
-    @property
-    def error_m(self) -> float:
-        """Difference of the sinks."""
-        return self.sink_m - self.solver_m
-
-    @property
-    def notch_error(self) -> float:
-        """Relative error of what the notch adds."""
-        return (self.sink_m - self.plain_m) / (self.solver_m - self.solver_plain_m) - 1.0
-
-
-def notched_gaps(
-    lengths: tuple[float, ...] = LENGTHS_M, depths: tuple[float, ...] = NOTCH_DEPTHS_M
-) -> Iterator[SinkPair]:
-    """Yield notched gaps with two edges beside finite elements (the extra 'fem')."""
-    from tests.reference.contact.notched_half_plane import LAND_M, notched_gap_sink
-
-    for length in lengths:
-        for depth in depths:
-            for line in LINE_LOADS:
-                for share in SHARES:
-                    offset = 0.5 * length * share
-                    if offset - 0.5 * length + half_width(line) > 0.96 * LAND_M:
-                        continue
-                    sink, left = notched_gap_sink(offset, length, depth, RADIUS_M, KAPPA * line)
-                    plain, _ = gap_sink(offset, length, RADIUS_M, KAPPA * line)
-                    law, bare = _law(length, depth, offset, line), _law(length, 0.0, offset, line)
-                    yield SinkPair(
-                        length, depth, offset, line, law.sink_m, sink, law.left_share, left, bare.sink_m, plain
-                    )
-
-
 def _law(length: float, depth: float, offset: float, line: float) -> two_edges.GapSink:
     return two_edges.gap_sink(0.5 * length + offset, 0.5 * length - offset, depth, 0.0, RADIUS_M, 0.0, KAPPA * line)
-
-
-def one_edge() -> Iterator[tuple[float, float, float]]:
-    """Yield d/a, the sink over κF of pressure cells, and G."""
-    for ahead in AHEAD:
-        load = 0.5
-        yield ahead, edge_sink(ahead, 1.0, load) / load, half_plane_factor(ahead)
-
-
-def notches(
-    depths: tuple[float, ...], loads: tuple[float, ...] = LINE_LOADS
-) -> Iterator[tuple[float, float, float, float, float]]:
-    """Yield depth [m], line load [N/m], d/a, N of finite elements and N of the library (the extra 'fem')."""
-    from tests.reference.contact.notched_half_plane import notched_edge_sink
-
-    for depth in depths:
-        for line in loads:
-            width = half_width(line)
-            for ahead in AHEAD:
-                cut = notched_edge_sink(ahead * width, depth, RADIUS_M, KAPPA * line)
-                plain = edge_sink(ahead * width, RADIUS_M, KAPPA * line)
-                yield depth, line, ahead, (cut - plain) / (KAPPA * line), notch_factor(ahead, depth / width)
 
 
 @dataclass(frozen=True, slots=True)

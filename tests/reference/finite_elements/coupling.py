@@ -11,12 +11,11 @@ from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.stiffness.body_coupling import ring_torsion
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from tests.reference.finite_elements.calibration import ToothShape, held_out_shapes
+from tests.reference.finite_elements.calibration import ToothShape
 from tests.reference.finite_elements.comparison import SIZE, paper_a_pair
 from tests.reference.finite_elements.neighbour_compliance import coupled_compliance
 
 SHARES = np.array([0.01, 0.5, 0.99])
-HELD_OUT_SHARES = np.array([0.01, 0.25, 0.5, 0.75, 0.99])
 HELD_OUT_GEARS = 16
 OTHER_RACKS = (
     (ToothShape(26, 1.7, 0.3), ToothShape(26, 1.7, 0.3)),
@@ -59,49 +58,6 @@ def coupling_table() -> Iterator[str]:
             torsion = 2 * ring_torsion(gear, 0.3) / np.trace(c)
             columns = (c[0, 1] / c[0, 0], c[1, 0] / c[1, 1], 2 * c[0, 1] / np.trace(c), torsion)
             yield f"| {gear.teeth} | {share:.2f} | " + " | ".join(f"{x:.3f}" for x in columns) + " |"
-
-
-def double_contact_table() -> Iterator[str]:
-    """Lines of the double-contact mesh stiffness with the neighbours coupled, over the sum of both pairs'."""
-    pair = paper_a_pair()
-    yield "| place in double contact | coupled / plain sum | ring torsion only / plain sum | siggen / plain sum |"
-    yield "|---|---|---|---|"
-    bodies = coupled_bodies(pair, SHARES)
-    alone = np.einsum("kii->ki", bodies)[:, :, None] * np.eye(2)
-    twist = (ring_torsion(pair.pinion, 0.3) + ring_torsion(pair.gear, 0.3)) * (1 - np.eye(2))
-    plain = equal_approach(alone)
-    modelled = model_stiffness(pair, SHARES, "body") / model_stiffness(pair, SHARES, "none")
-    for row in zip(
-        SHARES, equal_approach(bodies) / plain, equal_approach(alone + twist) / plain, modelled, strict=True
-    ):
-        yield "| " + f"{row[0]:.2f} | " + " | ".join(f"{x:.3f}" for x in row[1:]) + " |"
-
-
-def held_out_coupling_table() -> Iterator[str]:
-    """Lines of the double-contact mesh stiffness against two-tooth finite elements on gears that were not fitted."""
-    yield "| z | h_f | X | angle | finite elements / plain sum | siggen, none | siggen, body |"
-    yield "|---|---|---|---|---|---|---|"
-    largest = 0.0
-    for one, two in held_out_pairs():
-        pair = shape_pair(one, two)
-        exact = equal_approach(coupled_bodies(pair, HELD_OUT_SHARES))
-        plain, coupled = (model_stiffness(pair, HELD_OUT_SHARES, c) for c in ("none", "body"))
-        largest = max(largest, float(np.abs(coupled / exact - 1).max()))
-        shifts = f"{one.profile_shift:g}/{two.profile_shift:g}"
-        names = f"{one.teeth:g}/{two.teeth:g} | {one.radius_ratio:.2f}/{two.radius_ratio:.2f} | {shifts} | "
-        values = (exact / plain, plain / exact, coupled / exact)
-        yield (
-            f"| {names}{one.pressure_angle_deg:g} | "
-            + " | ".join(f"{v.min():.3f}-{v.max():.3f}" for v in values)
-            + " |"
-        )
-    yield f"largest deviation with coupling: {100 * largest:.2f} %"
-
-
-def held_out_pairs() -> list[tuple[ToothShape, ToothShape]]:
-    """Pinion and gear of each held-out pair: standard gears between the fit's nodes, and other racks."""
-    shapes = held_out_shapes(HELD_OUT_GEARS)
-    return [*zip(shapes[::2], shapes[1::2], strict=True), *OTHER_RACKS]
 
 
 def shape_pair(one: ToothShape, two: ToothShape) -> GearPair:

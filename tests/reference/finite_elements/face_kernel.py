@@ -10,21 +10,16 @@ c is the plane compliance, since a uniform load deflects the line uniformly. In 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import exp
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from siggen.gears.stiffness.body_coupling import ring_torsion
-from tests.reference.finite_elements.face_compliance import MODES, face_compliance, load_on, norms, tilt_load
-from tests.reference.finite_elements.spatial_pair import bench_pair
-from tests.reference.finite_elements.tooth_compliance_fem import PlaneElasticity, tooth_compliance
+from tests.reference.finite_elements.face_compliance import MODES, load_on, norms, tilt_load
 
 LONGEST, NARROW = 1.75, 2.4
 """The rule's l on a wide face, and the face width over which it gets there, in modules; fitted to the pair of bench at
 mid-flank with b/m = 1 to 15."""
-WIDTHS = (2.0, 4.0, 20 / 3, 10.0)
 PLACES = (0.05, 0.5, 0.95)
 """Of the pinion's active flank; the gear touches it at the mirrored place."""
 LOADS = {
@@ -82,32 +77,3 @@ def _row(name: str, width: float, modes: np.ndarray, uniform: np.ndarray, torsio
     fit = f"{share:.2f} | {length:.2f} | {error:.1%} | {torsion.sum() / uniform.sum():.2f}"
     parts = f"{rule[0]:+.1%} | {rule[1:].min():+.1%} to {rule[1:].max():+.1%}"
     return f"| {name} | {width:.3g} | {modes[0, 0]:.2f} | {plane} | {tilt:.3f} | {fit} | {parts} |"
-
-
-def kernel_table() -> Iterator[str]:
-    """Lines of compliance, tilt and kernel of both gears of bench and of the pair; about two minutes."""
-    pair = bench_pair()
-    yield (
-        "| gear, place on the pinion's flank | b/m | c E b | plane stress, strain | tilt / uniform | k | l [m] | error "
-        "| ring torsion / c | rule, tilt | rule, part of the face |"
-    )
-    yield "|---" * 11 + "|"
-    start, end = (edge * pair.pinion.base_radius_m for edge in pair.active_flank[0])
-    at = start + np.array(PLACES) * (end - start)
-    rolls = (at / pair.pinion.base_radius_m, (pair.line_of_action_m - at) / pair.gear.base_radius_m)
-    gears = (pair.pinion, pair.gear)
-    torsion = np.array([ring_torsion(gear, pair.poisson_ratio) for gear in gears])
-    flat = [
-        [tooth_compliance(g, r, PlaneElasticity(plane_strain=strain)) for strain in (False, True)]
-        for g, r in zip(gears, rolls, strict=True)
-    ]
-    for width in WIDTHS:
-        faces = [face_compliance(gear, roll, width) for gear, roll in zip(gears, rolls, strict=True)]
-        for i, place in enumerate(PLACES):
-            uniform = np.array([face.uniform[i] for face in faces])
-            for j, (gear, face) in enumerate(zip(gears, faces, strict=True)):
-                plane = f"{flat[j][0][i]:.2f}, {flat[j][1][i]:.2f}"
-                yield _row(f"{gear.teeth}, {place}", width, face.modes[i], uniform[[j]], torsion[[j]], plane)
-            both = sum(face.modes[i] for face in faces)
-            plane = ", ".join(f"{flat[0][s][i] + flat[1][s][i]:.2f}" for s in (0, 1))
-            yield _row(f"both, {place}", width, np.asarray(both), uniform, torsion, plane)

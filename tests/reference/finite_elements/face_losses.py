@@ -5,7 +5,6 @@ Pair 18/47 of module 3 mm, 20 mm wide, bores of bench, at the pitch point, by `s
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 from math import radians, tan
 
@@ -22,9 +21,6 @@ MODES = 16
 CELL_M = 0.1e-3
 """Length of a pressure cell; half of it changes the losses by less than 0.15 points."""
 KINDS = ("rigid", "three_dimensional", "rule")
-GAPS = ((0.3, None), (0.5, None), (0.8, None), (0.3, 0.0), (0.5, 0.0), (0.8, 0.0))
-MISALIGNMENTS_M = (2e-6, 5e-6, 10e-6, 20e-6)
-"""Missing material from one end of the face to the other."""
 
 
 @lru_cache(maxsize=1)
@@ -72,23 +68,3 @@ def answer(
 def loss(kind: str, share: float, start: float | None, cell_m: float = CELL_M) -> float:
     """Return the loss of pair stiffness at 1,200 N (secant)."""
     return 1.0 - answer(kind, 0.0, None, 0.0, cell_m).approach_m / answer(kind, share, start, 0.0, cell_m).approach_m
-
-
-def loss_table() -> Iterator[str]:
-    """Lines of losses in per cent with rigid and with elastic teeth across the face."""
-    yield "| gap | teeth rigid across the face | three-dimensional teeth | by the rule | moment, 3-D teeth [N m] |"
-    yield "|---|---|---|---|---|"
-    for share, start in GAPS:
-        place = "in the middle" if start is None else "at one end"
-        rigid, elastic, rule = (100 * loss(kind, share, start) for kind in KINDS)
-        moment = answer("three_dimensional", share, start).moment_nm
-        yield f"| {share:.0%} {place} | {rigid:.1f} | {elastic:.1f} | {rule:.1f} | {abs(moment):.2f} |"
-
-
-def misalignment_table() -> Iterator[str]:
-    """Lines of the moment of a misaligned pair at 1,200 N."""
-    yield "| misalignment over the face [µm] | moment [N m], rigid teeth | three-dimensional teeth | by the rule |"
-    yield "|---|---|---|---|"
-    for lead in MISALIGNMENTS_M:
-        moments = " | ".join(f"{-answer(kind, 0.0, None, lead).moment_nm:.2f}" for kind in KINDS)
-        yield f"| {1e6 * lead:g} | {moments} |"

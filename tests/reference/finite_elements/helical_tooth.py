@@ -8,7 +8,6 @@ unloaded neighbour at its contact. Forces and deflections are those of the trans
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from math import radians, tan
 from typing import NamedTuple
@@ -18,7 +17,6 @@ import numpy as np
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import transverse_gear
 from siggen.gears.geometry.spur_gear import SpurGear
-from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.reference.finite_elements.extruded_body import face_line
@@ -66,29 +64,6 @@ CASES = (
     *(HelicalCase("large gears", (30, 80), (3.0, 6.0), 25e-3, helix) for helix in (0.0, 15.0, 25.0)),
 )
 """A helix of 0 says what the mesh, and a face that is no plane stress, leave."""
-NEIGHBOURS = tuple(HelicalCase("narrow face", (18, 47), BENCH_ROOTS, 10e-3, helix) for helix in (0.0, 10.0, 20.0))
-"""Faces on which two lines a base pitch apart are whole."""
-
-
-def helical_table() -> Iterator[str]:
-    """Yield the table of `helical`: finite elements over the model in the middle of the path."""
-    yield "| pair | helix | pinion | gear |\n|---|---|---|---|"
-    for case in CASES:
-        pair = case.pair()
-        found = [line_compliances(pair, which)[0, 0] / _model(pair, which) for which in ("pinion", "gear")]
-        yield f"| {case.name} | {case.helix_deg:.0f}° | {found[0]:.3f} | {found[1]:.3f} |"
-
-
-def helical_neighbour_table() -> Iterator[str]:
-    """Yield the table of `helical_neighbours`: both gears together, a load on one tooth and its neighbour's way."""
-    yield "| helix | finite elements | model | ratio |\n|---|---|---|---|"
-    for case in NEIGHBOURS:
-        pair = case.pair()
-        moved = sum(line_compliances(pair, which, 2)[1, 0] for which in ("pinion", "gear"))
-        behind = 0.5 * (pair.contact_start_m + pair.contact_end_m - pair.base_pitch_m)
-        model = body_coupling(pair, StiffnessOptions(coupling="body"), np.array([behind]))[0, 0]
-        model *= pair.youngs_modulus_pa * pair.face_width_m
-        yield f"| {case.helix_deg:.0f}° | {moved:.3f} | {model:.3f} | {moved / model:.3f} |"
 
 
 def helical_bench_pair(helix_deg: float) -> GearPair:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from siggen.dynamics.housing.box import Bolt, Box, Seat
+from siggen.dynamics.housing.box import Bolt, Box
 from tests.reference.housing.solid_element import element_matrices
 from tests.reference.housing.solid_mesh import SolidMesh, solid_mesh
 
@@ -62,31 +62,6 @@ def solid_box(box: Box, element_m: float, modes: int, loose_share: float = 1.0) 
     values, shapes = eigsh(stiffness, modes, mass, sigma=0.0, OPinv=inverse, v0=np.ones(mass.shape[0]))
     order = np.argsort(values)
     return SolidBox(mesh, values[order], shapes[:, order], factored.solve, weight)
-
-
-def surface_row(mesh: SolidMesh, near: tuple[float, float, float], direction: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the row (3 n,) of the node nearest to a place [m], and where it stands."""
-    node = int(np.linalg.norm(mesh.nodes - np.array(near), axis=1).argmin())
-    row = np.zeros(3 * len(mesh.nodes))
-    row[3 * node + direction] = 1.0
-    return row, mesh.nodes[node]
-
-
-def seat_row(mesh: SolidMesh, box: Box, seat: Seat, wall: str, direction: int) -> np.ndarray:
-    """Return the row (3 n,) of a bearing along x or y: mean over the bore, with the moment of its overhang."""
-    middle = 0.0 if wall == "front" else box.size_m[2]
-    away = mesh.nodes - np.array([seat.x_m, seat.y_m, middle])
-    radius = np.hypot(away[:, 0], away[:, 1])
-    near = np.abs(away[:, 2]) < 0.51 * seat.boss_thickness_m
-    on = np.flatnonzero((np.abs(radius / seat.bore_radius_m - 1.0) < 0.02) & near)
-    angle = np.arctan2(away[on, 1], away[on, 0])
-    weight = _around(angle) * _through(away[on, 2])
-    row = np.zeros(3 * len(mesh.nodes))
-    row[3 * on + direction] = weight
-    lever = np.cos(angle) if direction == 0 else np.sin(angle)
-    outwards = seat.overhang_m if wall == "back" else -seat.overhang_m
-    row[3 * on + 2] -= outwards * 2.0 / seat.bore_radius_m * weight * lever
-    return row
 
 
 def _around(angle: np.ndarray) -> np.ndarray:
