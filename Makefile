@@ -7,7 +7,7 @@ DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow lint bench pages reference docs wheel container locks clean
+.PHONY: demo test test-slow test-lowest lint bench pages reference docs wheel container locks clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
@@ -39,6 +39,13 @@ test: lint
 
 test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow
+
+# The lowest versions that pyproject.toml allows, in an environment of their own. Old libraries warn: no errors here.
+test-lowest:
+	$(PYTHON) -m venv $(VENV)-lowest
+	$(VENV)-lowest/bin/python -m pip install -q -r locks/lowest.txt pytest pytest-timeout hypothesis jsonschema
+	$(VENV)-lowest/bin/python -m pip install -q --no-deps -e .
+	$(VENV)-lowest/bin/python -m pytest -W default tests/cli/test_app.py tests/dataset/test_shard.py
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks --json runs/benchmarks.json
@@ -76,4 +83,4 @@ locks: $(STAMP)
 	$(VENV)/locks/bin/uv pip $(LOWEST) --output-file locks/lowest.txt
 
 clean:
-	rm -rf $(VENV) runs build dist site
+	rm -rf $(VENV) $(VENV)-lowest runs build dist site

@@ -91,7 +91,7 @@ def test_a_change_in_a_called_file_compiles_its_callers_again(tmp_path: Path) ->
     (package / "dynamics").mkdir(parents=True)
     for empty in (package / "__init__.py", package / "dynamics" / "__init__.py"):
         empty.touch()
-    for file in ("compiled.py", "sources.py"):
+    for file in ("compiled.py", "errors.py", "sources.py"):
         (package / file).write_bytes(Path("siggen", file).read_bytes())
     (tmp_path / "caller.py").write_text(CALLER, encoding="utf-8")
 

@@ -26,7 +26,7 @@ TAIL = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Lines:
+class MeshLines:
     """Envelopes (lines, m) at even times (m,) [s], the mesh harmonic of each (lines,), pitches per second."""
 
     time_s: np.ndarray
@@ -34,9 +34,9 @@ class Lines:
     harmonic: np.ndarray
     pitches_hz: float
 
-    def chosen(self, lines: np.ndarray) -> Lines:
+    def chosen(self, lines: np.ndarray) -> MeshLines:
         """Return some of the lines (indices or a mask)."""
-        return Lines(self.time_s, self.envelopes[lines], self.harmonic[lines], self.pitches_hz)
+        return MeshLines(self.time_s, self.envelopes[lines], self.harmonic[lines], self.pitches_hz)
 
     @property
     def step_s(self) -> float:
@@ -62,7 +62,7 @@ class _Fit:
     snr: np.ndarray
 
 
-def joint_correction(lines: Lines, *, scan: bool) -> np.ndarray:
+def joint_correction(lines: MeshLines, *, scan: bool) -> np.ndarray:
     """Return the correction (m,) [pitches] that best explains all envelopes, about its median.
 
     `scan`: first try constant errors of speed, for which all lines are sharpest together.
@@ -74,7 +74,7 @@ def joint_correction(lines: Lines, *, scan: bool) -> np.ndarray:
     return correction - np.median(correction)
 
 
-def slip_margin(lines: Lines) -> float:
+def slip_margin(lines: MeshLines) -> float:
     """Return how much better [nats] paths end where they are than a tenth of a pitch or more away."""
     search = _Search(lines, np.zeros(lines.time_s.size))
     if search.fit is None:
@@ -85,7 +85,7 @@ def slip_margin(lines: Lines) -> float:
     return float(totals[near].max() - totals[~near].max())
 
 
-def least_presence(lines: Lines, window_s: float) -> float:
+def least_presence(lines: MeshLines, window_s: float) -> float:
     """Return the least share of all lines, over a window, that stands in phase, against its median along the time."""
     from scipy.ndimage import uniform_filter1d
 
@@ -94,12 +94,12 @@ def least_presence(lines: Lines, window_s: float) -> float:
     return float(uniform_filter1d(along, size, mode="nearest").min() / (np.median(along) + 1e-300))
 
 
-def line_strengths(lines: Lines) -> np.ndarray:
+def line_strengths(lines: MeshLines) -> np.ndarray:
     """Return what every line tells of the angle: squared harmonic times limited power over noise, (lines,)."""
     return np.asarray(lines.harmonic**2 * lines.fit(np.zeros(lines.time_s.size)).snr)
 
 
-def _constant_error(lines: Lines) -> np.ndarray:
+def _constant_error(lines: MeshLines) -> np.ndarray:
     time_s = lines.time_s - lines.time_s.mean()
     most = min(3.0 / float(lines.time_s[-1]), 0.25 / lines.step_s / float(lines.harmonic.max()))
     errors = most * np.linspace(-1.0, 1.0, 161)
@@ -115,7 +115,7 @@ def _constant_error(lines: Lines) -> np.ndarray:
 class _Search:
     """Dynamic programming over corrections near a known one; `fit` (m, grid) is None where no line counts."""
 
-    def __init__(self, lines: Lines, correction: np.ndarray) -> None:
+    def __init__(self, lines: MeshLines, correction: np.ndarray) -> None:
         fit = lines.fit(correction)
         used = fit.snr > 0.0
         self.fit: np.ndarray | None = None
@@ -158,7 +158,7 @@ class _Search:
         return np.asarray(self.grid[cells[::-1]])
 
 
-def _stepped(lines: Lines, correction: np.ndarray) -> np.ndarray:
+def _stepped(lines: MeshLines, correction: np.ndarray) -> np.ndarray:
     """Return the correction with the steps added that fit all phases best: slips by a part of a pitch go."""
     search = _Search(lines, correction)
     if search.fit is None:
@@ -166,7 +166,7 @@ def _stepped(lines: Lines, correction: np.ndarray) -> np.ndarray:
     return np.asarray(correction + search.path(search.totals(search.fit[0])))
 
 
-def _smoothed(lines: Lines, correction: np.ndarray) -> np.ndarray:
+def _smoothed(lines: MeshLines, correction: np.ndarray) -> np.ndarray:
     """Return the correction of least squares of all phases and of its bend, linearised round after round."""
     bend_power = (WANDER * lines.pitches_hz) ** 2 * lines.step_s**3
     turn = 2.0 * np.pi * lines.harmonic

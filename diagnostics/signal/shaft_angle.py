@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnostics.signal.joint_phase import (
-    Lines,
+    MeshLines,
     joint_correction,
     least_presence,
     line_strengths,
@@ -238,7 +238,7 @@ def _judged(found: ShaftAngle, limits_hz: tuple[float, float]) -> ShaftAngle:
     if nearest and nearest.behind < LEAST_AHEAD:
         raise UsageError(
             f"{speed} and {nearest.name} are not told apart ({nearest.behind:.1f} nats between them; allowed is "
-            f"{LEAST_AHEAD:g}). Give a narrower --speed-range, a longer recording or a tacho."
+            f"{LEAST_AHEAD:g}). Give a narrower range of the speed, a longer recording or a tacho."
         )
     doubt = _doubt(found)
     return replace(found, given=not doubt, doubt=doubt)
@@ -378,10 +378,10 @@ def _refined(
     wide = float(np.clip(max(beside_hz, FIRST_SHARE * mean_hz * teeth[0]), NARROWEST_HZ, WIDEST_HZ))
     orders = teeth[0] * np.arange(1.0, harmonics + 1.0)
 
-    def lines(half_hz: float) -> Lines:
+    def lines(half_hz: float) -> MeshLines:
         at_s, values = envelopes.around(time_s, turns, orders, half_hz)
         harmonic = np.tile(np.arange(1.0, harmonics + 1.0), len(values))
-        return Lines(at_s, values.reshape(harmonic.size, -1), harmonic, mean_hz * teeth[0])
+        return MeshLines(at_s, values.reshape(harmonic.size, -1), harmonic, mean_hz * teeth[0])
 
     for number in range(PASSES):
         last = lines(wide if number < PASSES - 1 else narrow)
@@ -403,7 +403,7 @@ def _refined(
     return _Tried(replace(angle, levels=levels, nats=nats), harmonics)
 
 
-def _halves(lines: Lines) -> tuple[Halves, int]:
+def _halves(lines: MeshLines) -> tuple[Halves, int]:
     """Return what two disjoint halves of the lines, of equal strength, each ask for, and how many lines count."""
     strength = line_strengths(lines)
     sides, sums = np.zeros(strength.size, dtype=np.int64), [0.0, 0.0]
