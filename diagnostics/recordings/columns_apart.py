@@ -1,4 +1,7 @@
-"""The columns of a recorded file, read in the process with limits; they come back as arrays in files."""
+"""The columns of a recorded file, read in the process with limits; they come back as plain numbers in files.
+
+Plain, since `numpy.load` parses a header as Python source, which fails in deep calls of Python 3.11.
+"""
 
 from __future__ import annotations
 
@@ -48,10 +51,11 @@ def _keep(found: Columns, folder: Path) -> None:
     }
     (folder / "facts.json").write_text(json.dumps({**facts, "names": list(found.values)}), encoding="utf-8")
     for number, column in enumerate(found.values.values()):
-        np.save(folder / f"{number}.npy", np.asarray(column, dtype=np.float64), allow_pickle=False)
+        np.asarray(column, dtype=np.float64).tofile(folder / f"{number}.f64")
 
 
 def _columns(folder: Path) -> Columns:
     facts = json.loads((folder / "facts.json").read_text(encoding="utf-8"))
     names, notes = facts.pop("names"), tuple(facts.pop("notes"))
-    return Columns({name: np.load(folder / f"{number}.npy") for number, name in enumerate(names)}, notes=notes, **facts)
+    values = {name: np.fromfile(folder / f"{number}.f64") for number, name in enumerate(names)}
+    return Columns(values, notes=notes, **facts)

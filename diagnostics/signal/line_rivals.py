@@ -155,7 +155,9 @@ def _of_speed(
     step = 1.0 / (levels.revolutions * teeth[0] * harmonics)
     low, high = OUTSIDE[0] * limits_hz[0] / speed_hz, OUTSIDE[1] * limits_hz[1] / speed_hz
     scales = np.exp(np.arange(np.log(low), np.log(high) + step, step))
-    scales = scales[np.abs(scales - 1.0) > 3.0 / (levels.revolutions * teeth[0])]
+    # what shares lines with the judged speed is looked at by itself, below
+    shared = np.abs(scales[:, None] / np.array([1.0, *MULTIPLES]) - 1.0).min(axis=1)
+    scales = scales[shared > 3.0 / (levels.revolutions * teeth[0])]
     multiples = np.outer(MULTIPLES, np.exp(step * np.arange(-3, 4)))
     best: dict[str, Rival] = {}
     for part, is_multiple in ((scales, False), *((row, True) for row in multiples)):
@@ -170,9 +172,26 @@ def _of_speed(
                 less = _mesh_mean(levels, teeth[0], harmonics, 1.0)
                 less -= _mesh_mean(levels, teeth[0], harmonics, float(part[place]))
                 behind = max(behind, 2.0 * harmonics * less)
+                if part[place] < 1.0:
+                    behind = max(behind, -_unexplained(levels, teeth, harmonics, float(part[place])))
             if kind not in best or behind < best[kind].behind:
                 best[kind] = Rival(f"{part[place] * speed_hz:.4g} Hz", behind)
     return best
+
+
+def _unexplained(levels: OrderLevels, teeth: tuple[int, int], harmonics: int, scale: float) -> float:
+    """Return what lines of a slower speed say that the judged one has not [nats].
+
+    A blow per turn has lines at all orders of a shaft, mesh lines of half its speed among them. But at half the speed
+    the sidebands would stand at half orders, too.
+    """
+    mesh, beside = line_orders(teeth, harmonics)
+    explained = np.concatenate([mesh, beside])
+    tried = beside * scale
+    apart = APART_CELLS / levels.revolutions
+    new = np.abs(tried - np.rint(tried)) > apart
+    new &= np.abs(tried[:, None] - explained).min(axis=1) > apart
+    return levels.total(tried[new])
 
 
 def _mesh_mean(levels: OrderLevels, teeth: int, harmonics: int, scale: float) -> float:

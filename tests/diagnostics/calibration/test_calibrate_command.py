@@ -116,7 +116,7 @@ def test_every_gearbox_of_the_set_draws_its_own_path(calibrated: tuple[Path, Pat
     [
         (["--teeth-of-rig-do-not-fit"], "No such option"),
         (["--channel", "lid=ch1"], "the rig has the channels"),
-        (["--unit", "mV"], "sensitivity"),
+        (["--unit", "mV"], "states the unit m/s2"),
     ],
 )
 def test_a_call_that_cannot_work_says_why(

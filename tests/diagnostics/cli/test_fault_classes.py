@@ -96,7 +96,18 @@ def test_predict_names_a_fault_and_says_so(
     table = combined(make_dataset(("test",) * 2, seed=8)).table.slice(2, 1)
     assert table.column("state").to_pylist() == ["severe"]
     parquet.write_table(table.replace_schema_metadata({"siggen.identity": "0"}), tmp_path / "run.parquet")
-    given = ("--fs", "12800", "--teeth", "18,47", "--speed-range", "20,50", "--out", str(tmp_path / "out"))
+    given = (
+        "--fs",
+        "12800",
+        "--teeth",
+        "18,47",
+        "--speed-range",
+        "20,50",
+        "--unit",
+        "m/s2",
+        "--out",
+        str(tmp_path / "out"),
+    )
     done = command("diagnostics", "predict", str(model), str(tmp_path / "run.parquet"), *given)
     assert done.returncode == 0, done.stderr
     assert "answer (fault):       pitting" in done.stdout

@@ -49,7 +49,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
 
 
 def options(*more: str) -> tuple[str, ...]:
-    return ("--fs", "12800", "--teeth", "18,47", "--speed-range", "20,50", *more)
+    return ("--fs", "12800", "--teeth", "18,47", "--speed-range", "20,50", "--unit", "m/s2", *more)
 
 
 def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
@@ -93,25 +93,21 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     file = save(tmp_path / "run.npz", dataset, 0, gain=300.0)
-    assert (
-        run(monkeypatch, str(models_folder), str(file), "--fs", "12800", "--teeth", "18,47", "--tacho", "tacho_s") == 0
-    )
+    given = ("--fs", "12800", "--unit", "m/s2", "--tacho", "tacho_s")
+    assert run(monkeypatch, str(models_folder), str(file), *given, "--teeth", "18,47") == 0
     found = capsys.readouterr().out
     assert "answer:               abstains" in found
     assert "unlike the training records" in found
     file = save(tmp_path / "run.npz", dataset, 0)
-    assert (
-        run(monkeypatch, str(models_folder), str(file), "--fs", "12800", "--teeth", "18,31", "--tacho", "tacho_s") == 0
-    )
+    assert run(monkeypatch, str(models_folder), str(file), *given, "--teeth", "18,31") == 0
     assert "18/31 teeth, training covers 18/47 only" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--fs", "12800", "--speed-range", "20,50"), "teeth unknown"),
-        (("--fs", "12800", "--teeth", "18,47"), "neither tacho nor speed"),
-        (("--teeth", "18,47", "--speed-range", "20,50"), "sampling rate"),
+        (("--fs", "12800", "--speed-range", "20,50", "--unit", "m/s2"), "teeth unknown"),
+        (("--teeth", "18,47", "--speed-range", "20,50", "--unit", "m/s2"), "sampling rate"),
         (options("--channel", "casing=x"), "no channel casing is wanted"),
         (options("--reference", "run.npz"), "without the healthy-referenced variant"),
     ],
@@ -136,9 +132,9 @@ def test_what_is_missing_is_a_usage_error_with_a_way_out(
             {"bearing_vertical": np.clip(np.sin(np.arange(12_800)), -0.5, 0.5)},
             "record again with a wider",
         ),
-        ("short.npz", {}, "short.npz: received 0.0781 s"),
+        ("short.npz", {}, "short.npz: 0.0781 s hold 3.91 turns"),
         ("other.npz", {"strange": np.ones(9)}, "other.npz: no column bearing_vertical"),
-        ("run.docx", {}, "received suffix '.docx'"),
+        ("run.docx", {}, "run.docx: holds no samples"),
         ("torn.mat", {}, "torn.mat: cannot be read as a MAT file"),
         (".", {}, "is a folder; give the file of one recording"),
         ("gone.npz", {}, "gone.npz: no such file"),

@@ -124,7 +124,19 @@ def other(trained: tuple[Path, Path], make_dataset: Callable[..., Any]) -> Any:
 def predict(
     monkeypatch: pytest.MonkeyPatch, folder: Path, file: Path | str, out: Path, *more: str
 ) -> tuple[int, dict[str, Any]]:
-    arguments = ("--fs", str(FS_HZ), "--teeth", "18,47", "--tacho", "tacho_s", "--out", str(out), *more)
+    arguments = (
+        "--fs",
+        str(FS_HZ),
+        "--teeth",
+        "18,47",
+        "--unit",
+        "m/s2",
+        "--tacho",
+        "tacho_s",
+        "--out",
+        str(out),
+        *more,
+    )
     monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", str(folder), str(file), *arguments])
     with pytest.raises(SystemExit) as stop:
         main()
