@@ -227,11 +227,12 @@ def read_numpy(path: Path) -> Columns:
         If it is not one, or holds objects (which only unpickling could read) or arrays of more than two dimensions.
     """
     try:
-        found = np.load(path, allow_pickle=False)
-        if isinstance(found, np.ndarray):
-            return Columns(numbered(found), layout={"format": "NumPy"})
-        with found as archive:
-            arrays = {name: archive[name] for name in archive.files}
+        with path.open("rb") as file:  # a broken archive would stay open
+            found = np.load(file, allow_pickle=False)
+            if isinstance(found, np.ndarray):
+                return Columns(numbered(found), layout={"format": "NumPy"})
+            with found as archive:
+                arrays = {name: archive[name] for name in archive.files}
         if wrong := [name for name, array in arrays.items() if array.size > 1 and array.ndim > 2]:
             raise ValueError(f"array {wrong[0]} has {arrays[wrong[0]].ndim} dimensions")
         # a single number is a note, such as the rate, not a signal
