@@ -15,19 +15,15 @@ that ran once: they are one recording. Windows of one recording are not independ
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from diagnostics.audit.column_attackers import products, ridge_scores
 from diagnostics.audit.held_out import dealt_folds, wins
-from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.file_columns import READERS
-from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
-from diagnostics.recordings.roles import ColumnUse, named_role
-from diagnostics.recordings.sample_times import counts_samples, even_rate_hz, looks_like_time
-from diagnostics.recordings.units import unit_of_name
+from diagnostics.recordings.taken import RecordingFacts, channel_columns, say_taken, take
 from diagnostics.signal.window_features import FEATURES, signal_windows, window_features
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
@@ -109,41 +105,29 @@ def reference_windows(folder: Path, fs_hz: float | None) -> WindowSet:
         raise UsageError(f"{folder}: no recordings; allowed are files that end in {', '.join(READERS)}")
     windows = _Windows()
     for path in files:
-        found = read_columns(path)
-        rate = fs_hz or found.fs_hz or next(filter(None, (_rate_hz(found, name) for name in found.values)), None)
+        try:
+            taken = take(path, RecordingFacts(), say=False)
+            columns = channel_columns(taken)
+        except UsageError as error:
+            raise UsageError(
+                f"{str(error).rstrip('.')}. `audit` takes no option of `siggen-diagnostics indicators`: correct the "
+                "file, or leave it out"
+            ) from error
+        if taken.fs_hz is None and fs_hz is not None:
+            taken = replace(taken, fs_hz=fs_hz, rate_why="--reference-fs")
+        say_taken(taken)
+        rate = taken.fs_hz
         if not rate or rate < LOWEST_RATE_HZ:
             raise UsageError(
                 f"{path}: sampling rate: received {rate}; {LOWEST_RATE_HZ:g} Hz or more are needed. Files that do not "
                 "state it: give it with --reference-fs"
             )
         inside = path.relative_to(folder)
-        for name in _vibration(found):
-            windows.add(found.values[name], rate, inside.parts[0], f"{inside}:{name}")
+        for column in columns.values():
+            windows.add(taken.found.values[column], rate, inside.parts[0], f"{inside}:{column}")
     if not windows.values:
         raise UsageError(f"{folder}: no recording holds a whole second; windows of one second are needed")
     return windows.together()
-
-
-def _use(found: Columns, name: str) -> ColumnUse:
-    """Return what a column is; features of windows take no unit."""
-    plain, unit = unit_of_name(name)
-    return named_role(plain, found.units.get(name, unit)).role
-
-
-def _vibration(found: Columns) -> list[str]:
-    """Return the columns of vibration of a file."""
-    if found.own:
-        return list(found.own.values())
-    named = [name for name in found.values if _use(found, name) is ColumnUse.VIBRATION and name != OWN_TACHO]
-    return [name for name in named if not (looks_like_time(found.values[name]) or counts_samples(found.values[name]))]
-
-
-def _rate_hz(found: Columns, name: str) -> float | None:
-    """Return the rate that a column of times states, or one that rises as they do."""
-    use, values = _use(found, name), found.values[name]
-    if use not in (ColumnUse.TIME, ColumnUse.VIBRATION) or counts_samples(values):
-        return None
-    return even_rate_hz(values, found.units.get(name, unit_of_name(name)[1]))
 
 
 def _channel_features(signal: np.ndarray, fs_hz: float) -> list[np.ndarray]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -11,7 +10,7 @@ import typer
 from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
 from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
-from siggen.errors import UsageError
+from siggen.errors import EXIT_USAGE, UsageError
 
 
 @grouped
@@ -21,7 +20,7 @@ def baseline(
         typer.Argument(
             metavar="HEALTHY...",
             help="Healthy recordings: .csv, .txt, .lvm, .mat, .wav, .npz, .tdms, .uff, .h5, .mf4, .parquet "
-            "(FILE:ROW,ROW) and others; 3 at least.",
+            "(FILE:ROW,ROW) and others; 4 at least.",
             show_default=False,
         ),
     ],
@@ -44,34 +43,40 @@ def baseline(
 ) -> None:
     """Learn what a healthy machine looks like; `check` compares later recordings with it. No simulation is needed.
 
-    Example: siggen-diagnostics baseline may.csv june.csv july.csv --fs 25600 --teeth 25,56 --speed-range 14,26 -o rig
+    Recordings that cannot be used are named behind the others; the exit code is then 2.
+
+    Example: siggen-diagnostics baseline 1.csv 2.csv 3.csv 4.csv --fs 25600 --teeth 25,56 --speed-range 14,26 -o rig
     """
     from diagnostics.base.progress import terminal_stage
     from diagnostics.machine.check import rate_sentence
-    from diagnostics.machine.healthy_state import healthy_state
+    from diagnostics.machine.healthy_state import first_readable, healthy_state, thin_sentence
     from diagnostics.machine.machine import save_machine
-    from diagnostics.recordings.taken import file_channels, take, unit_or_unknown
+    from diagnostics.recordings.taken import channel_names, unit_or_unknown
     from diagnostics.records.gear_train import names_of
 
     train = gears.train("--teeth")
     sources = [source for said in healthy for source in file_rows(said)]
     columns = recording.columns()
     facts, span = recording.facts(), recording.speed_range_hz()
-    first = replace(facts, row=sources[0][1])
-    names = tuple(columns) or file_channels(sources[0][0], first)
-    facts = unit_or_unknown(take(sources[0][0], first, say=False), names, facts)
+    first = first_readable(sources, facts)
+    names = tuple(columns) or channel_names(first)
+    facts = unit_or_unknown(first, names, facts)
     with terminal_stage("healthy recordings", len(sources)) as advance:
-        machine = healthy_state(sources, names, facts, train, span, _loads(load), false_alarms, advance)
+        machine, refused = healthy_state(sources, names, facts, train, span, _loads(load), false_alarms, advance)
     save_machine(machine, out)
     shaft = names_of(train).shafts[0]
     speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
-    echo(f"{len(sources)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
+    echo(f"{len(machine.references)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
     for reference, speed_hz, angle in zip(machine.references, machine.speed_hz, machine.angles, strict=True):
         echo(f"{reference}: {speed_hz:.4f} Hz ({angle})", err=True)
-    for doubt in machine.doubts:
+    for name, reason in refused.items():
+        echo(f"{name}: left out: {reason}", err=True)
+    for doubt in [*machine.doubts, *filter(None, [thin_sentence(machine)])]:
         echo(f"doubtful: {doubt}", err=True)
-    echo(rate_sentence(len(sources), false_alarms), err=True)
+    echo(rate_sentence(len(machine.references), false_alarms), err=True)
     echo(str(out))
+    if refused:
+        raise typer.Exit(EXIT_USAGE)
 
 
 def _loads(said: str) -> list[float] | None:

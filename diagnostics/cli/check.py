@@ -9,11 +9,11 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import Rate, file_rows
+from diagnostics.cli.recording_options import ChannelColumns, Rate, file_rows, named_column
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 
-READ_AS = re.compile(r"(?<![\w-])--(?!fs|load)[a-z]")
+READ_AS = re.compile(r"(?<![\w-])--(?!fs|load|channel)[a-z]")
 """Options in messages about files that are not those of `check`, which reads files as the machine's first ones."""
 
 
@@ -28,6 +28,7 @@ def check(
         ),
     ],
     fs: Rate = None,
+    channel: ChannelColumns = None,
     load: Annotated[
         float | None, typer.Option("--load", help="Load, in the unit of `baseline --load`; not after `--load slip`.")
     ] = None,
@@ -60,10 +61,11 @@ def check(
     known = load_machine(machine)
     load_note = load_sentence(known, load)
     sources = [source for said in new for source in file_rows(said)]
+    columns = {**known.facts.columns, **dict(map(named_column, channel or ()))}
     found, unread = [], {}
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:
-            facts = replace(known.facts, row=row, fs_hz=fs or known.facts.fs_hz)
+            facts = replace(known.facts, row=row, fs_hz=fs or known.facts.fs_hz, columns=columns)
             name = path.name if row is None else f"{path.name}:{row}"
             try:
                 found.append(check_recording(known, read_recording(path, known.channels, facts), name, load))

@@ -23,6 +23,14 @@ KNOWN_WITHIN = 0.03
 """Relative: slip of a loaded motor, or a nameplate's rounding."""
 
 Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed where the file states it.")]
+ChannelColumns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--channel",
+        metavar="NAME=COLUMN",
+        help="A channel and its column of the file. May be given several times. Default: columns by their names.",
+    ),
+]
 Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")]
 
 
@@ -89,14 +97,7 @@ class RecordingOptions:
             help="Without a tacho: the pinion's speed where it is known to 3 %, in Hz or as 1780rpm.",
         ),
     ] = None
-    channel: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--channel",
-            metavar="NAME=COLUMN",
-            help="A channel and its column of the file. May be given several times. Default: columns by their names.",
-        ),
-    ] = None
+    channel: ChannelColumns = None
     unit: Annotated[
         str | None,
         typer.Option(

@@ -168,8 +168,11 @@ def _compared(machine: Machine, pieces: RecordPieces, speed_hz: float, name: str
     moved = _moved(machine, logs, score)
     verdict = CHANGED if score.changed else UNCHANGED
     used = int(np.count_nonzero(beside.used))
-    doubt = f"; {_other_level(level)}" if score.changed and abs(level) > DOUBTFUL_DB else ""
-    return Check(name, verdict, _reason(score, moved) + doubt, speed_hz, score, moved, used)
+    doubts = [_other_level(level)] if abs(level) > DOUBTFUL_DB else []
+    if len(beside.conditions) == 0 and (where := _beyond_levels(machine, healthy, logs)):
+        doubts.append(f"all channels are {where} than in every reference; other loads do that too: give --load to both")
+    doubt = "".join(f"; {text}" for text in doubts) if score.changed else ""
+    return Check(name, verdict, _reason(score, moved, used) + doubt, speed_hz, score, moved, used)
 
 
 def load_sentence(machine: Machine, load: float | None) -> str:
@@ -234,6 +237,14 @@ def _level_db(machine: Machine, mean: np.ndarray, logs: np.ndarray) -> float:
     return float(off[np.abs(off).argmin()])
 
 
+def _beyond_levels(machine: Machine, healthy: np.ndarray, logs: np.ndarray) -> str:
+    """Return whether all channels are `louder` or `quieter` than in all references; empty where they are neither."""
+    levels = [k for k, name in enumerate(machine.names) if name.startswith("rms__")]
+    if (logs[levels] > healthy[:, levels].max(axis=0)).all():
+        return "louder"
+    return "quieter" if (logs[levels] < healthy[:, levels].min(axis=0)).all() else ""
+
+
 def _other_level(level_db: float) -> str:
     unit = " (g and m/s2 lie 20 dB apart)" if abs(abs(level_db) - G_DB) < G_NEAR_DB else ""
     return f"all channels are {level_db:+.0f} dB off; is the unit, sensitivity or gain that of the references{unit}?"
@@ -248,10 +259,10 @@ def _moved(machine: Machine, logs: np.ndarray, score: ChangeScore) -> tuple[Move
     return tuple(found)
 
 
-def _reason(score: ChangeScore, moved: tuple[Moved, ...]) -> str:
+def _reason(score: ChangeScore, moved: tuple[Moved, ...], used: int) -> str:
     side = "above" if score.changed else "not above"
     first = "" if not score.changed else f"; most: {_names(moved)}"
-    return f"its distance {score.score:.3g} is {side} the limit {score.limit:.3g}{first}"
+    return f"its distance {score.score:.3g} from {used} references is {side} the limit {score.limit:.3g}{first}"
 
 
 def _names(moved: tuple[Moved, ...]) -> str:

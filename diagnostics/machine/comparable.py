@@ -47,7 +47,7 @@ def slip_loads(speed_hz: np.ndarray, fastest_hz: float, slowest_hz: float) -> np
 
 
 def comparable(machine: Machine, speed_hz: float, load: float | None) -> Comparable | None:
-    """Return what a recording is compared with; None where fewer than three references say what to expect.
+    """Return what a recording is compared with; None where the references do not reach to its speed or load.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def comparable(machine: Machine, speed_hz: float, load: float | None) -> Compara
     if loads is not None and not machine.load_from_slip:  # slip does not tell where no load is
         idle = np.abs(loads) < NO_LOAD * np.abs(loads[:-1]).max()
         used &= idle[:-1] == idle[-1]
-    if np.count_nonzero(used) < FEWEST or (loads is not None and not _within(machine, loads[:-1][used], loads[-1])):
+    if not used.any() or (loads is not None and not _within(machine, loads[:-1][used], loads[-1])):
         return None
     chosen = np.append(used, True)
     conditions = [Condition(np.log(np.append(machine.speed_hz, speed_hz)[chosen]), *SPEED)] if over_speed else []

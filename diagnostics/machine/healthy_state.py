@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnostics.base.progress import Advance
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.machine.comparable import slip_loads
+from diagnostics.machine.comparable import comparable, slip_loads
 from diagnostics.machine.machine import Machine
 from diagnostics.machine.odd_references import USED_BAND, odd_references, odd_sentences, third_octave_levels
 from diagnostics.machine.recording_indicators import check_mesh_lines
@@ -18,10 +18,10 @@ from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_p
 from diagnostics.recordings.level_alike import check_levels_alike
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
-from diagnostics.recordings.taken import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts, TakenRecording, take
 from diagnostics.records.gear_train import Mesh
 from diagnostics.statistics.change_score import FEWEST
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 
 LONGEST_PIECE_S = 10.0
 LEAST_SLIP, MOST_SLIP = 0.001, 0.05
@@ -41,13 +41,13 @@ def healthy_state(
     loads: Sequence[float] | None,
     false_alarms: float,
     advance: Advance,
-) -> Machine:
-    """Return a machine from its healthy recordings.
+) -> tuple[Machine, dict[str, str]]:
+    """Return a machine from its healthy recordings, and why others cannot be used, by their names.
 
     Parameters
     ----------
     sources : sequence of (Path, int or None)
-        Files and rows, three at least.
+        Files and rows, four at least.
     channels, facts, train, speed_range_hz, false_alarms : see `Machine`
     loads : sequence of float or None
         One per recording, one for all, or none; None: the fall of speed tells them.
@@ -57,39 +57,83 @@ def healthy_state(
     Raises
     ------
     UsageError
-        If there are too few, one comes twice, or one cannot be used; names the file.
+        If there are too few that can be used, or one comes twice; names the files.
     """
-    if len(sources) < FEWEST:
-        raise UsageError(
-            f"{len(sources)} healthy recordings; allowed: at least {FEWEST}, and 19 for a rate of false alarms of 5 %"
-        )
     if loads is not None and len(loads) not in {0, 1, len(sources)}:
         raise UsageError(f"--load: received {len(loads)} numbers; allowed: one, or one per recording ({len(sources)})")
-    read = [read_recording(path, channels, _row(facts, row)) for path, row in sources]
-    _refuse_twice(read)
-    check_levels_alike(read)
-    fs_hz = min(recording.fs_hz for recording in read)
-    duration_s = min(LONGEST_PIECE_S, *(recording.duration_s for recording in read))
-    rows, speeds, angles = [], [], []
-    for recording in read:
-        pieces, pulses = pieces_of(recording, fs_hz, train, speed_range_hz, duration_s)
-        check_mesh_lines(recording, pulses, train[0])
-        rows.append(pieces)
-        speeds.append(pulses.speed_hz)
-        angles.append(pulses.origin)
+    refused: dict[str, str] = {}
+    read: dict[int, MeasuredRecording] = {}
+    called = [f"{path.name}:{row}" if row is not None else path.name for path, row in sources]
+    for k, (path, row) in enumerate(sources):
+        try:
+            read[k] = read_recording(path, channels, replace(facts, row=row))
+        except UsageError as error:
+            refused[called[k]] = str(error)
+    _enough(len(read), refused)
+    _refuse_twice(tuple(read.values()))
+    check_levels_alike(tuple(read.values()))
+    fs_hz = min(recording.fs_hz for recording in read.values())
+    duration_s = min(LONGEST_PIECE_S, *(recording.duration_s for recording in read.values()))
+    rows: dict[int, tuple[RecordPieces, ShaftPulses]] = {}
+    for k, recording in read.items():
+        try:
+            pieces, pulses = pieces_of(recording, fs_hz, train, speed_range_hz, duration_s)
+            check_mesh_lines(recording, pulses, train[0])
+            rows[k] = pieces, pulses
+        except UsageError as error:
+            refused[called[k]] = str(error)
         advance()
-    names = rows[0].names
-    values = np.stack([pieces.medians(names) for pieces in rows])
-    load = np.broadcast_to(np.asarray(loads or np.nan, dtype=np.float64), len(read)).copy()
-    if loads is None:
-        load = _slips(np.array(speeds))
-    called = tuple(f"{path.name}:{row}" if row is not None else path.name for path, row in sources)
-    levels = np.stack([third_octave_levels(recording, USED_BAND * fs_hz, duration_s) for recording in read])
-    doubts = odd_sentences(odd_references(levels, np.array(speeds), channels), called)
-    return Machine(
-        train, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, called,
-        np.array(speeds), load, loads is None, tuple(doubts), tuple(angles),
+    _enough(len(rows), refused)
+    kept = list(rows)
+    names = rows[kept[0]][0].names
+    values = np.stack([pieces.medians(names) for pieces, _ in rows.values()])
+    speeds = np.array([pulses.speed_hz for _, pulses in rows.values()])
+    load = _slips(speeds) if loads is None else np.broadcast_to(np.asarray(loads or np.nan, float), len(sources))[kept]
+    levels = np.stack([third_octave_levels(read[k], USED_BAND * fs_hz, duration_s) for k in kept])
+    references = tuple(called[k] for k in kept)
+    doubts = odd_sentences(odd_references(levels, speeds, channels), references)
+    angles = tuple(pulses.origin for _, pulses in rows.values())
+    machine = Machine(
+        train, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, references, speeds,
+        load, loads is None, tuple(doubts), angles,
     )  # fmt: skip
+    return machine, refused
+
+
+def first_readable(sources: Sequence[Source], facts: RecordingFacts) -> TakenRecording:
+    """Return what is taken of the first file that can be read.
+
+    Raises
+    ------
+    UsageError
+        If none can; names the first one.
+    """
+    refused = []
+    for path, row in sources:
+        try:
+            return take(path, replace(facts, row=row), say=False)
+        except UsageError as error:
+            refused.append(error)
+    raise refused[0]
+
+
+def _enough(usable: int, refused: Mapping[str, str]) -> None:
+    if usable < FEWEST:
+        count = f"{counted(usable, 'healthy recording')}; {FEWEST} are needed, 19 for a rate of false alarms of 5 %"
+        raise UsageError("\n".join([*refused.values(), count]))
+
+
+def thin_sentence(machine: Machine) -> str:
+    """Return at how many references `check` will not judge, since fewer than four lie near; empty where all are met."""
+    thin = [
+        f"{name} ({speed:.4g} Hz)"
+        for name, speed, load in zip(machine.references, machine.speed_hz, machine.load, strict=True)
+        if (beside := comparable(machine, speed, None if np.isnan(load) else load)) is None
+        or np.count_nonzero(beside.used) < FEWEST
+    ]
+    if not thin:
+        return ""
+    return f"fewer than {FEWEST} references, itself among them, at the speed and load of {', '.join(thin)}: record more"
 
 
 def pieces_of(
@@ -137,10 +181,6 @@ def _slips(speed_hz: np.ndarray) -> np.ndarray:
             f"{100 * MOST_SLIP:g} %, as between no load and full load. Give loads as numbers, or none"
         )
     return slip_loads(speed_hz, float(speed_hz.max()), float(speed_hz.min()))
-
-
-def _row(facts: RecordingFacts, row: int | None) -> RecordingFacts:
-    return replace(facts, row=row)
 
 
 def _refuse_twice(read: Sequence[MeasuredRecording]) -> None:

@@ -16,7 +16,6 @@ import numpy as np
 
 from diagnostics.machine.comparable import SPEED_RATIO
 from diagnostics.recordings.measured_recording import MeasuredRecording
-from diagnostics.statistics.change_score import FEWEST
 
 NEAR_DB, FAR_DB = 6.0, 15.0
 """Between recordings at one speed, and at different ones: modes then move lines of a healthy machine by up to 12 dB."""
@@ -24,6 +23,8 @@ SPREADS = 2.0
 """Limit over the median distance to the nearest other recording: machines that repeat badly have a wider one."""
 LOWEST_HZ, USED_BAND = 20.0, 1.0 / 2.56
 """Lowest band, and the share of the sampling rate that recorders pass whole."""
+FEWEST_NEAR = 3
+"""References at one speed that tell which of them is odd."""
 FEWEST_BINS = 3
 """Of the spectrum in a band."""
 SILENCE = 1e-30
@@ -73,7 +74,7 @@ def odd_references(levels: np.ndarray, speed_hz: np.ndarray, channels: Sequence[
     linked = distance <= np.maximum(np.where(near, NEAR_DB, FAR_DB), SPREADS * typical)
     odd = _outside(linked)
     for k, beside in enumerate(near):  # at its own speed a reference has the narrower limit
-        if np.count_nonzero(beside) >= FEWEST:
+        if np.count_nonzero(beside) >= FEWEST_NEAR:
             odd[k] |= _outside(linked[np.ix_(beside, beside)])[np.count_nonzero(beside[:k])]
     return tuple(_odd(int(k), np.flatnonzero(~odd), by_channel, channels) for k in np.flatnonzero(odd))
 

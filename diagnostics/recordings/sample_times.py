@@ -91,15 +91,6 @@ def looks_like_time(column: np.ndarray) -> bool:
     return usual > 0.0 and bool((steps > 0.0).all()) and float(np.mean(np.abs(steps - usual) <= 0.5 * usual)) >= ALIKE
 
 
-def even_rate_hz(column: np.ndarray, unit: str) -> float | None:
-    """Return the rate [Hz] of times that rise evenly, in seconds where no unit is known; None of other columns."""
-    if not looks_like_time(column):
-        return None
-    known = known_unit(unit)
-    seconds = known.factor if known is not None and known.quantity == "time" else 1.0
-    return _whole((column.size - 1) / (float(column[-1] - column[0]) * seconds), 1e-5)
-
-
 def counts_samples(column: np.ndarray) -> bool:
     """Return whether a column counts up by one."""
     return bool(column.size >= FEWEST_SAMPLES and (np.diff(column) == 1.0).all() and float(column[0]).is_integer())

@@ -209,7 +209,12 @@ def file_channels(path: Path, facts: RecordingFacts) -> tuple[str, ...]:
 
 
 def channel_names(taken: TakenRecording) -> tuple[str, ...]:
-    """Return the vibration channels of what was taken.
+    """Return the names of the vibration channels of what was taken; see `channel_columns`."""
+    return tuple(channel_columns(taken))
+
+
+def channel_columns(taken: TakenRecording) -> dict[str, str]:
+    """Return column by name of the vibration channels of what was taken.
 
     Raises
     ------
@@ -217,7 +222,7 @@ def channel_names(taken: TakenRecording) -> tuple[str, ...]:
         If there are none, or very many.
     """
     if taken.found.own:
-        return tuple(taken.found.own)
+        return dict(taken.found.own)
     prefix, suffix = OWN_COLUMN.split("{}")
     names = [column.name for column in taken.of_role(ColumnUse.VIBRATION)]
     own = [name for name in names if name.startswith(prefix) and name.endswith(suffix)]
@@ -227,9 +232,9 @@ def channel_names(taken: TakenRecording) -> tuple[str, ...]:
             "those that you mean: --channel NAME=COLUMN"
         )
     if own:
-        return tuple(name.removeprefix(prefix).removesuffix(suffix) for name in own)
+        return {name.removeprefix(prefix).removesuffix(suffix): name for name in own}
     plain = [unit_of_name(name)[0] for name in names]
-    return tuple(plain) if len(set(plain)) == len(plain) else tuple(names)
+    return dict(zip(plain if len(set(plain)) == len(plain) else names, names, strict=True))
 
 
 def column_called(found: Columns, name: str, said: str | None) -> str | None:

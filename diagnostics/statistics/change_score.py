@@ -18,10 +18,10 @@ from math import sqrt
 import numpy as np
 
 from diagnostics.statistics.conditions import Condition, deviation_among_conditions
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 
-FEWEST = 3
-"""References below which nothing can be said."""
+FEWEST = 4
+"""References below which nothing is said: of three that span loads most broken teeth are missed."""
 PRIOR_RECORDINGS = 3.0
 """Weight, in recordings, of the median spread over all features in the spread of each."""
 SHARE = 0.1
@@ -84,10 +84,13 @@ def change_score(
     Raises
     ------
     UsageError
-        If there are fewer than three references, or no feature is defined in all recordings.
+        If there are fewer than four references, or no feature is defined in all recordings.
     """
     if len(healthy) < FEWEST:
-        raise UsageError(f"{len(healthy)} healthy recordings; allowed: at least {FEWEST}, and 19 for a rate of 5 %")
+        raise UsageError(
+            f"{counted(len(healthy), 'healthy recording')} at this speed and load; {FEWEST} are needed, 19 for a rate "
+            "of false alarms of 5 %"
+        )
     bag = np.vstack([healthy, new])
     known = np.isfinite(bag).all(axis=0)
     if not known.any():

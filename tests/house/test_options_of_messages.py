@@ -19,8 +19,11 @@ OPTION = re.compile(r"(?<![\w-])(?<!var\()--[a-z][a-z-]*[a-z](?![\w-]*:\S)")
 """Not the colours of a style sheet, `--ink:#123456` and `var(--ink)`."""
 REFUSED = re.compile(r"--[a-z-]+(?=: | \{|$)")
 """At its beginning a message names the option whose value it refuses; it is printed where that option was given."""
-READ_AS = {"siggen-diagnostics check": "siggen-diagnostics baseline"}
-"""`check` reads files as the machine was told by `baseline`, and its messages say so."""
+READ_AS = {
+    "siggen-diagnostics check": "siggen-diagnostics baseline",
+    "siggen-diagnostics audit": "siggen-diagnostics indicators",
+}
+"""`check` reads files as the machine was told by `baseline`, `audit` without being told; their messages say so."""
 
 
 OPTIONS = {
@@ -109,6 +112,6 @@ def test_an_option_that_the_command_lacks_is_noticed(text: str, found: bool) -> 
 
 
 def test_check_says_whose_options_a_message_of_a_file_names() -> None:
-    said = _in_words_of_check("a.csv: no column up. Say which is which: --channel up=COLUMN.", Path("rig"))
+    said = _in_words_of_check("a.csv: its times are uneven. --resample 5000 lays them on even ones.", Path("rig"))
     assert "These are options of `siggen-diagnostics baseline`" in said
     assert _in_words_of_check("a.csv: give the rate, e.g. --fs 51200", Path("rig")).endswith("--fs 51200")

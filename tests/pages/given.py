@@ -25,7 +25,7 @@ PAIRS = {"18/47": (4242, 3.0, 34.0, True), "25/56": (4243, 2.0, 22.0, False)}
 FACTS = "publication.yaml"
 STORE = "an object store"
 """An empty bucket `sets`, to which the environment leads."""
-MONTHS = ("may", "june", "july", "august", "september")
+MONTHS = ("april", "may", "june", "july", "august", "september")
 
 
 class Given:
@@ -58,7 +58,7 @@ class Given:
 
 
 def record(pair: str, folder: Path) -> None:
-    """Write four healthy recordings of a machine with a pair, and one with a spalled tooth."""
+    """Write five healthy recordings of a machine with a pair, and one with a spalled tooth."""
     seed, module_mm, speed_hz, tacho = PAIRS[pair]
     pinion, gear = (int(teeth) for teeth in pair.split("/"))
     raw = {
@@ -66,7 +66,7 @@ def record(pair: str, folder: Path) -> None:
         "name": "hidden",
         "seed": seed,
         "specimens": 1,
-        "repeats": 4,
+        "repeats": 5,
         "gears": {"module_mm": module_mm, "pinion": {"teeth": pinion}, "gear": {"teeth": gear}},
         "states": [{"name": "healthy"}],
         "operating_points": [{"speed_hz": speed_hz, "torque_nm": 40.0}],
@@ -74,13 +74,13 @@ def record(pair: str, folder: Path) -> None:
     spall = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 0.5 * module_mm, "face_share": 1.0}
     damaged = {**raw, "states": [{"name": "spalled", "severity": "severe", "damage": spall}]}
     records = [
-        *siggen.simulate(siggen.load_config(raw), range(4)),
+        *siggen.simulate(siggen.load_config(raw), range(5)),
         siggen.simulate(siggen.load_config(damaged), [1])[0],
     ]
     folder.mkdir()
     for month, found in zip(MONTHS, records, strict=True):
         write_recording(found, folder / f"{month}.csv", tacho=tacho)
-    signals = {f"ch{k + 1}": signal for k, signal in enumerate(records[3].channels.values())}
+    signals = {f"ch{k + 1}": signal for k, signal in enumerate(records[4].channels.values())}
     facts = {"wf_increment": 1.0 / FS_HZ, "unit_string": "m/s^2"}
     with TdmsWriter(folder / "august.tdms") as file:
         file.write_segment([ChannelObject("recorder", *item, properties=facts) for item in signals.items()])

@@ -27,7 +27,7 @@ LINES = {
     "modes": "siggen inspect modes quickstart --out DISK/modes.csv --png DISK/modes.png",
     "errors": "siggen inspect errors quickstart --out DISK/errors.parquet",
     "publish": "siggen publish set --to DISK/upload --facts publication.yaml",
-    "baseline": f"siggen-diagnostics baseline may.wav june.wav july.wav {DESCRIBED} --out DISK/machine",
+    "baseline": f"siggen-diagnostics baseline april.wav may.wav june.wav july.wav {DESCRIBED} --out DISK/machine",
     "indicators": f"siggen-diagnostics indicators may.wav june.wav {DESCRIBED} --out DISK/indicators",
     "explore": f"siggen-diagnostics explore may.wav june.wav {DESCRIBED} --out DISK/look.html",
 }
@@ -35,11 +35,11 @@ LINES = {
 
 @pytest.fixture(scope="module")
 def material(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a set of made-up records, the authors' facts and three recordings."""
+    """A folder with a set of made-up records, the authors' facts and four recordings."""
     folder = tmp_path_factory.mktemp("material")
     write_fake_set(folder / "set")
     (folder / "publication.yaml").write_text(yaml.safe_dump(FACTS))
-    for seed, name in enumerate(("may", "june", "july")):
+    for seed, name in enumerate(("april", "may", "june", "july")):
         wavfile.write(folder / f"{name}.wav", round(FS_HZ), recorded(seed, 0.0).astype(np.float32))
     return folder
 

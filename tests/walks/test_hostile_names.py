@@ -82,7 +82,7 @@ def test_commands_on_files_show_their_names_and_columns(tmp_path: Path) -> None:
     runs: dict[str, Callable[[], Ended]] = {
         "indicators": lambda: command("diagnostics", "indicators", str(recording), *gears),
         "baseline": lambda: command(
-            "diagnostics", "baseline", *[str(recording)] * 3, *gears, "-o", str(tmp_path / "m")
+            "diagnostics", "baseline", *[str(recording)] * 4, *gears, "-o", str(tmp_path / "m")
         ),
         "predict": lambda: command("diagnostics", "predict", str(recording), str(recording), *gears),
         "check": lambda: command("diagnostics", "check", str(recording), str(recording)),

@@ -13,16 +13,19 @@ from tests.command import command
 from tests.walks.walking import FS_HZ, printed, recorded
 
 DESCRIBED = "--unit g --teeth 18,47 --speed-range 28,32"
+MONTHS = ("april", "may", "june", "july", "august")
 
 
 @pytest.fixture(scope="module")
 def machine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with five recordings: three healthy ones, one more, and one with a weak tooth."""
+    """A folder with six recordings: four healthy ones, one more, and one with a weak tooth."""
     folder = tmp_path_factory.mktemp("machine")
-    for seed, (name, depth) in enumerate({"may": 0.0, "june": 0.0, "july": 0.0, "august": 0.0, "worn": 0.7}.items()):
+    for seed, (name, depth) in enumerate([*((month, 0.0) for month in MONTHS), ("worn", 0.7)]):
         wavfile.write(folder / f"{name}.wav", round(FS_HZ), recorded(seed, depth).astype(np.float32))
     with chdir(folder):
-        done = command("diagnostics", *f"baseline may.wav june.wav july.wav {DESCRIBED} --out machine".split())
+        done = command(
+            "diagnostics", *f"baseline april.wav may.wav june.wav july.wav {DESCRIBED} --out machine".split()
+        )
     assert done.returncode == 0, done.stderr
     return folder
 

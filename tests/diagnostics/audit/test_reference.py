@@ -72,12 +72,15 @@ def test_many_windows_of_few_recordings_give_no_verdict() -> None:
     assert math.isnan(discriminator_auc(windows(3, 5.0, 1, per_owner=200), windows(20, 0.0, 2), 0))
 
 
-def test_a_folder_is_read_one_recording_a_file_or_subfolder_and_says_what_is_missing(tmp_path: Path) -> None:
+def test_a_folder_is_read_one_recording_a_file_or_subfolder_and_says_what_is_missing(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     rng = np.random.default_rng(1)
     (tmp_path / "machine").mkdir()
     for name in ("machine/a.npy", "machine/b.npy", "alone.npy"):
         np.save(tmp_path / name, rng.standard_normal(30_000))
     found = reference_windows(tmp_path, 12_800.0)
+    assert "30000 rows; 12800 Hz (--reference-fs)" in caplog.text
     assert {name: int(np.sum(found.owner == name)) for name in ("alone.npy", "machine")} == {
         "alone.npy": 2,
         "machine": 4,

@@ -49,7 +49,7 @@ def test_recordings_are_laid_over_the_healthy_one_nearest_in_speed(tmp_path: Pat
 
 
 def test_a_machine_gives_its_references_and_verdicts_but_no_samples(tmp_path: Path) -> None:
-    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k) for k in range(3)]
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k) for k in range(4)]
     new = write_recording(tmp_path / "august.npz", seed=9, knock=0.8)
     run("baseline", *files, *FACTS, "--load", "40", "--out", tmp_path / "rig")
     past = PastCheck("2026-01-01", "august.npz", "changed", 25.0, 9.0, 3.0)
@@ -57,8 +57,8 @@ def test_a_machine_gives_its_references_and_verdicts_but_no_samples(tmp_path: Pa
     (tmp_path / "rig" / "checks.jsonl").write_text(f"{line}\n")
     run("explore", tmp_path / "rig", *files, new, "--out", tmp_path / "page.html")
     records = listed(held(tmp_path / "page.html")["look-data"])
-    assert [record["state"] for record in records] == [*["healthy reference"] * 3, "changed"]
-    assert [record["torque_nm"] for record in records] == [40.0, 40.0, 40.0, None]
+    assert [record["state"] for record in records] == [*["healthy reference"] * 4, "changed"]
+    assert [record["torque_nm"] for record in records] == [*[40.0] * 4, None]
     with pytest.raises(UsageError, match="holds no samples of its recordings"):
         run("explore", tmp_path / "rig")
 

@@ -100,10 +100,10 @@ def test_another_load_is_not_compared(machine: Path, tmp_path: Path) -> None:
 
 
 def test_slips_are_named(tmp_path: Path) -> None:
-    files = [write_recording(tmp_path / f"{k}.npz", seed=k, seconds=0.8) for k in range(3)]
+    files = [write_recording(tmp_path / f"{k}.npz", seed=k, seconds=0.8) for k in range(4)]
     facts = (*SEARCHED, "--out", tmp_path / "rig")
     for arguments, told in (
-        ((*files[:2], *facts), "at least 3"),
+        ((*files[:3], *facts), "3 healthy recordings; 4 are needed"),
         ((*files, files[0], *facts), "give every recording once"),
         ((*files, *facts, "--load", "1,2"), "one per recording"),
         ((*files, "--fs", FS_HZ, "--out", tmp_path / "rig"), "--teeth: received nothing"),
@@ -129,7 +129,7 @@ def test_a_damaged_folder_is_named(machine: Path, tmp_path: Path) -> None:
 
 def test_teeth_whose_mesh_lines_are_not_there_are_refused(tmp_path: Path) -> None:
     """With a tacho nothing else would notice: every order would be that of something else."""
-    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k) for k in range(3)]
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k) for k in range(4)]
     for seed, file in enumerate(files):
         held = dict(np.load(file))
         held["pulse"] = np.where((held["t"] * 25.0) % 1.0 < 0.1, 5.0, 0.0)
@@ -168,9 +168,9 @@ def test_a_load_between_the_references_is_judged_and_one_outside_is_not(way: str
 
 
 def test_speeds_that_do_not_differ_tell_no_load(tmp_path: Path) -> None:
-    files = [write_recording(tmp_path / f"{k}.npz", seed=k, speed_hz=25.0 + 2.0 * k, tacho=True) for k in range(3)]
+    files = [write_recording(tmp_path / f"{k}.npz", seed=k, speed_hz=25.0 + 1.4 * k, tacho=True) for k in range(4)]
     facts = (*TOLD, "--load", "slip", "--out", tmp_path / "rig")
-    with pytest.raises(SiggenError, match="--load slip: speeds of the references differ by 14 %"):
+    with pytest.raises(SiggenError, match="--load slip: speeds of the references differ by 15 %"):
         run("baseline", *files, *facts)
 
 
@@ -206,7 +206,33 @@ def test_a_load_is_asked_for_where_references_have_one_and_refused_where_they_ha
 ) -> None:
     new = write_recording(tmp_path / "new.npz", seed=53)
     assert "give --load as well" in run("check", machine, new)[1]
-    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=60 + k, tacho=True) for k in range(3)]
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=60 + k, tacho=True) for k in range(4)]
     run("baseline", *files, *TOLD, "--out", tmp_path / "rig")
     with pytest.raises(UsageError, match="--load: received 40, but its references have none"):
         run("check", tmp_path / "rig", new, "--load", "40")
+
+
+def test_a_file_that_cannot_be_read_is_left_out_and_three_references_give_no_verdict(
+    tmp_path: Path,
+) -> None:
+    broken = tmp_path / "broken.npz"
+    broken.write_bytes(b"no archive")
+    files = [write_recording(tmp_path / f"slow_{k}.npz", seed=k, tacho=True) for k in range(3)]
+    files.append(write_recording(tmp_path / "fast.npz", seed=9, speed_hz=30.0, tacho=True))
+    code, said = run("baseline", broken, *files, *TOLD, "--out", tmp_path / "rig")
+    assert (code, "broken.npz: left out" in said, "4 recordings, 2 channels" in said) == (2, True, True), said
+    assert "fewer than 4 references, itself among them, at the speed and load of slow_0.npz" in said
+    _, said = run("check", tmp_path / "rig", write_recording(tmp_path / "new.npz", seed=20, tacho=True))
+    assert "new.npz: cannot tell: 3 healthy recordings at this speed and load; 4 are needed" in said
+
+
+def test_a_renamed_column_is_mapped_and_another_load_that_nobody_gives_is_said(tmp_path: Path) -> None:
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k, tacho=True) for k in range(4)]
+    run("baseline", *files, *TOLD, "--out", tmp_path / "rig")
+    held = dict(np.load(write_recording(tmp_path / "louder.npz", seed=30, gain=1.5, tacho=True)))
+    np.savez(tmp_path / "louder.npz", **{{"lid": "cover"}.get(name, name): values for name, values in held.items()})
+    with pytest.raises(SiggenError, match=r"no column lid.*--channel lid=COLUMN"):
+        run("check", tmp_path / "rig", tmp_path / "louder.npz")
+    code, said = run("check", tmp_path / "rig", tmp_path / "louder.npz", "--channel", "lid=cover")
+    assert (code, "louder.npz: changed" in said) == (4, True), said
+    assert "all channels are louder than in every reference; other loads do that too: give --load to both" in said

@@ -78,7 +78,7 @@ def test_a_report_shows_every_name_as_text(malicious: MemoryDataset, tmp_path: P
 
 def test_the_page_of_a_machine_shows_names_of_files_as_text(tmp_path: Path) -> None:
     assert app.info.name == "siggen-diagnostics"
-    files = [write_recording(tmp_path / f"<b>healthy\u202e{k}<!--.npz", seed=k) for k in range(3)]
+    files = [write_recording(tmp_path / f"<b>healthy\u202e{k}<!--.npz", seed=k) for k in range(4)]
     new = write_recording(tmp_path / "<img src=x onerror=alert(1)>.npz", seed=9)
     run("baseline", *files, "--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
     run("check", tmp_path / "rig", new)
