@@ -27,7 +27,7 @@ def counted(count: int, one: str, many: str = "") -> str:
 
 
 def how_to_install(extras: str) -> str:
-    """Return how to install siggen with extras, given as "cnn" or "cnn,onnx", for a message."""
+    """Return how to install siggen with extras, given as "cnn" or "cnn,s3", for a message."""
     return (
         f"`pip install '.[{extras}]'` in a checkout, `pip install 'WHEEL[{extras}]'` with a wheel's file "
         "(docs/start/install.md)"

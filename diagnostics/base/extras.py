@@ -12,7 +12,6 @@ EXTRA_OF = {
     "skops": "diagnostics",
     "torch": "cnn",
     "safetensors": "cnn",
-    "onnx": "onnx",
     "nptdms": "recordings",
     "pyuff": "recordings",
     "h5py": "recordings",

@@ -111,9 +111,8 @@ def _files(training: Training, dataset: Dataset) -> str:
         lines += [
             f"* `cnn.safetensors`: 1-D network with a wide first layer. A window has {windows.revolutions} pinion "
             f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles. The input is "
-            f"(batch, {len(facts.channels)}, {windows.samples}) in {listed}. The network normalises it.",
-            "* `cnn.onnx`: the same network, input `windows`, output `logits`. Average the class probabilities over "
-            f"the windows of a record. Windows are {windows.hop_revolutions} revolutions apart.",
+            f"(batch, {len(facts.channels)}, {windows.samples}) in {listed}. The network normalises it. "
+            f"Average the probabilities over the windows of a record, {windows.hop_revolutions} revolutions apart.",
         ]
     if training.circular:
         count = len(training.circular.channels)
@@ -122,7 +121,6 @@ def _files(training: Training, dataset: Dataset) -> str:
             f"(batch, {3 * count}, 1024): one averaged revolution of every channel, then their residuals (without "
             "shaft orders 0 to 2 and mesh harmonics), then these whitened, all with orders up to 511. The function "
             "`diagnostics.training.average_rows.average_rows` makes it. `predict` uses the network.",
-            "* `circular.onnx`: the same network, input `rows`, output `logits`.",
         ]
     if training.referenced and len(training.referenced.judged) > 2:
         lines.append("* The circular network beside a healthy record is judged in `metrics.json`; it is not saved.")
@@ -235,22 +233,13 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     identity, notes = set_identity(dataset), []
     save_classifier(training.classifier, table_settings(table), identity, folder)
     if training.network:
-        from diagnostics.training.cnn_files import export_onnx, save_network
+        from diagnostics.training.cnn_files import save_network
 
-        network, facts = training.network.trained.network, training.network.facts
-        save_network(network, facts, folder / "cnn.safetensors")
-        try:
-            export_onnx(network, facts, folder / "cnn.onnx")
-        except (RuntimeError, ImportError) as error:
-            notes.append(f"ONNX export failed: {error}")
+        save_network(training.network.trained.network, training.network.facts, folder / "cnn.safetensors")
     if training.circular:
-        from diagnostics.training.circular_files import export_circular_onnx, save_circular
+        from diagnostics.training.circular_files import save_circular
 
         save_circular(training.circular, folder / "circular.safetensors")
-        try:
-            export_circular_onnx(training.circular, folder / "circular.onnx")
-        except (RuntimeError, ImportError) as error:
-            notes.append(f"ONNX export of the circular network failed: {error}")
     write_predictions(_predicted(training, table), identity, folder, training.split.kind)
     released = release(training, table, dataset)
     notes += [released.note] if released.note else []

@@ -1,4 +1,4 @@
-"""The network on averages on disk: as safetensors, which cannot execute anything, and as ONNX for other programs.
+"""The network on averages on disk: as safetensors, which cannot execute anything.
 
 The safetensors file carries classes, channels, identity of the set and temperature in its metadata.
 """
@@ -6,16 +6,13 @@ The safetensors file carries classes, channels, identity of the set and temperat
 from __future__ import annotations
 
 import json
-import warnings
 from dataclasses import asdict, dataclass
-from io import BytesIO
 from pathlib import Path
 
-import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import load_file, save
 
-from diagnostics.training.average_rows import ROWS, STEPS
+from diagnostics.training.average_rows import ROWS
 from diagnostics.training.circular_network import CircularNetwork
 from diagnostics.training.circular_training import TrainedCircularFile
 from diagnostics.training.cnn_files import check_finite
@@ -81,24 +78,3 @@ def load_circular(path: Path) -> tuple[CircularNetwork, CircularFacts]:
     check_finite(path, network, facts.temperature)
     network.eval()
     return network, facts
-
-
-def export_circular_onnx(found: TrainedCircularFile, path: Path) -> None:
-    """Write the network as ONNX, for any batch size.
-
-    Input `rows` (batch, 3 channels, 1024) in m/s^2 as of `average_rows`, output `logits` (batch, classes).
-    """
-    example = torch.ones(2, ROWS * len(found.channels), STEPS)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the legacy exporter needs no further package; it announces its successor
-        exported = BytesIO()
-        torch.onnx.export(
-            found.trained.network,
-            (example,),
-            exported,
-            dynamo=False,
-            input_names=["rows"],
-            output_names=["logits"],
-            dynamic_axes={"rows": {0: "batch"}, "logits": {0: "batch"}},
-        )
-    write_file(path, exported.getvalue())

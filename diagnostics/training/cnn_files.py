@@ -1,12 +1,10 @@
-"""The network on disk: safetensors with everything needed to use it, and ONNX for use without torch."""
+"""The network on disk: safetensors with everything needed to use it."""
 
 from __future__ import annotations
 
 import json
 import math
-import warnings
 from dataclasses import asdict, dataclass
-from io import BytesIO
 from pathlib import Path
 
 import torch
@@ -111,25 +109,3 @@ def _facts(found: dict[str, object]) -> NetworkFile:
     windows = WindowSettings(**found["windows"])  # type: ignore[arg-type]
     temperature = float(str(found.get("temperature", 1.0)))
     return NetworkFile(windows=windows, identity=str(found["identity"]), temperature=temperature, **tuples)
-
-
-def export_onnx(network: WideKernelNetwork, facts: NetworkFile, path: Path) -> None:
-    """Write the network as ONNX, for any batch size.
-
-    Input `windows` (batch, channels, samples) in m/s^2, output `logits` (batch, classes).
-    """
-    example = torch.zeros(2, len(facts.channels), facts.windows.samples)
-    with warnings.catch_warnings():
-        # the legacy exporter is the one that needs no further package; it announces its successor on every call
-        warnings.simplefilter("ignore")
-        exported = BytesIO()
-        torch.onnx.export(
-            network,
-            (example,),
-            exported,
-            dynamo=False,
-            input_names=["windows"],
-            output_names=["logits"],
-            dynamic_axes={"windows": {0: "batch"}, "logits": {0: "batch"}},
-        )
-    write_file(path, exported.getvalue())

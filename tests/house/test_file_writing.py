@@ -18,7 +18,7 @@ WITH_A_TARGET = {
 """Functions that write where an argument says."""
 OF_A_MODULE = {
     ("np", "save"), ("json", "dump"), ("pickle", "dump"), ("yaml", "dump"), ("yaml", "safe_dump"), ("torch", "save"),
-    ("onnx", "export"), ("onnx", "save"), ("shutil", "copy"), ("pq", "write_table"), ("parquet", "write_table"),
+    ("shutil", "copy"), ("pq", "write_table"), ("parquet", "write_table"),
     ("csv", "write_csv"), ("os", "replace"), ("os", "rename"), ("os", "link"), ("os", "symlink"),
 }  # fmt: skip
 STREAMS = {"BytesIO", "StringIO"}

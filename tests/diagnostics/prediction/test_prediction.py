@@ -202,25 +202,6 @@ def test_distance_is_one_for_typical_records_whatever_the_speed_and_grows_off_th
     assert np.isfinite(level.distance(np.c_[logs[:, :1], np.full(2000, np.nan)], speed)).all()
 
 
-def test_onnx_gives_the_logits_of_torch(tmp_path: Path) -> None:
-    onnxruntime = pytest.importorskip("onnxruntime")
-    torch = pytest.importorskip("torch")
-    from diagnostics.loader.windows import WindowSettings
-    from diagnostics.training.cnn import WideKernelNetwork
-    from diagnostics.training.cnn_files import NetworkFile, export_onnx
-
-    windows = WindowSettings(teeth=18)
-    torch.manual_seed(0)
-    network = WideKernelNetwork(2, 3, windows.samples_per_tooth).eval()
-    facts = NetworkFile(("a", "b", "c"), ("x", "y"), windows, (0.0, 0.0), (1.0, 1.0), "identity")
-    export_onnx(network, facts, tmp_path / "cnn.onnx")
-    session = onnxruntime.InferenceSession(tmp_path / "cnn.onnx")
-    signal = np.random.default_rng(0).standard_normal((4, 2, windows.samples)).astype(np.float32)
-    with torch.no_grad():
-        expected = network(torch.from_numpy(signal)).numpy()
-    np.testing.assert_allclose(session.run(None, {"windows": signal})[0], expected, atol=1e-5)
-
-
 def test_probabilities_are_calibrated_as_the_models_own_are(
     models_folder: Path, make_dataset: Callable[..., Any], tmp_path: Path
 ) -> None:

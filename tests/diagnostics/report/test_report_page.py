@@ -210,7 +210,7 @@ def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
 @pytest.mark.usefixtures("few_trees")
 def test_records_too_short_for_the_network_leave_the_rest(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
     short = with_channels(make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25), CHANNELS[:1])
-    earlier = [tmp_path / "models" / "cnn.onnx", tmp_path / "figures" / "confusion_network.png"]
+    earlier = [tmp_path / "models" / "cnn.safetensors", tmp_path / "figures" / "confusion_network.png"]
     for path in earlier:
         path.parent.mkdir()
         path.write_bytes(b"of an earlier run")

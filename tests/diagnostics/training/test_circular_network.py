@@ -19,7 +19,7 @@ from diagnostics.training.average_rows import (
     padded_lines,
     with_references,
 )
-from diagnostics.training.circular_files import export_circular_onnx, load_circular, save_circular
+from diagnostics.training.circular_files import load_circular, save_circular
 from diagnostics.training.circular_network import (
     CircularNetwork,
     CircularSettings,
@@ -134,14 +134,6 @@ def test_a_burst_without_more_energy_is_found_on_other_gearboxes_by_the_labels_a
     network, facts = load_circular(tmp_path / "circular.safetensors")
     assert (facts.classes, facts.channels, facts.temperature) == (CLASSES, ("lid",), 0.8)
     np.testing.assert_array_equal(circular_probability(network, records), circular_probability(first.network, records))
-    import onnxruntime
-
-    export_circular_onnx(kept, tmp_path / "circular.onnx")
-    session = onnxruntime.InferenceSession(tmp_path / "circular.onnx")
-    rows = average_rows(records.chosen(np.arange(5)))
-    with torch.no_grad():
-        expected = first.network(torch.from_numpy(rows)).numpy()
-    np.testing.assert_allclose(session.run(None, {"rows": rows})[0], expected, atol=1e-4)
 
 
 def test_the_same_seed_gives_the_same_network() -> None:
