@@ -19,11 +19,9 @@ from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.explore.measured_page import ShownRecording
-    from diagnostics.explore.set_page import LivesOf, LookOptions
     from diagnostics.machine.recording_indicators import RecordingIndicators
     from diagnostics.recordings.taken import RecordingFacts
     from diagnostics.records.gear_train import Mesh
-    from siggen.dataset.reading import Dataset
 
 MACHINE_FILE = "machine.json"
 """What the folder of a machine holds; its reader is slow to import."""
@@ -111,15 +109,6 @@ class SetOptions:
         ),
     ] = None
     indicator: OwnIndicators = None
-    serve: Annotated[
-        bool,
-        typer.Option(
-            "--serve",
-            help="Serve the page to this machine alone (127.0.0.1) until Ctrl+C, with every sample of every record. "
-            "Writes no file.",
-        ),
-    ] = False
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of --serve; 0 takes a free one.")] = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,11 +162,11 @@ def explore(
 
     It opens from disk, without a network. The folder of a machine knows how its recordings are read.
 
-    Example: siggen-diagnostics explore runs/quickstart --model runs/quickstart_report --serve --open
+    Example: siggen-diagnostics explore runs/quickstart --model runs/quickstart_report --open
 
     Example: siggen-diagnostics explore rig january.csv february.csv august.csv --beside runs/mine
     """
-    first, path = Path(targets[0]), out
+    first = Path(targets[0])
     if out and out.is_dir():
         raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
     if (first / MACHINE_FILE).is_file() or gears.given or file_rows(targets[0])[0][0].is_file():
@@ -190,24 +179,20 @@ def explore(
     elif len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {first}; allowed: one set at a time")
     else:
-        if of_set.serve and (out or amount.full):
-            raise UsageError("--serve writes no file and gives every sample; leave out --out and --full")
-        path = _set_page(first, out, amount, of_set, show)
-    if path is None:
-        return
+        path = _set_page(first, out, amount, of_set)
     echo(str(path))
     if show:
         opened(path)
 
 
 def _refuse_set_options(options: SetOptions) -> None:
-    said = {"--serve": options.serve, "--model": options.model, "--indicator": options.indicator}
+    said = {"--model": options.model, "--indicator": options.indicator}
     if given := [name for name, value in said.items() if value]:
         raise UsageError(f"{', '.join(given)}: for sets only; leave them out for recordings")
 
 
-def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: SetOptions, show: bool) -> Path | None:
-    """Serve the page of a set, or write it and return where."""
+def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: SetOptions) -> Path:
+    """Write the page of a set and return where."""
     from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.set_page import LookOptions, write_set_page
     from diagnostics.indicators.own_indicator import load_indicators
@@ -216,11 +201,8 @@ def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: Set
     from diagnostics.scoring.truth import is_lives
 
     own, dataset = load_indicators(of_set.indicator), open_set(folder)
-    options = LookOptions(**asdict(amount), served=of_set.serve, model=of_set.model, own=own)
+    options = LookOptions(**asdict(amount), model=of_set.model, own=own)
     adds = lives_of if is_lives(dataset) else None
-    if of_set.serve:
-        _serve(dataset, options, of_set.port, adds, show=show)
-        return None
     return write_set_page(dataset, out or path_beside(dataset.path, "_explore.html"), options, terminal_stage, adds)
 
 
@@ -252,29 +234,3 @@ def _recordings_page(
 
     options = LookOptions(**asdict(amount))
     return write_beside_page(name, shown, open_set(compared.beside), path, options, terminal_stage)
-
-
-def _serve(dataset: Dataset, options: LookOptions, port: int, adds: LivesOf | None, *, show: bool) -> None:
-    """Serve until Ctrl+C."""
-    import numpy as np
-
-    from diagnostics.base.progress import terminal_stage
-    from diagnostics.explore.look import look_page
-    from diagnostics.explore.server import DETAIL, LIFE, page_server
-    from diagnostics.explore.set_page import set_look, set_name
-
-    look = set_look(dataset, options, terminal_stage, adds)
-    page, records = look_page(f"Records of {set_name(dataset)}", look), np.asarray(look.source.labels["record_id"])
-    try:
-        server = page_server(page, dataset, records, {DETAIL: look.detail, LIFE: look.life}, port)
-    except OSError as error:
-        raise UsageError(f"--port {port}: {error.strerror}; allowed: a free port, or 0 for any") from error
-    address = f"http://{server.server_address[0]!s}:{server.server_port}/"
-    echo(f"{address} (this machine alone; Ctrl+C ends it)")
-    if show:
-        opened(address)
-    with server:
-        try:
-            server.serve_forever()
-        except KeyboardInterrupt:
-            echo("ended", err=True)

@@ -6,11 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.base.progress import Stage
 from diagnostics.explore.payload import PageSource, Shown, page_axes, page_details, page_head
-from diagnostics.explore.record_views import PageAxes
 from diagnostics.page import html
 from diagnostics.page.live import Live
 from diagnostics.page.wording import counted
@@ -35,25 +32,14 @@ class Look:
     live : Live
         What draws it.
     source : PageSource
-    axes : PageAxes
-        By which a server makes the details of further records.
     """
 
     block: str
     live: Live
     source: PageSource
-    axes: PageAxes
-
-    def detail(self, row: int) -> dict[str, Any]:
-        """Return signals, spectra, averages and damage of one record."""
-        return page_details(self.source, self.axes, np.array([row]), silent_stage)[row]
-
-    def life(self, gearbox: int) -> dict[str, str]:
-        """Return figure and caption of a gearbox over its life."""
-        return self.source.life(gearbox) if self.source.life else {}
 
 
-def look_of(source: PageSource, shown: Shown, stage: Stage, *, full: bool = False, served: bool = False) -> Look:
+def look_of(source: PageSource, shown: Shown, stage: Stage, *, full: bool = False) -> Look:
     """Return records as a part of a page.
 
     Parameters
@@ -64,18 +50,16 @@ def look_of(source: PageSource, shown: Shown, stage: Stage, *, full: bool = Fals
         Told of every record.
     full : bool
         Whether all samples are kept, as far as 30 MB allow.
-    served : bool
-        Whether a server gives what the page does not hold.
     """
     axes = page_axes(source, full=full)
-    details = page_details(source, axes, source.kept, stage) if source.kept.size else {}
-    data: dict[str, Any] = {"look-data": page_head(source, axes, shown, served=served)}
+    details = page_details(source, axes, source.kept, stage)
+    data: dict[str, Any] = {"look-data": page_head(source, axes, shown)}
     data |= {f"look-record-{row}": detail for row, detail in details.items()}
     if source.life is not None:
         gearboxes = sorted({int(source.labels["specimen_id"][row]) for row in source.kept})
         data |= {f"look-life-{gearbox}": source.life(gearbox) for gearbox in gearboxes}
-    live = Live(_files(STYLES), _files(SCRIPTS), data, served=served)
-    return Look((FOLDER / "look.html").read_text(encoding="utf-8"), live, source, axes)
+    live = Live(_files(STYLES), _files(SCRIPTS), data)
+    return Look((FOLDER / "look.html").read_text(encoding="utf-8"), live, source)
 
 
 def look_page(title: str, look: Look) -> str:

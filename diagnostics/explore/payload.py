@@ -127,7 +127,7 @@ def page_axes(source: PageSource, *, full: bool) -> PageAxes:
     )
 
 
-def page_head(source: PageSource, axes: PageAxes, shown: Shown, *, served: bool = False) -> dict[str, Any]:
+def page_head(source: PageSource, axes: PageAxes, shown: Shown) -> dict[str, Any]:
     """Return what the page reads when it opens: labels and indicators of all records, and what they are called."""
     titles = {**source.titles, **dict((*shown.columns, *shown.filters))}
     return {
@@ -148,7 +148,6 @@ def page_head(source: PageSource, axes: PageAxes, shown: Shown, *, served: bool 
         "measured": source.measured,
         "shafts": list(source.named.shafts),
         "called": dict(source.called),
-        "served": served,
         "table": shown.columns,
         "filters": shown.filters,
         "missing": list(shown.missing),

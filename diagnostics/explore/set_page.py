@@ -116,8 +116,6 @@ class LookOptions:
         Most records whose signals it holds, of whole gearboxes.
     full : bool
         Whether all samples are kept, as far as 30 MB allow.
-    served : bool
-        Whether a server adds the signals, so that the page itself holds none.
     workers : int
         Processes that take indicators.
     model : Path, optional
@@ -132,7 +130,6 @@ class LookOptions:
 
     limit: int = LIMIT
     full: bool = False
-    served: bool = False
     workers: int = 1
     model: Path | None = None
     own: Sequence[OwnIndicator] = ()
@@ -188,11 +185,11 @@ def set_look(
     said = predicted_labels(table, dataset, options.model, options.own) if options.model else {}
     lives = lives_of(dataset, table) if lives_of else NO_LIVES
     specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
-    kept = np.empty(0, np.int64) if options.served else chosen_records(specimens, options.limit, options.first)
+    kept = chosen_records(specimens, options.limit, options.first)
     source = set_source(dataset, table, kept)
     source = replace(source, labels={**source.labels, **lives.labels, **said}, life=lives.figure)
     shown = _shown(dataset, source, options, lives)
-    return look_of(source, shown, stage, full=options.full, served=options.served)
+    return look_of(source, shown, stage, full=options.full)
 
 
 def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Lives) -> Shown:

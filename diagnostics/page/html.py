@@ -159,7 +159,7 @@ def page(title: str, parts: Sequence[str], live: Live = STILL) -> str:
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"{security_policy(scripts, asks_its_server=live.served)}"
+        f"{security_policy(scripts)}"
         f"<title>{without_turns(escape(title))}</title>"
         f"<style>{style_sheet(PRINTED_ROWS)}{live.style}</style></head>\n<body><main>\n"
         + numbered("\n".join(parts))

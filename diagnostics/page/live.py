@@ -23,14 +23,11 @@ class Live:
         Our own text, never that of a set.
     data : mapping of str to value
         What JSON can hold, by the name of the element that holds it; the script reads each when it is wanted.
-    served : bool
-        Whether the page may ask the server that it came from for more.
     """
 
     style: str = ""
     script: str = ""
     data: Mapping[str, Any] = field(default_factory=dict)
-    served: bool = False
 
     def data_elements(self) -> str:
         """Return the elements with the data, of which nothing can run."""

@@ -43,20 +43,17 @@ return down?-order:order}).forEach(function(row){body.appendChild(row)})})})});
 """Undefined values (an empty data-value) stay last in both directions; numbers begin with the largest, text with a."""
 
 
-def security_policy(scripts: Sequence[str], *, asks_its_server: bool = False) -> str:
+def security_policy(scripts: Sequence[str]) -> str:
     """Return the element with a page's content security policy.
 
     Parameters
     ----------
     scripts : sequence of str
         What stands between the tags of every script that runs, to the letter. Attributes such as onclick never run.
-    asks_its_server : bool
-        Whether the page fetches data from the address that it came from.
     """
     hashes = " ".join(map(script_hash, scripts))
     rules = [
         "default-src 'none'",
-        *(["connect-src 'self'"] if asks_its_server else []),
         f"script-src {hashes}",
         "style-src 'unsafe-inline'",  # style attributes have no hash; a style loads nothing under these rules
         "img-src data:",

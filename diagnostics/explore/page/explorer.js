@@ -39,7 +39,7 @@ Explore.showOverlayNote = (row) => {
     : `Laid over: record ${laid.record_id}, healthy, same gearbox and operating point.`;
 };
 
-Explore.open = async (row) => {
+Explore.open = (row) => {
   Explore.chosen = row;
   const record = Explore.records[row];
   const recording = Explore.isRecording(row);
@@ -48,8 +48,8 @@ Explore.open = async (row) => {
   const place = Explore.shown.indexOf(row);
   if (place >= 0 && (place < Explore.first || place >= Explore.first + Explore.MOST_ROWS)) Explore.turnTo(place);
   Explore.markRow();
-  await Promise.all([row, Explore.otherOf(row)].map(Explore.load));
-  if (Explore.chosen === row) Explore.draw();
+  [row, Explore.otherOf(row)].forEach(Explore.load);
+  Explore.draw();
 };
 
 Explore.draw = () => {
@@ -59,7 +59,7 @@ Explore.draw = () => {
   const part = Explore.part;
   if (!detail) {
     part("overlay-note").hidden = false;
-    part("overlay-note").textContent = "This page does not hold the signal of this record. `siggen-diagnostics explore SET --serve` shows it, and --limit puts more on the page.";
+    part("overlay-note").textContent = "This page does not hold the signal of this record. `siggen-diagnostics explore SET --limit` puts more on the page.";
     return void Explore.drawScatter();
   }
   const channel = Explore.channel();

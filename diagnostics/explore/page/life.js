@@ -1,14 +1,13 @@
 // The gearbox of a record over its life, in sets that run to failure.
 Explore.lives = new Map();
 
-Explore.showLife = async (section, row) => {
+Explore.showLife = (section, row) => {
   const unit = Explore.records[row].specimen_id;
   const body = section.querySelector(".body");
   section.hidden = !Explore.data.lives;
   if (!Explore.data.lives) return;
-  if (!Explore.lives.has(unit)) Explore.lives.set(unit, await Explore.held(`look-life-${unit}`, `life?number=${unit}`));
+  if (!Explore.lives.has(unit)) Explore.lives.set(unit, Explore.held(`look-life-${unit}`));
   const found = Explore.lives.get(unit);
-  if (Explore.chosen !== row) return;
   body.replaceChildren();
   if (!found) return void body.append(Explore.element("p", "This page does not hold this gearbox over its life."));
   const figure = Explore.element("figure");

@@ -79,22 +79,20 @@ Explore.rowsOver = (data) => (data === null ? null : Array.from(new Int32Array(E
 Explore.overlay = Explore.rowsOver(Explore.data.overlay);
 Explore.beside = Explore.rowsOver(Explore.data.beside);
 
-// Signals, spectra, averages and damage of a record: from the page, or from the server on this machine.
+// Signals, spectra, averages and damage of a record.
 Explore.details = new Map();
 Explore.detail = (row) => (row === null ? null : Explore.details.get(row) ?? null);
 
-Explore.load = async (row) => {
+Explore.load = (row) => {
   if (row === null || Explore.details.has(row)) return;
-  const found = await Explore.held(`look-record-${row}`, `detail?number=${row}`);
+  const found = Explore.held(`look-record-${row}`);
   if (found) Explore.details.set(row, found);
 };
 
-// What an element of the page holds, or else its server gives; null where neither has it.
-Explore.held = async (name, address) => {
+// What an element of the page holds; null where there is none.
+Explore.held = (name) => {
   const here = document.getElementById(name);
-  if (here) return JSON.parse(here.textContent);
-  const answer = Explore.data.served ? await fetch(address).catch(() => null) : null;
-  return answer && answer.ok ? answer.json() : null;
+  return here ? JSON.parse(here.textContent) : null;
 };
 
 // What a channel holds: its word and unit.

@@ -1,10 +1,10 @@
 // The signal over pinion revolutions: extremes of buckets, every sample of the first stretch.
 Explore.wave = (row, packed) => {
-  const samples = packed.every ? Array.from(packed.every, (_, k) => k) : Explore.samples(packed);
+  const samples = Explore.samples(packed);
   const pulses = Explore.floats(Explore.detail(row).pulses);
   const turning = pulses.length > 1;
   const x = turning ? Explore.revolutions(samples, pulses) : samples.map((sample) => sample / Explore.data.fs_hz);
-  return { x, y: packed.every ? Array.from(packed.every) : Explore.values(packed), fine: packed.fine, from: samples.indexOf(packed.fine[0]), turning };
+  return { x, y: Explore.values(packed), fine: packed.fine, from: samples.indexOf(packed.fine[0]), turning };
 };
 
 // Series and data of a curve, over the one of the healthy record where there is one.
@@ -63,22 +63,6 @@ Explore.waveMarks = (row, turning) => (first, last) => {
   return found;
 };
 
-// From the server on this machine: every sample of a record, in place of its extremes; then it is drawn again.
-Explore.fetchWave = async (row, channel) => {
-  const view = Explore.detail(row).channels[channel];
-  if (!Explore.data.served || view.wave.every || view.asked) return;
-  view.asked = true;
-  const wanted = new URLSearchParams({ record: Explore.records[row].record_id, channel });
-  const answer = await fetch(`wave?${wanted}`).catch(() => null);
-  if (!answer || !answer.ok) return;
-  const every = new Float32Array(await answer.arrayBuffer());
-  view.wave = { every, fine: [0, every.length] };
-  if (row === Explore.chosen || row === Explore.healthyOf(Explore.chosen)) Explore.redrawWave();
-};
-
-Explore.redrawWave = () =>
-  Explore.showWaveform(Explore.part("waveform"), Explore.chosen, Explore.channel(), Explore.healthyOf(Explore.chosen));
-
 // Two revolutions from the first sample on that is kept: so near, teeth are told apart.
 Explore.firstTurns = (own) => {
   const end = Math.min(own.from + own.fine[1] - own.fine[0] - 1, own.x.length - 1);
@@ -90,14 +74,12 @@ Explore.showWaveform = (section, row, channel, healthy) => {
   const controls = section.querySelector(".controls");
   Explore.clear(body);
   controls.replaceChildren();
-  Explore.fetchWave(row, channel);
-  if (healthy !== null) Explore.fetchWave(healthy, channel);
   const packed = (at) => Explore.detail(at).channels[channel].wave;
   const own = Explore.wave(row, packed(row));
   const other = healthy === null ? null : Explore.wave(healthy, packed(healthy));
   const peak = own.y.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
   const whole = own.fine[1] - own.fine[0] >= Explore.data.samples;
-  const kept = whole ? "Every sample is here." : `Whole record: smallest and largest sample of each stretch, at their own places. Every sample from ${Explore.number(own.fine[0] / Explore.data.fs_hz)} to ${Explore.number(own.fine[1] / Explore.data.fs_hz)} s; ${Explore.data.served ? "the others are on their way." : "--full keeps all."}`;
+  const kept = whole ? "Every sample is here." : `Whole record: smallest and largest sample of each stretch, at their own places. Every sample from ${Explore.number(own.fine[0] / Explore.data.fs_hz)} to ${Explore.number(own.fine[1] / Explore.data.fs_hz)} s; --full keeps all.`;
   const start = Explore.firstTurns(own);
   const plot = Explore.chart(body, {
     title: "Signal", start, x: Explore.angleLabel(own), y: `${Explore.quantityOf(channel).word} [${Explore.quantityOf(channel).unit}]`, ...Explore.overlaid(own, other), group: "turns",

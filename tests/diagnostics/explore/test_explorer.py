@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import base64
-import http.client
-import json
 import shutil
 import subprocess
-import threading
 from collections.abc import Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -21,8 +18,6 @@ import pytest
 
 from diagnostics.explore.chosen_records import chosen_records, overlaid_records
 from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
-from diagnostics.explore.look import look_page
-from diagnostics.explore.server import DETAIL, page_server
 from diagnostics.explore.set_page import LookOptions, predicted_labels, set_look, write_set_page
 from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
@@ -150,44 +145,6 @@ def test_an_address_chooses_records(plain: Path, tmp_path: Path, asked: str, sho
     assert (f"FM4, pinion ({CHANNELS[0]})</button>" in done.stdout) == ("fm4" in asked)
 
 
-def test_a_server_gives_every_sample_to_this_machine_alone() -> None:
-    dataset = memory_dataset(("train", "test"))
-    look = set_look(dataset, LookOptions(served=True))
-    server = page_server("<p>page</p>", dataset, np.array([3]), {DETAIL: look.detail})
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-
-    def answer(path: str, host: str = "") -> tuple[int, bytes]:
-        line = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=120)
-        line.request("GET", path, headers={"Host": host or f"127.0.0.1:{server.server_port}"})
-        found = line.getresponse()
-        body = found.read()
-        line.close()
-        return found.status, body
-
-    assert list(held(look_page("Page", look))) == ["look-data"]  # the server gives all signals
-    wave = f"/wave?record=3&channel={CHANNELS[1]}"
-    try:
-        assert server.server_address[0] == "127.0.0.1"
-        assert answer("/") == (200, b"<p>page</p>")
-        signal = dataset.record(3)[f"accel_{CHANNELS[1]}_m_s2"]
-        assert np.array_equal(np.frombuffer(answer(wave)[1], "<f4"), signal)
-        assert answer(wave, host="evil.example")[0] == 403
-        detail = json.loads(answer(f"{DETAIL}?number=0")[1])
-        peak = np.abs(dataset.record(0)[f"accel_{CHANNELS[1]}_m_s2"]).max()
-        assert np.abs(steps(detail["channels"][CHANNELS[1]]["wave"])).max() == pytest.approx(peak, rel=1e-4)
-        refused = (
-            "/wave?record=4&channel=" + CHANNELS[1],
-            "/wave?record=3&channel=tacho_s",
-            "/wave?record=-3",
-            "/etc",
-            "/detail?number=1",
-        )
-        assert [answer(path)[0] for path in refused] == [404] * 5
-    finally:
-        server.shutdown()
-        server.server_close()
-
-
 def test_a_set_without_healthy_records_says_so(tmp_path: Path) -> None:
     dataset = memory_dataset(("train",))
     dataset.table = dataset.table.filter(pc.not_equal(dataset.table.column("fault"), "healthy"))
@@ -251,7 +208,7 @@ def test_the_code_to_copy_gives_the_values_of_the_page(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     dataset = memory_dataset(("train", "test"))
-    data = set_look(dataset, LookOptions(served=True)).live.data["look-data"]
+    data = set_look(dataset, LookOptions()).live.data["look-data"]
     column = next(one for one in data["indicators"] if one["name"] == f"fm4_pinion__{CHANNELS[0]}")
     monkeypatch.setattr("siggen.open", lambda path: {str(dataset.path): dataset}[path])
     scope: dict[str, object] = {}

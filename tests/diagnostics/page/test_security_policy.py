@@ -7,7 +7,6 @@ import hashlib
 import re
 
 from diagnostics.page.html import page
-from diagnostics.page.security_policy import security_policy
 
 
 def test_a_page_allows_its_own_scripts_and_no_network() -> None:
@@ -20,7 +19,3 @@ def test_a_page_allows_its_own_scripts_and_no_network() -> None:
     hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
     assert rules["script-src"].split() == [f"'sha256-{found}'" for found in hashes]
     assert text.index("Content-Security-Policy") < text.index("<style>")
-
-
-def test_a_page_with_a_server_may_ask_it_alone() -> None:
-    assert "connect-src 'self'" in security_policy(["let a;"], asks_its_server=True)
