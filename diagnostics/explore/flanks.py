@@ -44,7 +44,7 @@ def flank_size(config: Mapping[str, Any], gear: str, teeth: int, names: Names = 
         gears, own = _sections(config, gear, names)
         module, alpha = float(gears["module_mm"]), radians(float(gears.get("pressure_angle_deg", 20.0)))
         shift = float(own.get("profile_shift", 0.0))
-        tip = module * (teeth / 2 + float(gears.get("addendum_coefficient", 1.0)) + shift)
+        tip = module * (teeth / 2 + 1.0 + shift)
         face = float(gears["face_width_mm"])
     except (KeyError, TypeError, ValueError, AttributeError):
         return None

@@ -60,7 +60,6 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         raw, folder, read_from = read_yaml(file), file.parent, str(source)
     # They load the physics, which takes as long as all else: behind a file that is missing or no YAML.
     from siggen.checks.density_files import with_density_files
-    from siggen.checks.history_files import with_history_file
     from siggen.checks.mode_files import mode_problems, with_mode_file
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.state_problems import state_problems
@@ -69,8 +68,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)
     with_modes, unread_modes = with_mode_file(filled, folder)
-    with_history, unread_history = with_history_file(with_modes, folder)
-    parsed = parse(with_history)
+    parsed = parse(with_modes)
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
     of_physics = [
         *physical_problems(parsed),
@@ -78,7 +76,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         *response_problems(parsed.sections, parsed.names),
         *mode_problems(parsed.sections),
     ]
-    told = [*written, *parsed.problems, *unread, *unread_modes, *unread_history, *unusable]
+    told = [*written, *parsed.problems, *unread, *unread_modes, *unusable]
     problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:
         from siggen.checks.quantity_names import quantity_problems

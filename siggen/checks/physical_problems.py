@@ -41,7 +41,6 @@ KEYS = {
     "teeth": "teeth",
     "bore_radius_m": "bore_radius_mm",
     "centre_distance_m": "centre_distance_mm",
-    "rack tip": "clearance_coefficient",
 }
 """Key of the configuration that a geometry problem is about, where one key is to blame."""
 

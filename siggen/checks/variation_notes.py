@@ -40,7 +40,7 @@ def _torque(config: Config) -> Iterator[str]:
     if _some(torque.load_once):
         yield f"load torque pulsates by {_percent(torque.load_once)} once per revolution of its shaft"
     if _some(torque.line_ripple):
-        yield f"motor torque pulsates by {_percent(torque.line_ripple)} at twice {_span(torque.line_hz)} Hz"
+        yield f"motor torque pulsates by {_percent(torque.line_ripple)} at 100 Hz, twice the line"
 
 
 def _reversals(config: Config) -> Iterator[str]:

@@ -71,7 +71,6 @@ def plan(
     console = Console()
     console.print(_overview(summary))
     console.print(_states(summary) if summary["life"] is None else life_table(summary["life"]))
-    console.print(summary["stiffness_tables"], highlight=False, markup=False)
     for sentence in summary["implausible"]:
         console.print(printable(f"implausible: {sentence}"), highlight=False, markup=False, style="yellow")
     for state in summary["states"]:
@@ -172,14 +171,13 @@ def plan_summary(config: Config) -> dict[str, Any]:
 
 
 def _notes(config: Config) -> dict[str, Any]:
-    """Return how exact its tables are, how it varies, and what a user should know about it, in words."""
+    """Return how it varies, and what a user should know about it, in words."""
     from siggen.checks.contact_notes import contact_notes
     from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.specimen.gears import model_notes
-    from siggen.views.table_error import table_error_text
 
     notes = {
         "stiffness_notes": _of_every_pair(config, model_notes),
@@ -191,7 +189,7 @@ def _notes(config: Config) -> dict[str, Any]:
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }
     own = {kind: [config.names.text(note) for note in found] for kind, found in notes.items()}
-    said = {"stiffness_tables": table_error_text(config), "manufacture": _manufacture(config)}
+    said = {"manufacture": _manufacture(config)}
     return {**said, **own, "implausible": implausible(config)}
 
 

@@ -75,7 +75,6 @@ def tvms(
         stiffness_meaning,
     )
     from siggen.views.stiffness_figure import save_stiffness_figure
-    from siggen.views.table_error import table_error_text
 
     png = picture.place("tvms")
     check_wanted(out, png, "tvms")
@@ -84,7 +83,6 @@ def tvms(
         torque = static_torque_nm(usable, gearbox.specimen) if torque_nm is None else torque_nm
         curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque)
         meaning = stiffness_meaning(usable, torque)
-        error = table_error_text(usable, gearbox.specimen)
     if out is not None:
         table = curve_table(curves, **asdict(further))
         write_table_file(table.rename_columns([usable.names.column(name) for name in table.column_names]), out)
@@ -92,7 +90,6 @@ def tvms(
         with working("drawing the picture", compiles=False):
             save_stiffness_figure(curves, png, usable.names, **asdict(further), title=meaning)
     echo(usable.names.text(meaning), err=True)
-    echo(usable.names.text(error), err=True)
     for note in model_notes(usable):
         echo(f"note: {usable.names.text(note)}", err=True)
     if out is not None:

@@ -35,9 +35,6 @@ class Bursts(Section):
 class Rubbing(Section):
     """Rough flanks that roll and slide on each other: broadband force along the line of action, by speed and load."""
 
-    roughness_um: Annotated[Number, Within(least=0, most=20)] = Field(
-        default=LogUniform(low=0.2, high=0.6), description="composite Rq along the flank (source: ground flanks)"
-    )
     bursts: Bursts | None = Field(default=None, description="null: none")
 
 

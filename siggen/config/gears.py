@@ -12,8 +12,6 @@ from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Section, Whole
 
-RACK = "addendum and tip clearance in modules"
-
 
 class Wheel(Section):
     """One of the two gears."""
@@ -44,8 +42,6 @@ class ToothForm(Section):
         default=206.0, description="Young's modulus of both gears"
     )
     poisson_ratio: Annotated[Number, Within(least=0, below=0.5)] = Field(default=0.3, description="Poisson's ratio")
-    addendum_coefficient: Annotated[Number, Within(above=0, most=2)] = Field(default=1.0, description=RACK)
-    clearance_coefficient: Annotated[Number, Within(above=0, most=1)] = Field(default=0.25, description=RACK)
     centre_distance_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: the one at which the profile shifts mesh without backlash"
     )

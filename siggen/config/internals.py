@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
@@ -18,10 +18,6 @@ class Internals(Section):
 
     quantities: Annotated[tuple[str, ...], Field(min_length=1), NAMES] = Field(
         default=(ALL,), description="columns of `siggen simulate`; [all], or a list of names"
-    )
-    records: Literal["all", "first_of_state"] = Field(
-        default="all",
-        description="first_of_state: of every specimen and state the first operating point and repeat alone",
     )
 
     @property

@@ -36,6 +36,8 @@ Block = Annotated[tuple[Real, ...], AfterValidator(_block), BLOCK]
 
 
 NAME = "inspection_{:03d}"
+FUNCTIONAL_SHARE = Uniform(low=0.2, high=0.4)
+"""Of one flank, at which a gearbox fails if there is land left across the face until then; assumed."""
 JITTER = 0.15
 """Share of the interval within which an inspection comes early or late; assumed."""
 
@@ -52,14 +54,10 @@ class Life(Section):
     )
     history: tuple[Block, ...] = Field(
         default=(),
-        description="blocks of load that repeat, or `file:` of a table; empty: the first operating point",
+        description="blocks of load that repeat; empty: the first operating point",
     )
     interval_h: Hours = Field(description="from one inspection to the next, the first at age 0")
     most: Annotated[Whole, Field(ge=2, le=1000)] = Field(description="inspections of a gearbox at most")
-    functional_share: Annotated[Number, Within(above=0.02, most=0.6)] = Field(
-        default=Uniform(low=0.2, high=0.4),
-        description="share of one flank at which a gearbox fails, if there is land left across the face until then",
-    )
     removed_share: Annotated[Real, Field(ge=0, le=1)] = Field(
         default=0.15,
         description="chance that a gearbox is taken out at an age drawn between 0 and the last inspection",

@@ -43,9 +43,8 @@ class TorqueVariation(Section):
         default=0.0, description="amplitude of the load torque once per revolution of its shaft, relative"
     )
     line_ripple: Annotated[Number, Within(least=0, most=2)] = Field(
-        default=0.0, description="amplitude of the motor torque at twice the line frequency, relative"
+        default=0.0, description="amplitude of the motor torque at twice the line frequency of 50 Hz, relative"
     )
-    line_hz: Annotated[Number, Within(above=0, most=400)] = Field(default=50.0, description="frequency of the line")
 
 
 class Variation(Section):

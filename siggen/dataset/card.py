@@ -180,11 +180,9 @@ def _internals(config: Config, quantities: Sequence[Column]) -> str:
     """Say which records have internal quantities, and how to join them."""
     if config.internals is None or not quantities:
         return ""
-    chosen = config.internals.records
-    which = "every record" if chosen == "all" else "the first operating point and repeat of every state"
     table = _columns("Columns of `internals/`", internals_schema(config, quantities))
     return f"""{table}
-What no sensor sees, of {which}, at the instants of the samples; join by `record_id`. Accelerations and bearing
+What no sensor sees, of every record, at the instants of the samples; join by `record_id`. Accelerations and bearing
 forces are low-passed like the signals, everything else is taken at the instant.
 """
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import radians
 from typing import Annotated
 
 from pydantic import Field
@@ -20,9 +19,6 @@ class BallGeometry(Section):
     balls: Annotated[Whole, Field(ge=3, le=100)] = Field(default=9, description="number of balls")
     ball_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=7.94, description=DIAMETERS)
     pitch_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=39.04, description=DIAMETERS)
-    contact_angle_deg: Annotated[Number, Within(least=0, most=45)] = Field(
-        default=0.0, description="of the balls' contacts against the plane of the bearing"
-    )
     clearance_um: Annotated[Number, Within(least=0, most=1000)] = Field(
         default=10.0, description="radial play from side to side in running; it narrows the zone of load"
     )
@@ -33,6 +29,5 @@ class BallGeometry(Section):
             self.balls,
             1e-3 * constant(self.ball_diameter_mm),
             1e-3 * constant(self.pitch_diameter_mm),
-            radians(constant(self.contact_angle_deg)),
-            1e-6 * constant(self.clearance_um),
+            clearance_m=1e-6 * constant(self.clearance_um),
         )

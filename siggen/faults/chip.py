@@ -57,9 +57,6 @@ class ChippedTeeth(Fault):
     face_share: Annotated[Number | None, Within(above=0, most=1, words=(None,))] = Field(
         default=None, description="share of the face that has lost it, from one end; null: the whole face"
     )
-    corner: bool = Field(
-        default=False, description="whether that height falls straight to 0 at the end of the share: a broken corner"
-    )
 
     @classmethod
     def default_word(cls, read: Callable[[str], object]) -> str:
@@ -74,8 +71,6 @@ class ChippedTeeth(Fault):
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
         """Return 'height_mm' for no more lost than the milder state has lost on the same teeth."""
         if not isinstance(milder, ChippedTeeth) or (milder.gear, milder.teeth) != (self.gear, self.teeth):
-            return None
-        if milder.corner and not self.corner:
             return None
         less = _heights_m(self)[1] <= _heights_m(milder)[0] and _shares(self)[1] <= _shares(milder)[0]
         return "height_mm" if less else None
@@ -111,7 +106,7 @@ class ChippedTeeth(Fault):
     @property
     def _may_take_the_face(self) -> bool:
         """Whether the same height may be lost over the whole face."""
-        return not self.corner and _shares(self)[1] >= 1.0
+        return _shares(self)[1] >= 1.0
 
     def _on_tooth(self, pair: GearPair, tooth: int) -> Chip | PartChip:
         """Return the chip of drawn numbers on a tooth."""
@@ -120,7 +115,7 @@ class ChippedTeeth(Fault):
             return Chip(self.gear, tooth, _heights_m(self)[0])
         gear, width_m = pair.member(self.gear), share * pair.face_width_m
         height_m = tooth_height_m(gear) if whole else _heights_m(self)[0]
-        outline = lost_outline(gear, height_m, width_m, corner=self.corner)
+        outline = lost_outline(gear, height_m, width_m)
         return PartChip(self.gear, tooth, height_m, width_m, outline, whole)
 
 

@@ -1,4 +1,4 @@
-"""Pits and spalls that are listed one by one."""
+"""Pits and outlines that are listed one by one."""
 
 from __future__ import annotations
 
@@ -25,13 +25,10 @@ from siggen.faults.flank_place import (
 from siggen.faults.growth import Growth
 from siggen.faults.listed_irregular import ListedIrregular
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
-from siggen.faults.single_spall import SpallSize, largest_spall, spall_on_tooth, spall_problems
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.pit import Pit
-from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.problems import refusal
 from siggen.keys.scaling import Grows
@@ -47,15 +44,8 @@ class ListedPit(PitSize):
     face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(description=FACE_CENTRE)
 
 
-class ListedSpall(SpallSize):
-    """One spall at a given place."""
-
-    gear: GearName = Field(default="pinion", description="damaged gear")
-    tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
-
-
 class ListedPits(Fault):
-    """Pits and spalls one by one."""
+    """Pits, and irregular spalls by their outlines, one by one."""
 
     words: ClassVar[tuple[str, ...]] = ("pitting", "spalling")
     nouns: ClassVar[str] = "pits and spalls"
@@ -63,29 +53,27 @@ class ListedPits(Fault):
     kind: Literal["list"] = "list"
     height_reading: HeightReading = Field(default="axial", description=READING)
     pits: tuple[ListedPit, ...] = Field(default=(), description="the pits")
-    spalls: tuple[ListedSpall, ...] = Field(default=(), description="the spalls")
     outlines: tuple[ListedIrregular, ...] = Field(default=(), description="irregular spalls by their very edges")
 
     @model_validator(mode="after")
     def _not_empty(self) -> ListedPits:
-        if not (self.pits or self.spalls or self.outlines):
-            raise refusal([Problem("pits", "no pits and no spalls", "allowed: at least 1 pit or spall")])
+        if not (self.pits or self.outlines):
+            raise refusal([Problem("pits", "no pits and no outlines", "allowed: at least 1 of either")])
         return self
 
     @classmethod
     def default_word(cls, read: Callable[[str], object]) -> str:
-        """Return spalling for a list of spalls alone."""
-        return "spalling" if (read("spalls") or read("outlines")) and not read("pits") else "pitting"
+        """Return spalling for a list of outlines alone."""
+        return "spalling" if read("outlines") and not read("pits") else "pitting"
 
     @property
     def own_words(self) -> tuple[str, ...]:
         """Whatever is listed may be called pitting, and with a spall spalling."""
-        return self.words if self.spalls or self.outlines else ("pitting",)
+        return self.words if self.outlines else ("pitting",)
 
     def hit_teeth(self) -> HitTeeth:
         """Yield every listed tooth."""
         yield from ((f"pits.{number}.tooth", pit.gear, (pit.tooth,)) for number, pit in enumerate(self.pits))
-        yield from ((f"spalls.{number}.tooth", spall.gear, (spall.tooth,)) for number, spall in enumerate(self.spalls))
         yield from ((f"outlines.{number}.tooth", one.gear, (one.tooth,)) for number, one in enumerate(self.outlines))
 
     @property
@@ -96,15 +84,14 @@ class ListedPits(Fault):
         number = max(range(len(self.outlines)), key=lambda i: self.outlines[i].edge_radius_mm)
         return f"outlines.{number}.edge_radius_mm", self.outlines[number].edge_radius_mm
 
-    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool] | None:
-        """Return whether all listed spalls are rectangles, and whether one may go through the face; None without."""
-        found = [spall.parallel(face_width_mm) for spall in self.spalls] + [(False, False)] * len(self.outlines)
-        return (all(parallel for parallel, _ in found), any(through for _, through in found)) if found else None
+    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool] | None:  # noqa: ARG002
+        """Return that outlines are no rectangles; None without."""
+        return (False, False) if self.outlines else None
 
     def drawn(self, growth: Growth) -> Parts:
         """Return what is listed."""
         listed = (one.spall(growth.pair, self.height_reading) for one in self.outlines)
-        return (*self._pits(growth), *self._spalls(growth), *listed)
+        return (*self._pits(growth), *listed)
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with each of them."""
@@ -113,8 +100,6 @@ class ListedPits(Fault):
             for height_m in heights_m(pair, pit.gear, pit.height_mm, self.height_reading):
                 for face_mm in bounds(pit.face_mm):
                     yield from pit_place_problems(pair, PitPlace(pit.gear, height_m, face_mm / 1e3, pit, *keys))
-        for index, spall in enumerate(self.spalls):
-            yield from spall_problems(pair, spall, self.height_reading, f"spalls.{index}.")
         for index, outline in enumerate(self.outlines):
             yield from outline.problems(pair, self.height_reading, f"outlines.{index}.")
 
@@ -132,11 +117,9 @@ class ListedPits(Fault):
             for pit in self.pits
             if pit.tooth < pair.member(pit.gear).teeth
         )
-        spalls = [s for s in self.spalls if s.tooth < pair.member(s.gear).teeth]
         outlined = (one for one in self.outlines if one.tooth < pair.member(one.gear).teeth)
         return (
             *pits,
-            *(largest_spall(pair, s, self.height_reading, s.tooth) for s in spalls),
             *(replace(one.spall(pair, self.height_reading), strip_depths_m=one.probe_depths_m) for one in outlined),
         )
 
@@ -145,9 +128,3 @@ class ListedPits(Fault):
             rng = growth.rng(f"list.pit{index}")
             height = drawn_height_m(pit.height_mm, self.height_reading, growth.pair, pit.gear, rng.random())
             yield drawn_pit(pit, pit.gear, growth.pair, pit.tooth, (height, MM * at(pit.face_mm, rng.random())), rng)
-
-    def _spalls(self, growth: Growth) -> Iterator[Spall]:
-        uniform = growth.uniforms()
-        for index, spall in enumerate(self.spalls):
-            drawn = draw(spall, uniform, f"list.spall{index}")
-            yield spall_on_tooth(growth.pair, drawn, self.height_reading, spall.tooth)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Literal
 
 from pydantic import Field
 
@@ -31,7 +30,7 @@ from siggen.faults.flank_place import (
     read_m,
 )
 from siggen.gears.damage.flank_damage import damage_problems
-from siggen.gears.damage.outlines import Ellipse, Outline, rectangle
+from siggen.gears.damage.outlines import Outline, rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
@@ -43,7 +42,6 @@ class SpallSize(Section):
     """Outline, place and depth of one spall."""
 
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
-    shape: Literal["rectangle", "ellipse"] = Field(default="rectangle", description="outline on the flank")
     centre_height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
     face_length_mm: LengthAcross = Field(description="length across the face")
@@ -53,8 +51,6 @@ class SpallSize(Section):
 
     def parallel(self, face_width_mm: float) -> tuple[bool, bool]:
         """Return whether its edges are parallel to the axis, and whether it may then go through the face."""
-        if self.shape != "rectangle":
-            return False, False
         return True, bounds(self.face_length_mm)[1] >= face_width_mm
 
 
@@ -96,10 +92,7 @@ def _outline(pair: GearPair, size: SpallSize, reading: str) -> Outline:
     heights = axial_m(gear, along - half, reading), axial_m(gear, along + half, reading)
     face = 0.5 * pair.face_width_m if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
     across = 0.5 * MM * constant(size.face_length_mm)
-    if size.shape == "rectangle":
-        return rectangle(heights, (face - across, face + across))
-    # About the centre itself, not the middle of its ends: ellipses of one centre then hold each other.
-    return Ellipse(middle, face, across, 0.5 * (heights[1] - heights[0]))
+    return rectangle(heights, (face - across, face + across))
 
 
 def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = "") -> Iterator[Problem]:

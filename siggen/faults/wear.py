@@ -51,11 +51,6 @@ class FlankWear(Fault):
     depth_um: Annotated[Number, Within(above=0), Grows(MODULE)] = Field(
         description="largest depth on any flank, usually at the root of the pinion"
     )
-    torque_nm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None,
-        description="torque at the pinion under which it wore, whatever it is measured under; null: that of 1 GPa "
-        "between steel flanks in the middle of the path",
-    )
 
     def hit_teeth(self) -> HitTeeth:
         """Yield nothing: no tooth is named."""
@@ -70,10 +65,10 @@ class FlankWear(Fault):
     def drawn(self, growth: Growth) -> Parts:
         """Return the worn flanks of this state; what is nowhere less deep takes the place of milder wear."""
         own = draw(self, growth.place_of(FlankWear), "wear")
-        pair, torque = growth.pair, None if own.torque_nm is None else constant(own.torque_nm)
+        pair = growth.pair
         worn = worn_until(
             pair,
-            growth.load_at_rest(_force_n(pair, torque)),
+            growth.load_at_rest(OF_REFERENCE * reference_force_n(pair)),
             COEFFICIENT_M2_PER_N,
             depth_m=1e-6 * constant(own.depth_um),
         )
@@ -85,10 +80,3 @@ class FlankWear(Fault):
         share = f"{DEEPEST_SHARE:g} of the module"
         if bounds(self.depth_um)[1] > allowed_um:
             yield Problem("depth_um", number_text(self.depth_um), f"allowed: up to {allowed_um:.6g} um, {share}")
-
-
-def _force_n(pair: GearPair, torque_nm: float | None) -> float:
-    """Return the force of a torque on the pinion; without one that of the pair itself [N]."""
-    if torque_nm is None:
-        return OF_REFERENCE * reference_force_n(pair)
-    return torque_nm / pair.pinion.base_radius_m

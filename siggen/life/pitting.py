@@ -26,6 +26,14 @@ from siggen.life.outline import Edges, PitShape, drawn_shape, sizes_m, through, 
 from siggen.life.outlook import Chances, Now, failing_times, through_share
 from siggen.life.picture import flank_png
 
+UNIT_REV = 6.9e6
+"""Weibull scale of a gearbox's first pit, in turns of the pinion at reference torque."""
+RATE_PER_REV = 0.62e-6
+"""Median growth of a pit's logarithm per turn of its gear at reference torque."""
+WANDER_SD = 0.3
+"""Of that rate's logarithm over a pit's life; forgotten within 5e5 turns times scale (assumed)."""
+FIRST_SHARE = 0.0045
+"""Median share of a flank with which a pit begins."""
 FIRST_SHARE_SD = 0.5
 """Of the logarithm of the first share; published as 0.45 % with 0.2 to 0.3 %."""
 RATED_TOOTH, RATED_GEAR = 0.04, 0.01
@@ -45,27 +53,11 @@ class Pitting(Law):
     slope: Annotated[Real, Field(ge=0.5, le=100)] = Field(
         default=2.5, description="Weibull slope of the first pit, of a tooth and of a gearbox"
     )
-    unit_rev: Annotated[Real, Field(gt=0, le=1e12)] = Field(
-        default=6.9e6,
-        description="Weibull scale of a gearbox's first pit, in turns of the pinion at reference torque",
-    )
     torque_exponent: Annotated[Real, Field(ge=0, le=20)] = Field(
         default=10.0, description="life falls with the torque to this power, until the first pit and after it"
     )
-    first_share: Annotated[Real, Field(gt=0, le=0.02)] = Field(
-        default=0.0045, description="median share of a flank with which a pit begins"
-    )
-    rate_per_rev: Annotated[Real, Field(ge=2e-8, le=1e-2)] = Field(
-        default=0.62e-6,
-        description="median growth of a pit's logarithm per turn of its gear at the reference torque (slower than the "
-        "least, no tooth would fail)",
-    )
     rate_sd: Annotated[Real, Field(ge=0, le=2)] = Field(
         default=0.35, description="standard deviation of the rate's logarithm from pit to pit"
-    )
-    wander_sd: Annotated[Real, Field(ge=0, le=2)] = Field(
-        default=0.3,
-        description="the same over a pit's life; forgotten within 5e5 turns times scale (assumed)",
     )
 
     def course(self, wearing: Wearing, functional_share: float) -> PittingCourse:
@@ -95,7 +87,7 @@ class PittingCourse:
     @cached_property
     def begins(self) -> list[Begun]:
         """When pits begin, by time; those too that begin after the end."""
-        return begun(self.wearing.flanks, self.wearing.nominal, self.law.unit_rev, self.law.slope, self.wearing.named)
+        return begun(self.wearing.flanks, self.wearing.nominal, UNIT_REV, self.law.slope, self.wearing.named)
 
     @cached_property
     def ends(self) -> Ends:
@@ -168,7 +160,7 @@ class PittingCourse:
         shares = lived.shares(time)
         own = np.flatnonzero(shares)
         sizes = [one.teeth for one in flanks]
-        eta = tooth_scale(law.unit_rev, self.wearing.nominal, law.slope)
+        eta = tooth_scale(UNIT_REV, self.wearing.nominal, law.slope)
         hazards = [
             (one.turns / eta) ** law.slope * one.area_m2 / nominal.area_m2
             for one, nominal in zip(flanks, self.wearing.nominal, strict=True)
@@ -177,7 +169,7 @@ class PittingCourse:
             time,
             shares[own],
             lived.seeds.rate[own],
-            lived.wander(time, law.wander_sd)[own],
+            lived.wander(time, WANDER_SD)[own],
             lived.seeds.owner[own],
             np.array([self._through(self.pits[i]) for i in own]),
             np.repeat(hazards, sizes),
@@ -186,7 +178,7 @@ class PittingCourse:
             np.repeat(self._through_any, sizes, axis=0),
         )
         chances = Chances(
-            law.slope, FIRST_SHARE_SD, law.rate_per_rev, law.rate_sd, law.wander_sd,
+            law.slope, FIRST_SHARE_SD, RATE_PER_REV, law.rate_sd, WANDER_SD,
             self.functional_share,
         )  # fmt: skip
         return failing_times(now, chances, runs, self.wearing.named(f"outlook/{time!r}"))
@@ -210,7 +202,7 @@ class PittingCourse:
     def _first_share(self, gear: str) -> float:
         """Return the median share of a young pit: its area is that on the nominal flank."""
         nominal = self.wearing.nominal[("pinion", "gear").index(gear)]
-        return self.law.first_share * (nominal.area_m2 / self._flank(gear).area_m2)
+        return FIRST_SHARE * (nominal.area_m2 / self._flank(gear).area_m2)
 
     def _flank(self, gear: str) -> Flank:
         return self.wearing.flanks[("pinion", "gear").index(gear)]
@@ -247,7 +239,7 @@ class PittingCourse:
             if end is not None:
                 return course, end, pits
             if steps >= MOST_STEPS:
-                raise ValueError(f"no end within {steps} steps of {STEP:g} turns; allowed: a larger rate_per_rev")
+                raise ValueError(f"no end within {steps} steps of {STEP:g} turns; allowed: a larger torque")
             steps += MORE if steps < 4 * FORESEEN else steps
 
     def _followed(self, steps: int) -> tuple[list[Pit], Grown]:
@@ -260,7 +252,7 @@ class PittingCourse:
             np.array([pit.owner for pit in pits]),
             np.array([self._named(pit.begun)("wander").standard_normal(steps) for pit in pits]),
         )
-        return pits, grown(seeds, self.law.wander_sd, steps, sum(one.teeth for one in self.wearing.flanks))
+        return pits, grown(seeds, WANDER_SD, steps, sum(one.teeth for one in self.wearing.flanks))
 
     def _pit(self, one: Begun) -> Pit:
         named = self._named(one)
@@ -269,7 +261,7 @@ class PittingCourse:
         share = self._first_share(one.gear) * np.exp(FIRST_SHARE_SD * size)
         owner = one.tooth + own * self.wearing.flanks[0].teeth
         shape = drawn_shape(flank, self.law.torque_exponent, named)
-        return Pit(one, owner, float(share), float(self.law.rate_per_rev * np.exp(self.law.rate_sd * rate)), shape)
+        return Pit(one, owner, float(share), float(RATE_PER_REV * np.exp(self.law.rate_sd * rate)), shape)
 
     def _named(self, one: Begun) -> Callable[[str], np.random.Generator]:
         return lambda name: self.wearing.named(f"{one.gear}/{one.tooth}/{one.number}/{name}")

@@ -36,8 +36,8 @@ def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
         module_m=constant(gears.module_mm) / 1e3,
         pressure_angle_rad=math.radians(constant(gears.pressure_angle_deg)),
         profile_shift=constant(wheel.profile_shift),
-        addendum_coefficient=constant(gears.addendum_coefficient),
-        clearance_coefficient=constant(gears.clearance_coefficient),
+        addendum_coefficient=1.0,
+        clearance_coefficient=0.25,
         bore_radius_m=constant(wheel.bore_radius_mm) / 1e3,
     )
     return transverse_gear(normal, math.radians(constant(gears.helix_deg)))

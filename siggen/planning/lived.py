@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from siggen.config import Config, Gears, State
-from siggen.config.life import JITTER, Life
+from siggen.config.life import FUNCTIONAL_SHARE, JITTER, Life
 from siggen.faults.registry import HEALTHY
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
@@ -102,7 +102,7 @@ def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:
     of_point = named_uniforms(config.seed, Stage.OPERATING_POINT, specimen_id, 0)
     steady = at(point.speed_hz, of_point("speed_hz")), at(point.torque_nm, of_point("torque_nm"))
     clock = Clock(_blocks(life, *steady), life.damage.torque_exponent, at(life.scale, uniform("scale")))
-    share = at(life.functional_share, uniform("functional_share"))
+    share = at(FUNCTIONAL_SHARE, uniform("functional_share"))
     course = life.damage.course(wearing, share)
     ages_h, observed_h, event = _observed(life, uniform, clock.age_h(course.ends.functional))
     return Lived(course, wearing.named, clock, share, ages_h, observed_h, event)

@@ -287,22 +287,13 @@ def rows_per_group(config: Config) -> int:
     return 1 << (max(1, rows).bit_length() - 1)
 
 
-def has_internals(config: Config, record: PlannedRecord) -> bool:
-    """Tell whether the set stores the internal quantities of a record; depends on configuration and index alone."""
-    chosen = config.internals
-    if chosen is None:
-        return False
-    return chosen.records == "all" or (record.operating_point_id, record.repeat) == (0, 0)
-
-
 def _internal_bytes(config: Config) -> int:
     """Return about how many raw bytes of internal quantities a specimen with some has."""
     chosen = config.internals
     if chosen is None:
         return 0
-    records = config.records_per_specimen if chosen.records == "all" else config.state_count
     series = MANY_QUANTITIES if chosen.stores_all else len(chosen.quantities)
-    return records * series * _row_bytes(config)
+    return config.records_per_specimen * series * _row_bytes(config)
 
 
 def _row_bytes(config: Config) -> int:

@@ -17,7 +17,7 @@ from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collecte
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.dynamics.time.transient import both_settled_s
 from siggen.errors import SolverFailure
-from siggen.planning.plan import PlannedRecord, has_internals, planned_record
+from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
@@ -134,7 +134,7 @@ def simulated(
     SolverFailure
         As `record_response`.
     """
-    with_internals = has_internals(config, planned)
+    with_internals = config.internals is not None
     with refused_as("outside_model"), stage("inputs"):
         specimen, state = at_point(config, specimen, state, planned)
         driven = _driven(config, specimen, state, planned)

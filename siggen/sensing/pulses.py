@@ -2,7 +2,7 @@
 
 An angle that is known at samples is a polynomial through `NODES` of them between two (Lagrange), so that vibration to a
 sixth of the sampling rate is followed within 0.2 % of its amplitude (derived, tested). A counter knows the number of a
-pulse and its time in whole ticks alone: between two pulses it takes the speed as even (reference: standard literature
+pulse and its time alone: between two pulses it takes the speed as even (reference: standard literature
 on instantaneous angular speed, elapsed time).
 """
 

@@ -13,7 +13,7 @@ from pydantic import Field
 from siggen.arrays import FloatArray
 from siggen.errors import Problem, SolverFailure
 from siggen.keys.number import Number, Within
-from siggen.keys.section import Real, Whole
+from siggen.keys.section import Whole
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
 from siggen.sensors.converter import BITS_TEXT, Bits
@@ -36,7 +36,7 @@ class Encoder(Sensor):
     quantity: ClassVar[Quantity] = Quantity("angular speed", "speed", "rad/s", "rad_s", "rotation")
     noun: ClassVar[str] = "encoder"
     acts: ClassVar[str] = (
-        "Encoders time the marks of a disc that turns with its shaft, vibration included, in ticks of a counter; "
+        "Encoders time the marks of a disc that turns with its shaft, vibration included; "
         "stored is the mean speed over each sampling interval, whose sum over fs is the angle."
     )
 
@@ -50,9 +50,6 @@ class Encoder(Sensor):
     )
     pulses_per_turn: Annotated[Whole, Field(ge=1, le=100_000)] = Field(
         default=1024, description="marks of the disc, as the counter counts them"
-    )
-    counter_hz: Annotated[Real, Field(gt=0)] = Field(
-        default=1e8, description="clock of the counter: times are whole ticks"
     )
     pitch_error: Annotated[Number, Within(least=0, most=0.1)] = Field(
         default=0.01, description="standard deviation of a mark's place over the pitch; each mark keeps its own"
@@ -127,15 +124,13 @@ class Disc:
         encoder = self.encoder
         angle = running.shaft_rad(encoder.place) + shown + self.seat_rad
         numbers, times = self._pulses(angle, running.fs_hz)
-        counted = np.round(times * encoder.counter_hz) / encoder.counter_hz
-        if numbers.size < FEWEST_PULSES or not (np.diff(counted) > 0.0).all():
-            reason = f"{numbers.size} pulses, some of them in the same tick" if numbers.size > 1 else "no two pulses"
+        if numbers.size < FEWEST_PULSES:
             raise SolverFailure(
                 "unreadable",
-                f"sensor {encoder.name}: {reason}; change pulses_per_turn ({encoder.pulses_per_turn}) or counter_hz "
-                f"({encoder.counter_hz:g}), the speed or duration_s",
+                f"sensor {encoder.name}: {numbers.size} pulses; change pulses_per_turn ({encoder.pulses_per_turn}), "
+                "the speed or duration_s",
             )
-        return counted_speed(numbers, counted, encoder.pulses_per_turn, running.fs_hz, shown.size)
+        return counted_speed(numbers, times, encoder.pulses_per_turn, running.fs_hz, shown.size)
 
     def _pulses(self, angle: FloatArray, fs_hz: float) -> tuple[FloatArray, FloatArray]:
         try:

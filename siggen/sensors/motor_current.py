@@ -26,6 +26,8 @@ POLE_PAIRS, RATED_SLIP = 2, 0.03
 """Of the motor: four poles, and the slip at the rated torque (usual)."""
 BREAKDOWN_OVER_RATED = 5.0
 """Slip of the largest torque over that of the rated one (assumed): the largest torque is 2.6 times the rated one."""
+ACTIVE_A = 10.0
+"""Amplitude of the active current at the rated torque; `gain` makes it another."""
 MAGNETISING_OVER_ACTIVE = 0.5
 """Amplitude of the magnetising current over the active one at the rated torque: a power factor of 0.89 (assumed)."""
 
@@ -47,9 +49,6 @@ class MotorCurrent(Sensor):
         default=("phase_a",), description="what it measures, one channel each"
     )
     rated_torque_nm: Annotated[Number, Within(above=0)] = Field(description="torque at the rated slip")
-    active_a: Annotated[Number, Within(above=0)] = Field(
-        default=10.0, description="amplitude of the active current at the rated torque"
-    )
     floor_a: Annotated[Number, Within(least=0)] = Field(
         default=0.0,
         description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox",
@@ -83,14 +82,13 @@ class MotorCurrent(Sensor):
 
     def transducer(self, axis: str, draw: AxisDraws) -> Transducer:
         """Return the winding of a phase; all phases are those of one motor."""
-        active_a = draw.of_sensor(self.active_a, "active_a")
         motor = InductionMotor(
             pole_pairs=POLE_PAIRS,
             rated_torque_nm=draw.of_sensor(self.rated_torque_nm, "rated_torque_nm"),
             rated_slip=RATED_SLIP,
-            rated_active_a=active_a,
+            rated_active_a=ACTIVE_A,
             breakdown_slip=BREAKDOWN_OVER_RATED * RATED_SLIP,
-            magnetising_a=MAGNETISING_OVER_ACTIVE * active_a,
+            magnetising_a=MAGNETISING_OVER_ACTIVE * ACTIVE_A,
         )
         return Winding(self.name, motor, 2.0 * pi / 3.0 * PHASES.index(axis))
 

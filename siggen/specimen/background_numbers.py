@@ -52,6 +52,7 @@ class RubbingNumbers(Rubbing):
     """
 
     correlation_mm: Drawn = LogUniform(low=0.05, high=1.0)
+    roughness_um: Drawn = LogUniform(low=0.2, high=0.6)
     roll_off_mm: Drawn = LogUniform(low=0.1, high=0.5)
     hurst_exponent: Drawn = Uniform(low=0.5, high=1.0)
     asperity_exponent: Drawn = Uniform(low=0.5, high=1.0)

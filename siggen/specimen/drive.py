@@ -161,6 +161,5 @@ def _torque_settings(config: Config, torque: TorqueSection, record: PlannedRecor
         constant(torque.load_once),
         2.0 * pi * uniform("variation.torque.load_once.phase"),
         constant(torque.line_ripple),
-        constant(torque.line_hz),
-        2.0 * pi * uniform("variation.torque.line_ripple.phase"),
+        line_phase_rad=2.0 * pi * uniform("variation.torque.line_ripple.phase"),
     )

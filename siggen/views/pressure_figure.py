@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 COLOURS = ("C2", "C3", "tab:purple", "tab:brown", "tab:pink", "tab:cyan")
 """Of the positions that are drawn one by one; as many of them at most."""
-MOST_POSITIONS = len(COLOURS)
 
 
 def chosen_positions(pressure: FacePressure) -> list[int]:

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.cli.plan import plan_summary
 from siggen.config import yaml_text
-from siggen.views.table_error import worst_contact_table_error, worst_table_error
 from tests.config.minimal import config, minimal
 
 
@@ -67,30 +64,6 @@ def test_the_table_shows_identity_splits_and_size(path):
     text = run("plan", path)
     for part in (config().identity, "train 60, validation 20, test 20", "540 Hz", "healthy 50%", "18.4 MB", "slight"):
         assert part in text
-
-
-def test_the_error_of_the_contact_tables_is_told_where_the_contact_is_solved_across_the_face() -> None:
-    spall = "{kind: spall, face_length_mm: 10, profile_length_mm: 1.0, depth_mm: 0.2}"
-    states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"
-    said = json.loads(run("plan", "quickstart", "--trial", "0", "--json", "--set", states))["stiffness_tables"]
-    found = re.search(r"within ([\d.e-]+) % rms and ([\d.e-]+) % at most of the force at .* N m \(.*: (.*)\)", said)
-    assert found is not None, said
-    assert found[3] == "sound teeth, severe"
-    assert 0.0 < float(found[1]) <= float(found[2]) < 5.0
-    solved = load_config("configs/quickstart.yaml", [states])
-    coarse, fine = (worst_contact_table_error(solved, 0, points)[0].rms for points in (257, 1025))
-    assert fine < 0.7 * coarse
-
-
-def test_the_error_of_the_stiffness_tables_is_told_and_falls_with_their_points(path):
-    found = {}
-    for points in (129, 2049):
-        law = "dynamics.mesh.law=linear"
-        said = json.loads(run("plan", path, "--set", law, "--json"))["stiffness_tables"]
-        assert "tables of 2049 points" in said
-        assert "all states" in said
-        found[points] = worst_table_error(load_config(path, [law]), 0, points)
-    assert 0.0 < found[2049] < 0.5 * found[129]
 
 
 def test_errors_of_the_teeth_are_named_by_their_class(tmp_path):

@@ -138,4 +138,3 @@ def test_mistakes_are_answered_with_what_is_allowed() -> None:
     lines = [str(problem) for problem in parsed.problems]
     assert len(lines) == 2
     assert any("internals.quantities" in line and "[all], or a list" in line for line in lines)
-    assert any("internals.records" in line and "first_of_state" in line for line in lines)

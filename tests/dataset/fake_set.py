@@ -18,7 +18,7 @@ import pyarrow as pa
 from siggen.columns.record import Column, Record, RecordFailure
 from siggen.config import Config, parse
 from siggen.planning import plan
-from siggen.planning.plan import PlannedRecord, has_internals, planned_record
+from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.sets import physics
 from siggen.sets.generation import generate
 from siggen.sets.run_journal import Events
@@ -118,7 +118,7 @@ def quantities(config: Config) -> tuple[Column, ...]:
 
 def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarray] | None:
     """Return a force that tells the record; odd specimens have no second pair, others one with a film half the time."""
-    if not has_internals(config, planned):
+    if config.internals is None:
         return None
     force = np.linspace(0.0, 1.0, config.samples) + planned.record_id
     if planned.specimen_id % 2:

@@ -66,13 +66,6 @@ def test_no_pits_come_up_on_metal_that_is_gone(share: float | None) -> None:
     assert left_of({**CHIP, "height_mm": "whole"}, pits(*FOUR)) == []
 
 
-def test_a_broken_corner_takes_what_lies_above_its_trace() -> None:
-    """At half its width the trace is half its height below the tip."""
-    corner = {**CHIP, "height_mm": 3.0, "face_share": 0.5, "corner": True}
-    above, crossed, beside = (0.5, 5.0), (1.4, 5.0), (0.5, 12.0)
-    assert left_of(pits(above, crossed, beside, (0.05, 2.0)), corner) == [crossed, beside]
-
-
 def test_more_of_a_chip_takes_the_place_of_less_and_less_height_over_more_of_the_face_comes_beside_it() -> None:
     part = {**CHIP, "face_share": 0.4}
     assert damage_of(config_with(part, CHIP), 2) == (Chip("pinion", 3, 1.5e-3),)
@@ -96,7 +89,7 @@ def test_labels_count_what_stands_of_a_pit_that_a_chip_cuts() -> None:
 def test_of_what_a_part_chip_cuts_only_the_rest_acts() -> None:
     """A rectangular spall across the line and its part below it: the same area, lengths of contact and union."""
     height_m, width_m = 1.5e-3, 0.6 * WIDTH
-    lost = PartChip("pinion", 3, height_m, width_m, lost_outline(GEAR, height_m, width_m, corner=False))
+    lost = PartChip("pinion", 3, height_m, width_m, lost_outline(GEAR, height_m, width_m))
     line_m = lost.outline.height_range_m[0]
     across, below = (_box(line_m - 0.4e-3, top) for top in (line_m + 0.3e-3, line_m))
     one, other = (damage_summary(PAIR, (lost, spall)) for spall in (across, below))

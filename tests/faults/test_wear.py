@@ -41,13 +41,6 @@ def test_a_state_grows_from_the_milder_one_and_is_nowhere_less_deep() -> None:
             assert np.all(np.asarray(two.depths_m) >= np.asarray(one.depths_m))
 
 
-def test_the_load_changes_the_shape() -> None:
-    by_depth = {"kind": "wear", "depth_um": 20.0, "torque_nm": 60.0}
-    pinion, _ = damage_of(config_with(by_depth), 1)
-    other = damage_of(config_with({**by_depth, "torque_nm": 300.0}), 1)
-    assert np.abs(np.asarray(other[0].depths_m) - pinion.depths_m).max() > 0.05 * pinion.depth_m
-
-
 def test_another_operating_point_moves_no_record() -> None:
     alone = config_with(WEAR)
     points = alone.operating_points

@@ -55,7 +55,6 @@ SHARED_NAMES = {
     "Unbalance",
     "Wanted",
     "Words",
-    "_Refusal",
 }
 """Names that several classes bear: the list may only shrink."""
 

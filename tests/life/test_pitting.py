@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import expon, kstest
 
 from siggen.gears.stiffness.sections import union_area_m2
+from siggen.life import pitting
 from siggen.life.clock import Block, Clock
 from siggen.life.growth import STEP, Seeds, grown
 from siggen.life.initiation import begun, times_of, tooth_scale
@@ -99,8 +100,11 @@ def test_wander_has_its_deviation_and_its_mean_rate() -> None:
     assert np.log(rates).std() == pytest.approx(0.3, rel=0.05)
 
 
-def test_defaults_take_as_long_from_the_first_pit_to_4_percent_as_the_published_bench() -> None:
-    law = Pitting(rate_sd=0.0, wander_sd=0.0)
+def test_defaults_take_as_long_from_the_first_pit_to_4_percent_as_the_published_bench(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(pitting, "WANDER_SD", 0.0)
+    law = Pitting(rate_sd=0.0)
     one = course(3, law)
     pit = one.pits[0]
     alone = np.log(0.04 / pit.share) / 0.62e-6

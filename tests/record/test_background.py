@@ -217,9 +217,9 @@ def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass(monkeypatch:
 
 def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
     """0.4 µm over 20 mm at 0.2 mm, 4e8 N/m: 16 N before the contact's width and the film take their part."""
-    changes = {"correlation_mm": 0.2, "asperity_exponent": 1.0, "pinion_depth": 0.0}
+    changes = {"roughness_um": 0.4, "correlation_mm": 0.2, "asperity_exponent": 1.0, "pinion_depth": 0.0}
     changes |= {"gear_depth": 0.0, "sliding_exponent": 0.0, "roll_off_mm": 5.0, "hurst_exponent": 1.0}
-    config, rubbing = rubbed({"roughness_um": 0.4}, changes, 1.0)
+    config, rubbing = rubbed({}, changes, 1.0)
     course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
     spectrum = force_spectrum(rubbing, course)
     assert spectrum.rough_n == pytest.approx(16.0 * course.asperity_share)

@@ -27,7 +27,7 @@ SHORT = ["duration_s=0.05", "specimens=2"]
 
 @pytest.mark.parametrize("name", ["tests/configs/linear_pits.yaml", "configs/paper_b.yaml"])
 def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None:
-    config = load_config(name, [*SHORT, "internals.records=all"])
+    config = load_config(name, [*SHORT, "internals.quantities=[all]"])
     names = {column.name for column in stored_quantities(config)}
     last = config.records_per_specimen * 2 - 1
     for record in simulate(config, [0, last]):
@@ -37,10 +37,9 @@ def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None
 
 
 def test_stored_series_are_those_of_the_command(tmp_path) -> None:
-    config = load_config("tests/configs/linear_pits.yaml", [*SHORT, "internals.records=first_of_state"])
-    stored, unchosen = simulate(config, [2, 3])
+    config = load_config("tests/configs/linear_pits.yaml", [*SHORT, "internals.quantities=[all]"])
+    (stored,) = simulate(config, [2])
     table = internals_table(config, 2)
-    assert unchosen.internals is None
     for name, values in stored.internals.items():
         if name != "pinion_angle_rad":
             np.testing.assert_array_equal(values, table[name].to_numpy().astype(np.float32))
@@ -51,14 +50,14 @@ def test_stored_series_are_those_of_the_command(tmp_path) -> None:
 def test_signals_do_not_depend_on_whether_internals_are_stored() -> None:
     with_them, without = (
         simulate(load_config("tests/configs/linear_pits.yaml", [*SHORT, *extra]), [1])[0]
-        for extra in (["internals.records=all"], [])
+        for extra in (["internals.quantities=[all]"], [])
     )
     for channel, signal in without.channels.items():
         assert signal.tobytes() == with_them.channels[channel].tobytes()
 
 
 def test_units_follow_from_the_names() -> None:
-    config = load_config("tests/configs/casing.yaml", [*SHORT, "internals.records=all"])
+    config = load_config("tests/configs/casing.yaml", [*SHORT, "internals.quantities=[all]"])
     units = {column.name: column.unit for column in stored_quantities(config)}
     expected = {
         "mesh_force_n": "N", "mesh_stiffness_n_per_m": "N/m", "mesh_damping_n_s_per_m": "N s/m", "approach_m": "m",
@@ -88,7 +87,7 @@ def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_st
 
 
 def test_what_only_a_contact_has_is_undefined_exactly_where_a_pair_carries_nothing() -> None:
-    config = load_config("tests/configs/casing.yaml", [*SHORT, "internals.records=all"])
+    config = load_config("tests/configs/casing.yaml", [*SHORT, "internals.quantities=[all]"])
     (record,) = simulate(config, [config.records_per_specimen - 1])
     force = record.internals["pair_0_force_n"]
     assert 0.1 < np.mean(force == 0.0) < 0.9  # a pair is in contact for 1.6 of 2 pitches
@@ -118,7 +117,7 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
     assert np.abs(turned - moved).max() > 1e-7  # bearings give way
 
 
-STREAMED = ["specimens=1", "internals.records=all"]
+STREAMED = ["specimens=1", "internals.quantities=[all]"]
 
 
 @pytest.mark.parametrize(

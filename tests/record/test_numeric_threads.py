@@ -21,7 +21,7 @@ THREADS = (1, 3, 16)
 
 SHORT = ["duration_s=0.02", "specimens=1"]
 CONFIGS = {
-    "tests/configs/linear_pits.yaml": [*SHORT, "internals.records=all"],  # product integration
+    "tests/configs/linear_pits.yaml": [*SHORT, "internals.quantities=[all]"],  # product integration
     "configs/bench.yaml": SHORT,  # tooth pairs across the face, 47 teeth with errors and waves, coupling
 }
 

@@ -14,7 +14,7 @@ from siggen.errors import ConfigError
 from siggen.record.simulation import simulate
 
 SPALL = {
-    "kind": "spall", "gear": "pinion", "teeth": 1, "shape": "rectangle", "centre_height_mm": "pitch",
+    "kind": "spall", "gear": "pinion", "teeth": 1, "centre_height_mm": "pitch",
     "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2, "height_reading": "arc",
 }  # fmt: skip
 WHOLE_FACE = "take the whole contact length"

@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.columns.record import RecordFailure
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from tests.sensors.runs import GEAR_RATIO, line, loaded, problems, record
 
-PERFECT = {"kind": "encoder", "pulses_per_turn": 100_000, "counter_hz": 1e15, "pitch_error": 0, "eccentricity": 0}
+PERFECT = {"kind": "encoder", "pulses_per_turn": 100_000, "pitch_error": 0, "eccentricity": 0}
 PINION, GEAR = {**PERFECT, "name": "first"}, {**PERFECT, "name": "second", "place": "gear"}
 
 
@@ -90,11 +89,3 @@ def test_what_has_no_pulses_is_refused() -> None:
     assert "one of motor, pinion" in problems({**PINION, "place": "lid"})["sensors.0.place"]
     found = problems({**PINION, "eccentricity": {"kind": "uniform", "low": 0.001, "high": 3}})
     assert found["sensors.0.eccentricity"].endswith("allowed: a number from 0 to 0.1")
-
-
-def test_a_record_that_it_cannot_count_says_why() -> None:
-    (failure,) = simulate(loaded({**PINION, "counter_hz": 1e4}), [0])
-    assert isinstance(failure, RecordFailure)
-    assert failure.status == "unreadable"
-    assert "sensor first: " in failure.reason
-    assert "same tick" in failure.reason

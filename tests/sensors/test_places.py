@@ -24,7 +24,7 @@ TURNS = {"motor": 1.0, "pinion": 1.0, "gear": 18 / 47, "slow.pinion": 18 / 47, "
 TURNS["load"] = TURNS["slow.gear"]
 BEARINGS = ("pinion_bearing", "gear_bearing", "slow_bearing")
 WASHER = {"kind": "bearing_force", "axes": ["vertical", "horizontal"], "range_n": 1e6, "bits": None}
-ENCODER = {"kind": "encoder", "pulses_per_turn": 2_000, "counter_hz": 1e15, "pitch_error": 0, "eccentricity": 0}
+ENCODER = {"kind": "encoder", "pulses_per_turn": 2_000, "pitch_error": 0, "eccentricity": 0}
 
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:

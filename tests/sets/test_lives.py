@@ -164,7 +164,6 @@ def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: P
         ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -60.0}]}, "operating_points.0.torque_nm", "-60"),
         ({"life": {**LIFE, "history": [[5.0, -1.0]]}}, "life.history.0", "torque from 0 to 100 over"),
         ({"life": {**LIFE, "history": [[5.0, 0.0]]}}, "life.history", "no block with torque and speed above 0"),
-        ({"life": {**LIFE, "damage": {"rate_per_rev": 1e-12}}}, "life.damage.rate_per_rev", "from 2e-08 to 0.01"),
         ({"life": None}, "states", "a list of 0"),
     ],
 )

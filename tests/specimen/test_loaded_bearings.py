@@ -144,7 +144,6 @@ def test_plan_says_which_given_stiffness_a_bearing_replaces_and_which_it_does_no
         (f"states.1.changes.{STIFFNESS}", {
             "states": [{"name": "healthy"}, {**LOOSE, "changes": {STIFFNESS: {"times": 0.5}}}]
         }),
-        ("dynamics.pinion.bearing.contact_angle_deg", {"dynamics__pinion__bearing": {"contact_angle_deg": 60}}),
     ],
 )  # fmt: skip
 def test_what_no_bearing_is_is_refused_with_its_path(path: str, change: dict[str, Any]) -> None:

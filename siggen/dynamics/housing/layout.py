@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import combinations
 
-from siggen.dynamics.housing.box import Bolt, Box, Material, Rib, Seat, Thicknesses, common_area_m2
+from siggen.dynamics.housing.box import Bolt, Box, Material, Rib, Seat, Thicknesses
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +84,3 @@ def _ribs(seats: Iterable[Seat], p: Proportions) -> tuple[Rib, ...]:
         Rib(s.x_m, (0.5 * p.floor * p.wall_m, s.y_m - s.boss_radius_m), p.wall_m, p.rib_height * p.wall_m)
         for s in seats
     )
-
-
-def bosses_meet(box: Box) -> bool:
-    """Return whether bosses of different shafts overlap."""
-    return any(common_area_m2(a, b) > 0.0 for a, b in combinations(box.seats.values(), 2))

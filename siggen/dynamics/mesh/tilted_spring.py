@@ -21,7 +21,6 @@ from siggen.gears.contact.tilt_rays import HALF_RAYS, UPRIGHT
 from siggen.lanes import Lanes, extract, load, shuffle
 
 _slopes = shuffle(1, 0, 3, 2, 5, 4, 7, 6)
-_RAYS = 2 * UPRIGHT + 1
 _FIRST, _SECOND, _THIRD, _LAST = HALF_RAYS[1:]
 LEAST_M = 1e-15
 """Radius below which nothing touches: far below an atom, and above where its square is no number."""

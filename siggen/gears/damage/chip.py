@@ -78,7 +78,7 @@ class Chip:
         if self.kind == SHAM:
             return ()
         height_m = min(self.height_m, tooth_height_m(gear))
-        outline = lost_outline(gear, height_m, width_m, corner=False)
+        outline = lost_outline(gear, height_m, width_m)
         return (PartChip(self.gear, self.tooth, height_m, width_m, outline, self.whole_tooth, whole_face=True),)
 
     def lost_from_m(self, gear: SpurGear) -> float:

@@ -92,11 +92,7 @@ class PartChip:
 
     def lost_width_m(self, gear: SpurGear, radius_m: FloatArray, face_width_m: float) -> FloatArray:  # noqa: ARG002
         """Return over which width it is gone at radii (k,) above its line [m]."""
-        (line, _), (far, _) = self.outline.corners_m[:2]
-        if far == line:
-            return np.full(radius_m.shape, self.width_m)
-        height = [line_height_m(gear, gear.tip_radius_m - radius) for radius in radius_m.tolist()]
-        return np.interp(height, (line, far), (0.0, self.width_m))
+        return np.full(radius_m.shape, self.width_m)
 
     def hides(self, other: Part) -> bool:
         """Return whether `other` lies wholly on what is gone of the same tooth; False where it is unsure."""
@@ -106,13 +102,9 @@ class PartChip:
 
     def _gone_around(self, outline: Outline) -> Polygon:
         """Return what is gone, with all beyond the tip and the ends of the face that an outline reaches: no metal."""
-        (line, _), (far, _) = self.outline.corners_m[:2]
+        line = self.outline.corners_m[0][0]
         (_, high), (left, right) = outline.height_range_m, outline.face_range_m
         top, first = max(high, self.outline.height_range_m[1]), min(left, 0.0) - self.width_m
-        if far > line:  # a corner: its trace goes on
-            return Polygon(
-                ((line, first), (line, 0.0), (top, self.width_m * (top - line) / (far - line)), (top, first))
-            )
         last = max(right, 0.0) + self.width_m if self.whole_face else self.width_m
         return Polygon(((line, first), (line, last), (top, last), (top, first)), "rectangle")
 
@@ -163,7 +155,7 @@ class PartChip:
         }
 
 
-def lost_outline(gear: SpurGear, height_m: float, width_m: float, *, corner: bool) -> Polygon:
+def lost_outline(gear: SpurGear, height_m: float, width_m: float) -> Polygon:
     """Return what is gone of a tip, from face coordinate 0 on.
 
     Parameters
@@ -173,13 +165,10 @@ def lost_outline(gear: SpurGear, height_m: float, width_m: float, *, corner: boo
         From the tip down, along the radius [m].
     width_m : float
         Across the face [m].
-    corner : bool
-        Whether the height falls to 0 at that width, along a straight line: cut by a plane.
     """
     tip, line = float(gear.height_m(gear.tip_roll_rad)), line_height_m(gear, height_m)
     above = tip + BEYOND_TIP_MODULES * gear.module_m
-    far = tip if corner else line
-    return Polygon(((line, 0.0), (far, width_m), (above, width_m), (above, 0.0)), "polygon" if corner else "rectangle")
+    return Polygon(((line, 0.0), (line, width_m), (above, width_m), (above, 0.0)), "rectangle")
 
 
 def standing_share(pair: GearPair, which: str, damage: Iterable[ToothDamage]) -> float:

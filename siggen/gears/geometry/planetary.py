@@ -82,13 +82,6 @@ class PlanetarySet:
         """Turns of the carrier after which all teeth meet again as they did."""
         return lcm(Fraction(self.ring, self.sun).denominator, Fraction(self.ring, self.planet).denominator)
 
-    def carries_line(self, order: Fraction | int) -> bool:
-        """Return whether a healthy set with equal planets may show a line at an order of the carrier.
-
-        A fixed sensor sees N equal planets pass after each other: nothing changes after 1/N turn (derived).
-        """
-        return (Fraction(order) / (len(self.places) if self.evenly_spaced else 1)).denominator == 1
-
     def excited(self, harmonic: int) -> str:
         """Return what a harmonic of the mesh frequency moves in a set with equal planets at equal distances.
 

@@ -9,7 +9,6 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 
 from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.contact_table_error import contact_table_error
 from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
@@ -37,6 +36,7 @@ from siggen.gears.stiffness.hertz import weber_banaschek_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.dynamics.pair_runs import gear_pair
+from tests.gears.contact.contact_table_error import contact_table_error
 from tests.gears.damage.test_kind_without_outline import Hinge
 
 STIFFNESS = StiffnessOptions()

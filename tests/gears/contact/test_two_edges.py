@@ -7,7 +7,6 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from siggen.gears.contact.closed_form import closed_gap_sink, transfer_distance
 from siggen.gears.contact.edge_law import NO_EDGE, half_plane_factor
 from siggen.gears.contact.two_edges import gap_sink
 from tests.reference.contact import plane_contact
@@ -27,20 +26,6 @@ def test_the_coupled_law_is_that_of_pressure_cells(length_mm, load_n_per_mm, sha
     # measured 5 nm and 6e-3; the target of the model is 20 nm
     assert law.sink_m == pytest.approx(sink, abs=6e-9)
     assert law.left_share == pytest.approx(left, abs=8e-3)
-
-
-@pytest.mark.parametrize(("depth_mm", "room_um", "share"), [(0.0, 0.09, 0.016), (0.2, 0.14, 0.035)])
-def test_the_closed_form_is_near_the_coupled_law(depth_mm, room_um, share):
-    depth, load = depth_mm * 1e-3, 60e3 * KAPPA
-    for length in (0.3e-3, 0.8e-3, 1.5e-3):
-        for offset in np.linspace(-0.6 * length, 0.6 * length, 121):
-            law = gap_sink(0.5 * length + offset, 0.5 * length - offset, depth, 0.0, RADIUS, 0.0, load)
-            sink, left = closed_gap_sink(offset, length, depth, RADIUS, load)
-            assert sink == pytest.approx(law.sink_m, abs=room_um * 1e-6)
-            assert left == pytest.approx(law.left_share, abs=share)
-        reach = transfer_distance(length, depth, RADIUS, load)
-        beyond = 1.1 * reach
-        assert gap_sink(0.5 * length - beyond, 0.5 * length + beyond, depth, 0.0, RADIUS, 0.0, load).left_share == 1.0
 
 
 @pytest.mark.parametrize("offset_um", [0.0, 30.0])
