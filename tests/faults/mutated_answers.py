@@ -25,8 +25,7 @@ from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES, file_has
 from diagnostics.prediction.released_model import load_model
 from diagnostics.scoring.score import score
 from siggen.dataset.reading import Dataset
-from tests.faults.mutated_configurations import Case, outcomes_row
-from tests.faults.mutated_recordings import judged, mutated_bytes
+from tests.faults.mutations import Case, judged, mutated_bytes, outcomes_row
 from tests.faults.victims import small_model, small_set
 
 COUNT, QUICK_COUNT = 300, 30

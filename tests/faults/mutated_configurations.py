@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-import signal
-import sys
 import tempfile
-import time
-import traceback
-from collections import Counter
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from pathlib import Path
 from random import Random
-from types import FrameType
 from typing import Any
 
 import yaml
 
-from benchmarks.row import Row, duration_text
+from benchmarks.row import Row
 from siggen.checks.loading import load_config
-from siggen.errors import EXIT_USAGE, SiggenError
+from tests.faults.mutations import Case, judged, outcomes_row
 
 PRESETS = Path(__file__).resolve().parents[2] / "configs"
 COUNT, QUICK_COUNT = 2_000, 200
-SAID_EVERY = 100
 LIMIT_S = 10.0
 """CPU time of one configuration, which others on the machine do not stretch; the command has 2 s with its start."""
 
@@ -36,22 +28,12 @@ VALUES: tuple[Any, ...] = (
 CHARACTERS = "&*!|>'\"%@`{}[],?:-#\t\n \\0a\u00e9\u0000\ufeff~="
 
 
-@dataclass(frozen=True, slots=True)
-class Case:
-    """One configuration: its text, and what came of it: 'accepted', 'refused', 'traceback' or 'hang'."""
-
-    text: str
-    outcome: str
-    message: str
-    seconds: float
-
-
 def rows(*, quick: bool) -> Iterator[Row]:
     """Yield the row of all configurations."""
     count = QUICK_COUNT if quick else COUNT
     load_presets()
     with tempfile.TemporaryDirectory() as folder:
-        cases = (judged(text, Path(folder)) for text in mutated(count))
+        cases = (judged_configuration(text, Path(folder)) for text in mutated(count))
         yield outcomes_row(f"{count} mutated configurations", cases, count, "accepted", "CPU")
 
 
@@ -59,23 +41,6 @@ def load_presets() -> None:
     """Load every preset, so that no mutated one pays for the compiler, which the first run on a machine needs."""
     for preset in PRESETS.glob("*.yaml"):
         load_config(preset)
-
-
-def outcomes_row(what: str, cases: Iterable[Case], count: int, accepted: str, clock: str) -> Row:
-    """Return the row of `count` cases; says on the way how many are done, and everything about one that went wrong."""
-    outcomes: Counter[str] = Counter()
-    longest_s = 0.0
-    for number, case in enumerate(cases, start=1):
-        outcomes[case.outcome] += 1
-        longest_s = max(longest_s, case.seconds)
-        if case.outcome in {"traceback", "hang"}:
-            print(f"{case.outcome}: {case.text}\n{case.message}", file=sys.stderr, flush=True)
-        if number % SAID_EVERY == 0:
-            print(f"{what}: {number} done, {dict(outcomes)}", file=sys.stderr, flush=True)
-    longest = f"longest {duration_text(longest_s)} of {clock}"
-    measured = f"{outcomes['refused']} refused in words, {outcomes['accepted']} {accepted}, {longest}"
-    others = f"tracebacks: {outcomes['traceback']}, hangs: {outcomes['hang']}"
-    return Row(what, measured, others, None, "no other", outcomes["accepted"] + outcomes["refused"] == count)
 
 
 def mutated(count: int, seed: int = 0) -> Iterator[str]:
@@ -95,34 +60,11 @@ def mutated(count: int, seed: int = 0) -> Iterator[str]:
         yield yaml.safe_dump(tree, sort_keys=False, allow_unicode=True)
 
 
-def judged(text: str, folder: Path) -> Case:
+def judged_configuration(text: str, folder: Path) -> Case:
     """Return what `siggen plan` would do with a text: load it, all checks of form and physics."""
     file = folder / "mutated.yaml"
     file.write_text(text, encoding="utf-8", errors="surrogatepass")
-    started_s = time.process_time()
-    outcome, message = "accepted", ""
-    before = signal.signal(signal.SIGPROF, _too_long)
-    signal.setitimer(signal.ITIMER_PROF, LIMIT_S)
-    try:
-        load_config(file)
-    except SiggenError as error:
-        outcome, message = "refused" if error.exit_code == EXIT_USAGE else "traceback", str(error)
-    except _TooLong:
-        outcome, message = "hang", traceback.format_exc()
-    except Exception:
-        outcome, message = "traceback", traceback.format_exc()
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, before)
-    return Case(text, outcome, message, time.process_time() - started_s)
-
-
-class _TooLong(BaseException):
-    pass
-
-
-def _too_long(_number: int, _frame: FrameType | None) -> None:
-    raise _TooLong
+    return judged(text, lambda: load_config(file), LIMIT_S)
 
 
 def _other_tree(tree: Any, chance: Random) -> None:

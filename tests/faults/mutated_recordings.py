@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import signal
 import tempfile
-import time
-import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from random import Random
 
@@ -15,14 +12,12 @@ import numpy as np
 from benchmarks.row import Row
 from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.taken import RecordingFacts
-from siggen.errors import EXIT_USAGE, SiggenError
-from tests.faults.mutated_configurations import Case, outcomes_row
+from tests.faults.mutations import Case, judged, mutated_bytes, outcomes_row
 from tests.faults.recorder_files import recorder_files
 
 FS_HZ, SAMPLES = 4096, 8192
 KINDS = ("csv", "mat", "mat", "wav", "wav", "npy", "npz", "parquet", "parquet")
 COUNT, QUICK_COUNT = 1_000, 45
-LIMIT_S = 60
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
@@ -66,36 +61,6 @@ def recordings(folder: Path) -> list[Path]:
     return [folder / f"{number}.{kind}" for number, kind in enumerate(KINDS)]
 
 
-def mutated_bytes(content: bytes, chance: Random) -> bytes:
-    """Return a file with one to eight changes, most of them where a format keeps its structure: at its ends."""
-    changed = bytearray(content)
-    for _ in range(chance.randint(1, 8)):
-        if not changed:
-            return b""
-        near = chance.choice((64, 512, len(changed)))
-        place = min(chance.randrange(near), len(changed) - 1)
-        place = place if chance.random() < 0.6 else len(changed) - 1 - place
-        _change(changed, place, chance)
-    return bytes(changed)
-
-
-def _change(content: bytearray, place: int, chance: Random) -> None:
-    kind = chance.randrange(6)
-    if kind == 0:
-        content[place] ^= 1 << chance.randrange(8)
-    elif kind == 1:
-        content[place] = chance.choice((0, 1, 0x7F, 0x80, 0xFF))
-    elif kind == 2:
-        huge = chance.choice((0x7FFFFFFF, 0xFFFFFFFF, 0x80000000, 1 << 20, 0)).to_bytes(4, "little")
-        content[place : place + 4] = huge
-    elif kind == 3:
-        del content[place : place + chance.choice((1, 4, 1000, len(content)))]
-    elif kind == 4:
-        content[place:place] = chance.randbytes(chance.choice((1, 4, 300)))
-    else:
-        content[place : place + 16] = content[:16]
-
-
 def mutated_recordings(count: int, whole: Sequence[Path], seed: int = 0) -> Iterator[Case]:
     """Yield what comes of each of `count` mutations of whole recordings, one after the other; they are overwritten."""
     chance = Random(seed)
@@ -109,31 +74,3 @@ def mutated_recordings(count: int, whole: Sequence[Path], seed: int = 0) -> Iter
 def _judged(path: Path) -> Case:
     facts = RecordingFacts(None if path.suffix == ".wav" else FS_HZ, unit="m/s2", full_scale=10.0)
     return judged(path.name, lambda: recording_indicators(path, (20, 30), facts, (10.0, 30.0)))
-
-
-def judged(text: str, work: Callable[[], object]) -> Case:
-    """Return what came of some work: 'accepted', 'refused', 'traceback' or 'hang'."""
-    started_s = time.process_time()
-    outcome, message = "accepted", ""
-    before = signal.signal(signal.SIGALRM, _too_long)
-    signal.alarm(LIMIT_S)
-    try:
-        work()
-    except SiggenError as error:
-        outcome, message = "refused" if error.exit_code == EXIT_USAGE else "traceback", str(error)
-    except _TooLong:
-        outcome, message = "hang", traceback.format_exc()
-    except Exception:
-        outcome, message = "traceback", traceback.format_exc()
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
-    return Case(text, outcome, message, time.process_time() - started_s)
-
-
-class _TooLong(BaseException):
-    """Not an Exception, so that nothing on the way swallows it."""
-
-
-def _too_long(_number: int, _frame: object) -> None:
-    raise _TooLong
