@@ -47,10 +47,12 @@ def check(
     from diagnostics.machine.check import (
         CANNOT_TELL,
         CHANGED,
-        add_checks,
         check_recording,
         load_sentence,
+        past_checks,
         rate_sentence,
+        with_checks,
+        write_history,
     )
     from diagnostics.machine.machine import load_machine
     from diagnostics.machine.machine_page import write_machine_page
@@ -74,8 +76,7 @@ def check(
             advance()
     if unread and not found:
         raise UsageError("\n".join(unread.values()))
-    if keep:
-        add_checks(machine, found)
+    history = with_checks(past_checks(machine), found if keep else [])
     if as_json:
         echo_json({"machine": str(machine), "checks": [asdict(one) for one in found], "refused": unread})
     else:
@@ -88,7 +89,10 @@ def check(
         echo(rate_sentence(min(used), known.false_alarms), err=True)
     for note in [*(f"doubtful: {doubt}" for doubt in known.doubts), *([load_note] if load_note else [])]:
         echo(note, err=True)
-    echo(str(write_machine_page(known, machine, found)), err=as_json)
+    page = write_machine_page(known, machine, found, history)
+    if keep:
+        write_history(machine, history)  # last: a call that fails and is given again is in it once
+    echo(str(page), err=as_json)
     if any(one.verdict == CHANGED for one in found):
         raise typer.Exit(EXIT_MISMATCH)
     if unread:

@@ -8,7 +8,8 @@ Earlier checks of a machine, one line of JSON each beside its facts: what a tren
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from math import isfinite
 from pathlib import Path
@@ -47,17 +48,20 @@ class PastCheck:
     limit: float | None
 
 
-def add_checks(folder: Path, checks: list[Check]) -> None:
-    """Append checks to the machine's history."""
+def with_checks(history: Iterable[PastCheck], checks: Iterable[Check]) -> list[PastCheck]:
+    """Return a machine's history, and the checks as its newest lines."""
     made = datetime.now(UTC).isoformat(timespec="seconds")
-    path = folder / CHECKS
-    history = path.read_text(encoding="utf-8") if path.exists() else ""
+    rows = [*history]
     for check in checks:
         speed = check.speed_hz if isfinite(check.speed_hz) else None
         score, limit = (None, None) if check.score is None else (check.score.score, check.score.limit)
-        row = PastCheck(made, check.recording, check.verdict, speed, score, limit)
-        history += json.dumps({name: getattr(row, name) for name in PastCheck.__slots__}) + "\n"
-    write_file(path, history)
+        rows.append(PastCheck(made, check.recording, check.verdict, speed, score, limit))
+    return rows
+
+
+def write_history(folder: Path, history: Iterable[PastCheck]) -> None:
+    """Write a machine's history, oldest first."""
+    write_file(folder / CHECKS, "".join(json.dumps(asdict(row)) + "\n" for row in history))
 
 
 def past_checks(folder: Path) -> list[PastCheck]:

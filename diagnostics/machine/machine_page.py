@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.machine.check import CHANGED, UNCHANGED, Check, PastCheck, past_checks, rate_sentence
+from diagnostics.machine.check import CHANGED, UNCHANGED, Check, PastCheck, rate_sentence
 from diagnostics.machine.machine import Machine
 from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.page import html
@@ -27,9 +27,8 @@ NO_STATE = (
 )
 
 
-def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check]) -> Path:
+def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], history: Sequence[PastCheck]) -> Path:
     """Write `machine.html` into the machine's folder; return its path."""
-    history = past_checks(folder)
     with styled():
         figure = png_bytes(_trend(history))
     parts = [

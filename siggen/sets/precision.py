@@ -118,7 +118,8 @@ def measure_precision(
     Raises
     ------
     DatasetError
-        If there is no finished set, another version of the simulation made it, or a record fails now.
+        If there is no finished set, another version of the simulation made it, a record fails now, or the disk takes no
+        more.
     ConfigError
         If this version reads its configuration otherwise.
     """
@@ -139,7 +140,8 @@ def measure_precision(
         if show is not None:
             show(done, len(ids))
     found = _found(config, ids, compared)
-    storage.put(PHYSICS, sealed({**asdict(found), "largest": found.largest, "within": found.within}))
+    with storage.writing():
+        storage.put(PHYSICS, sealed({**asdict(found), "largest": found.largest, "within": found.within}))
     return found
 
 

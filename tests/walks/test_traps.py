@@ -6,21 +6,23 @@ import sys
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
-import numpy as np
 import pytest
-from scipy.io import wavfile
 
 from siggen.engines.processes import ProcessEngine
 from tests.engines import tasks
-from tests.walks.walking import FS_HZ, recorded, walk
+from tests.every_command import LEAVES
+from tests.walks.lines import LINES, lay, lines
+from tests.walks.walking import walk
 
 EXECUTED = "executed"
-DESCRIBED = "--unit g --teeth 18,47 --speed-range 28,32"
+PACKAGES = {"dask": "distributed", "ray": "ray"}
+QUICK = {"siggen generate", "siggen-diagnostics indicators", "siggen-diagnostics score"}
+"""They start processes: to simulate, to read strangers' recordings and predictions."""
 
 
 def lay_traps(folder: Path) -> None:
     """Lay a module for every name that could be imported: it leaves a note when it is executed."""
-    names = {*sys.stdlib_module_names, *packages_distributions(), "siggen", "diagnostics", "ray", "distributed"}
+    names = {*sys.stdlib_module_names, *packages_distributions(), "siggen", "diagnostics", *PACKAGES.values()}
     for name in names:
         if name.isidentifier():
             note = f"open({str(folder / EXECUTED)!r}, 'a').write({name!r} + chr(10))\n"
@@ -32,27 +34,46 @@ def executed(folder: Path) -> list[str]:
     return sorted(set(note.read_text().split())) if note.exists() else []
 
 
-@pytest.fixture
-def traps(tmp_path: Path) -> Path:
-    lay_traps(tmp_path)
-    return tmp_path
+def executed_by(line: str, folder: Path, factory: pytest.TempPathFactory, code: int = 0) -> list[str]:
+    """Return the names of modules that a line executed, in a folder with what it needs and the traps."""
+    lay(folder, line, factory)
+    lay_traps(folder)
+    walk(folder, line.replace("OUT/", "").replace("IN/", ""), code)
+    return executed(folder)
 
 
-def test_workers_of_a_set_take_no_module_from_the_folder(traps: Path) -> None:
-    walk(traps, "siggen generate quickstart --set specimens=2 --set duration_s=0.1 --workers 2 --out set")
-    assert not executed(traps)
+def test_every_command_has_a_line() -> None:
+    assert sorted(LINES) == sorted(LEAVES)
 
 
-def test_processes_that_read_recordings_take_no_module_from_the_folder(traps: Path) -> None:
-    for seed, name in enumerate(("may", "june")):
-        wavfile.write(traps / f"{name}.wav", round(FS_HZ), recorded(seed, 0.0).astype(np.float32))
-    walk(traps, f"siggen-diagnostics indicators may.wav june.wav {DESCRIBED} --out table")
-    assert not executed(traps)
+@pytest.mark.parametrize("name", lines(LINES, QUICK))
+def test_no_command_takes_a_module_from_the_folder(
+    name: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    assert not executed_by(f"{name} {LINES[name].words}", tmp_path, tmp_path_factory, LINES[name].code)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "line",
+    [
+        "siggen-diagnostics indicators set --workers 2 --out table",
+        "siggen-diagnostics explore set --out look.html",
+        "siggen generate short.yaml --engine dask --workers 2 --out new",
+        "siggen generate short.yaml --engine ray --workers 2 --out new",
+    ],
+)
+def test_nor_do_other_workers(line: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    for engine, package in PACKAGES.items():
+        if f"--engine {engine}" in line:
+            pytest.importorskip(package)
+    assert not executed_by(line, tmp_path, tmp_path_factory)
 
 
 def test_workers_of_a_script_import_beside_the_script_and_not_from_the_folder(
-    traps: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(traps)
+    lay_traps(tmp_path)
+    monkeypatch.chdir(tmp_path)
     assert dict(ProcessEngine(1).map(tasks.square, range(3))) == {0: 0, 1: 1, 2: 4}
-    assert not executed(traps)
+    assert not executed(tmp_path)

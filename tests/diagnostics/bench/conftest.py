@@ -66,13 +66,18 @@ def make(folder: Path, size: Tier = SMALL, secret: bytes = SECRET, facts: Path |
     return Made(make_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
 
 
-@pytest.fixture(scope="session")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
-    """The benchmark, committed to, not revealed; files share it, and copy what they change."""
+def committed_benchmark(factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with `bench`, committed to, and `hidden`; files copy what they change."""
 
     def committed(folder: Path) -> None:
         found = make(folder, Tier(6, GEARBOXES))
         commit(found.benchmark, found.sealed)
 
-    folder = shared_folder(tmp_path_factory, "benchmark", committed)
+    return shared_folder(factory, "benchmark", committed)
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """The committed benchmark."""
+    folder = committed_benchmark(tmp_path_factory)
     return Made(open_benchmark(folder / "bench"), folder / "hidden")
