@@ -1,17 +1,16 @@
-"""All indicators of the package, in the order of the signal chain; the table in the documentation is made from them.
+"""All indicators of the package, in the order of the signal chain.
 
 What people call the columns of indicators: `sideband_pinion_h2_upper1` is a sideband amplitude of the pinion.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any
 
 from diagnostics.indicators import angle, average, cepstrum, history, level, sidebands
-from diagnostics.indicators.indicator import BOOK, INDICATORS, OF_CHANNEL, Indicator, base_name, of_mesh
+from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator, base_name, of_mesh
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.gear_train import PAIR, GearNames
@@ -112,25 +111,6 @@ def _words(chosen: dict[str, Any]) -> list[str]:
     if "band" in chosen:
         found.append("orders " + str(chosen["band"]).removeprefix("o").replace("_", " to "))
     return found
-
-
-def definition_table() -> str:
-    """Return all definitions as a Markdown table; conditions and sources of several of them stand below it, once."""
-    conditions = [text for text, count in Counter(d.undefined for d in ALL).items() if count > 1 and text != "never"]
-    signs = {text: f"({letter})" for letter, text in zip("abcdefghij", conditions, strict=False)}
-    head = "| column starts with | indicator | taken from | value | unit | on known signals | undefined when | source |"
-    rows = [
-        f"| `{d.name}` | {d.title} | {d.signal} | {_cell(d.formula)} | {d.unit or '-'} | {d.known} | "
-        f"{signs.get(d.undefined, d.undefined)} | {'-' if d.source == BOOK else d.source} |"
-        for d in ALL
-    ]
-    notes = [f"* {sign}: {text}" for text, sign in signs.items()]
-    return "\n".join([head, "|---|---|---|---|---|---|---|---|", *rows, "", *notes, f"* Source -: {BOOK}"])
-
-
-def _cell(text: str) -> str:
-    """Return text in which a bar does not end a cell."""
-    return text.replace("|", "\\|")
 
 
 def columns(settings: IndicatorSettings, quantity: str = RECORDED.word, named: GearNames = PAIR) -> tuple[str, ...]:

@@ -1,11 +1,10 @@
 """Pages of the presets in docs/reports: `python docs/scripts/report_pages.py [--sets DIR] [NAME ...]`.
 
-Without names all pages are made (`make pages`): those of quickstart, bench, industrial, families and a machine of one's
-own. Sets are looked for in runs/ and generated where they are missing; every command is printed before it runs. With
-`--sets DIR` a set is taken from DIR/NAME, where it is. A set of another configuration, or of another number of
-gearboxes, is refused, and so is a page that names a place on this machine. Sets, JSON files, tables and models stay in
-runs/. Two pages are kept in the repository (`KEPT`). The figures of quickstart that other pages of the documentation
-cite are drawn anew (`cited_figures.py`).
+Without names those of quickstart and bench are made (`make pages`). Sets are looked for in runs/ and generated where
+they are missing; every command is printed before it runs. With `--sets DIR` a set is taken from DIR/NAME, where it
+is. A set of another configuration, or of another number of gearboxes, is refused, and so is a page that names a place
+on this machine. Sets, JSON files, tables and models stay in runs/. Two pages are kept in the repository (`KEPT`). The
+figures of quickstart that other pages of the documentation cite are drawn anew (`cited_figures.py`).
 """
 
 from __future__ import annotations
@@ -23,26 +22,18 @@ import sys
 from pathlib import Path
 
 RUNS, PAGES = Path("runs"), Path("docs/reports")
-GEARBOXES = {"bench": 24, "industrial": 10, "families": 30, "rig": 10}
-"""Fewer than the presets have, so that the pages cost an hour. Ten have 20 healthy records: 5 % of them is one."""
+GEARBOXES = {"bench": 24}
+"""Fewer than the preset has."""
 
-OWN = "--teeth 25,56 --module 2 --face-width 20 --speed 15,25 --torque 20 --sensors 2"
 SETS = {
     "quickstart": ("siggen generate configs/quickstart.yaml --out runs/quickstart --workers 2",),
-    **{
-        name: (f"siggen generate configs/{name}.yaml --set specimens={GEARBOXES[name]} --out runs/{name} --workers 2",)
-        for name in ("bench", "industrial", "families")
-    },
-    "rig": (
-        f"siggen init {OWN} --out runs/rig.yaml",
-        f"siggen generate runs/rig.yaml --set specimens={GEARBOXES['rig']} --out runs/rig --workers 2",
-    ),
+    "bench": (f"siggen generate configs/bench.yaml --set specimens={GEARBOXES['bench']} --out runs/bench --workers 2",),
 }
 """Commands that make a set, by its folder in runs/; the last one generates it."""
 
 LADDER = " ".join(f"--state through_{size:03d}" for size in (40, 50, 60, 70, 80, 90, 100, 125, 150))
-OPTIONS = {"quickstart": " --limit 5", "rig": "", "bench": f" --no-cnn {LADDER}"}
-"""Networks of the first two cost a minute or two, of others several; the page that is kept has one gearbox's signals.
+OPTIONS = {"quickstart": " --limit 5", "bench": f" --no-cnn {LADDER}"}
+"""Networks of bench cost minutes; the page that is kept has one gearbox's signals.
 
 Features of bench are ranked along one ladder of damage. The audit is of quickstart alone.
 """

@@ -1,7 +1,6 @@
 """Print docs/reference/yaml.md: `python docs/scripts/yaml_reference.py > docs/reference/yaml.md`, or `make reference`.
 
-Meaning, range and default come from `siggen schema`; the shipped configurations say which keys they set. Sources of
-their values stand beside these, in the files.
+Meaning, range and default come from `siggen schema`.
 """
 
 from __future__ import annotations
@@ -10,22 +9,19 @@ import json
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import yaml
 from schema_keys import DISTRIBUTIONS, Key, Schema, is_number_part
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
 
-CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 SECTION_DEFAULT = "by its keys"
 SECTION_KIND = "section (kind: "
 
 HEAD = """# Keys of the YAML file
 
-This page is printed by `make reference` from `siggen schema` and the files in `configs/`. Begin with
+This page is printed by `make reference` from `siggen schema`. Begin with
 [the twenty keys that matter](twenty_keys.md).
 
 * **Number**, or a range alone, may be a constant, or a distribution that siggen draws once per gearbox
@@ -34,7 +30,6 @@ This page is printed by `make reference` from `siggen schema` and the files in `
 * **extends** names a preset or another file. Mappings are merged key by key, all else is replaced. The set's own
   `config.yaml` holds the result.
 * The default stands last, in brackets. A key without brackets is required wherever its section stands.
-* **expert**: no shipped configuration sets the key.
 * Keys of one meaning share a line; what differs between them is divided by a slash. Sections are not counted.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
@@ -132,51 +127,6 @@ def mapping(value: Mapping[str, Any]) -> str:
     return (
         f"{{{', '.join(f'{key}: {digits(each) if isinstance(each, float) else each}' for key, each in value.items())}}}"
     )
-
-
-@dataclass(frozen=True)
-class Shipped:
-    """One shipped configuration, and the keys it sets."""
-
-    path: Path
-
-    def set_keys(self, schema: Schema) -> set[str]:
-        """Return the paths of its keys."""
-        root = yaml.compose(self.path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
-        return set(self._walk(schema, schema.content, root, ""))
-
-    def _walk(self, schema: Schema, section: Mapping[str, Any], node: Any, prefix: str) -> Iterator[str]:
-        for name_node, value_node in pairs(node):
-            value = section.get("properties", {}).get(name_node.value)
-            if value is None:
-                continue
-            path = f"{prefix}{name_node.value}"
-            yield path
-            entries = value_node.value if isinstance(value_node, yaml.SequenceNode) else [value_node]
-            sections = [(*one, one[1]["properties"].get("kind", {}).get("const")) for one in schema.sections(value)]
-            for ending, inner, kind in sections:
-                for entry in entries:
-                    # an entry without a kind is of the first one
-                    if isinstance(entry, yaml.MappingNode) and kind in (None, kind_of(entry) or sections[0][2]):
-                        yield from self._walk(schema, inner, entry, f"{path}{ending}.")
-
-
-def pairs(node: Any) -> Iterator[tuple[Any, Any]]:
-    """Yield the keys and values of a mapping, those of merged mappings included."""
-    if not isinstance(node, yaml.MappingNode):
-        return
-    for name, value in node.value:
-        if name.tag == "tag:yaml.org,2002:merge":
-            for merged in value.value if isinstance(value, yaml.SequenceNode) else [value]:
-                yield from pairs(merged)
-        else:
-            yield name, value
-
-
-def kind_of(node: Any) -> str | None:
-    """Return the value of the key `kind`; an own one goes before a merged one."""
-    found = [value.value for name, value in pairs(node) if name.value == "kind"]
-    return found[-1] if found else None
 
 
 def row(*cells: str) -> str:
@@ -277,17 +227,15 @@ def without_repeated(schema: Schema, keys: list[Key]) -> list[Key]:
     return left
 
 
-def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str | None:
+def listed(schema: Schema, entry: Entry) -> str | None:
     """Return the line of a key, or nothing of a section that holds nothing but its keys."""
-    first, used = entry.keys[0], any(users[key.path] or key.path == "extends" for key in entry.keys)
+    first = entry.keys[0]
     values = entry.values(schema)
     defaults = "" if entry.defaults == [""] else " / ".join(each or "required" for each in entry.defaults)
     if first.path in REPEATED:
         return f"* `{entry.names[0]}`: {described(schema, first.schema)}; keys as in `{REPEATED[first.path]}`"
     if entry.is_plain(schema):
         return None
-    # What a section cannot do without is never for experts, as in `siggen schema`.
-    mark = "" if used or "" in entry.defaults else " (expert)"
     alike = {name.replace("pinion", "gear") for name in entry.names if "pinion" in name}
     names = ", ".join(f"`{name}`" for name in entry.names if name not in alike)
     if defaults == "`null`":
@@ -297,14 +245,14 @@ def listed(schema: Schema, entry: Entry, users: Mapping[str, list[str]]) -> str 
     if re.fullmatch(r"Number \S+", values):
         values = values.removeprefix("Number ")
     ending = f" ({defaults})" if defaults else ""
-    return f"* {names}{mark}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
+    return f"* {names}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
 
 
-def listing_of(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]) -> Iterator[str]:
+def listing_of(schema: Schema, rows: list[Entry]) -> Iterator[str]:
     """Yield the lines of a section, those of the same kinds together."""
     kinds = list(dict.fromkeys(tuple(entry.kinds) for entry in rows))
     for group in kinds:
-        lines = [listed(schema, entry, users) for entry in rows if tuple(entry.kinds) == group]
+        lines = [listed(schema, entry) for entry in rows if tuple(entry.kinds) == group]
         if len(kinds) > 1:
             yield from (f"Kind {', '.join(group)}:" if group else "All kinds:", "")
         yield from (line for line in lines if line is not None)
@@ -316,10 +264,6 @@ def page() -> str:
     schema = Schema(json.loads(CliRunner().invoke(app, ["schema"], catch_exceptions=False).output))
     keys_everywhere = list(schema.keys(schema.content))
     keys = without_repeated(schema, keys_everywhere)
-    users: dict[str, list[str]] = {key.path: [] for key in keys}
-    for path in sorted(CONFIGS.glob("*.yaml")):
-        for key in Shipped(path).set_keys(schema) & set(users):
-            users[key].append(path.stem)
     tops = [(key, entries(schema, keys, key.path)) for key in keys if key.path in schema.content["properties"]]
     plain = [Entry((key,), "") for key, _ in tops]
     every = [*plain, *(entry for _, tables in tops for rows in tables for entry in rows)]
@@ -327,7 +271,7 @@ def page() -> str:
     places = sum(not Entry((key,), "").is_section(schema) for key in keys_everywhere)
     lines = [HEAD, f"There are {count} keys to learn, in {places} places.", ""]
     alone = [Entry((key,), "") for key, tables in tops if not tables]
-    lines += ["## Top level", "", *listing_of(schema, alone, users)]
+    lines += ["## Top level", "", *listing_of(schema, alone)]
     for top, tables in tops:
         text = described(schema, top.schema)
         listed = " A list; these are the keys of an entry." if top.schema.get("type") == "array" else ""
@@ -338,7 +282,7 @@ def page() -> str:
             else:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
                 lines += ["### " + re.sub(r" \(kind: \w+\)", "", place), ""]
-            lines += [*listing_of(schema, rows, users)]
+            lines += [*listing_of(schema, rows)]
     lines += [DISTRIBUTION_TEXT, *distributions(schema)]
     return "\n".join(lines).rstrip() + "\n"
 
