@@ -301,8 +301,8 @@ class PairLaw:
             low = between([row[up] for row in table[along : along + 2]], 0, a)
             return low * (1.0 - b) + between([row[up + 1] for row in table[along : along + 2]], 0, a) * b
 
-        ratios = [min(read(table), 1.0) for table in law["friction.table.ratio"]]
-        share = ratios[0] if len(ratios) == 1 else ratios[0] * (1.0 - spring.rough) + ratios[1] * spring.rough
+        shares = [read(table) for table in law["friction.table.share"]]
+        share = shares[0] if len(shares) == 1 else shares[0] * (1.0 - spring.rough) + shares[1] * spring.rough
         boundary = law["friction.boundary"]
         return share, share * boundary + (1.0 - share) * min(read(fluids), boundary)
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from siggen.sets.trial import StateTrial
 
 
-NOTES = ("stiffness_notes", "lubrication_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
+NOTES = ("stiffness_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
 """Lists of sentences in the summary, in the order in which they are printed."""
 
 
@@ -172,7 +172,6 @@ def plan_summary(config: Config) -> dict[str, Any]:
 
 def _notes(config: Config) -> dict[str, Any]:
     """Return how it varies, and what a user should know about it, in words."""
-    from siggen.checks.contact_notes import contact_notes
     from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
@@ -182,7 +181,6 @@ def _notes(config: Config) -> dict[str, Any]:
     notes = {
         "stiffness_notes": _of_every_pair(config, model_notes),
         "variation": variation_notes(config),
-        "lubrication_notes": contact_notes(config),
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
         "damage_notes": [*_of_every_pair(config, damage_notes)],
         "state_notes": state_notes(config),

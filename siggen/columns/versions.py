@@ -5,5 +5,5 @@ from __future__ import annotations
 SCHEMA_VERSION = "5"
 """Version of the columns and of the files around them: the one that is written and read."""
 
-SIMULATION_VERSION = 10
+SIMULATION_VERSION = 11
 """Raised, at most once per release, when a configuration of an earlier release comes to give a record other numbers."""

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from siggen.config.oil import Oil
+from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
@@ -65,7 +66,12 @@ class Friction(Section):
     oil_temperature_c: Annotated[Number, Within(least=-20, most=150)] = Field(
         default=50.0, description="at the inlet of the contact"
     )
-    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(default=0.4, description=ROUGHNESS)
+    boundary_friction: Annotated[Number, Within(least=0, most=0.5)] = Field(
+        default=Uniform(low=0.07, high=0.11), description="friction coefficient of asperities, by the oil's additives"
+    )
+    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
+        default=Uniform(low=0.2, high=0.5), description=f"{ROUGHNESS}; run in"
+    )
     pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=2.0,
         description=ROUGHNESS,

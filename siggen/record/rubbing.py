@@ -92,7 +92,8 @@ class ForceSpectrum(NamedTuple):
         steepness = self.hurst_exponent + 0.5
         profile = contact_filter(frequency_hz, self.roll_off_hz, steepness)
         profile /= sqrt(contact_bandwidth_hz(self.roll_off_hz, steepness))
-        return self.rough_n * profile * contact_filter(frequency_hz, self.contact_hz, 1.0)
+        # never 0, of which a filter of least phase has none: a film that parts the flanks leaves no asperity to rub
+        return self.rough_n * profile * contact_filter(frequency_hz, self.contact_hz, 1.0) + 1e-30
 
     def rms_n(self, highest_hz: float) -> float:
         """Return the rms of what lies below a frequency."""

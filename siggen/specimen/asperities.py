@@ -6,9 +6,8 @@ from math import pi, sqrt
 from typing import NamedTuple
 
 from siggen.config import Friction
-from siggen.dynamics.friction.asperity_share import masjedi_khonsari_ratio
+from siggen.dynamics.friction.asperity_table import share_at
 from siggen.dynamics.friction.contact_kinematics import effective_modulus, relative_radius
-from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
 from siggen.dynamics.friction.reversal import slip_speed
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import OperatingPoint
@@ -18,10 +17,8 @@ from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, mea
 def asperity_share(section: Friction, pair: GearPair, point: OperatingPoint) -> float:
     """Return the share of the mean load that asperities of healthy flanks carry at the pitch point, whatever rubs."""
     force_n = mean_force_n(pair, point)
-    groups = lubricated_mesh(section, pair, point).groups(
-        pair.pitch_point_m, force_n, composite_roughness_m(section)[0]
-    )
-    return float(min(masjedi_khonsari_ratio(groups), 1.0))
+    mesh, roughness_m = lubricated_mesh(section, pair, point), composite_roughness_m(section)[0]
+    return float(share_at(mesh, roughness_m, pair.pitch_point_m, force_n))
 
 
 class FrictionTurn(NamedTuple):
@@ -36,7 +33,7 @@ def friction_turn(section: Friction, pair: GearPair, point: OperatingPoint) -> F
     force_n = mean_force_n(pair, point)
     mesh = lubricated_mesh(section, pair, point)
     speed = slip_speed(mesh, pitch_point(pair, mesh), force_n, composite_roughness_m(section)[0])
-    return FrictionTurn(asperity_share(section, pair, point) * BOUNDARY_FRICTION, speed)
+    return FrictionTurn(asperity_share(section, pair, point) * mesh.boundary_friction, speed)
 
 
 def contact_half_width_m(pair: GearPair, point: OperatingPoint) -> float:

@@ -20,8 +20,6 @@ LARGEST_FORCE = 10.0
 """End of the table's load axis over the static mesh force; beyond it the coefficient stays."""
 LEAST_LINE_LOAD_N_PER_M = 1e3
 """A Hertz band of some 10 µm."""
-HARDNESS_PA = 7e9
-"""Of case-hardened flanks (reference: standard literature)."""
 
 
 def specimen_friction(
@@ -40,7 +38,8 @@ def specimen_friction(
         _places_m(pair),
         LARGEST_FORCE * force_n,
     )
-    return composite_friction(table, slip_speed_m_s=slip_speed(mesh, pitch_point(pair, mesh), force_n, healthy_m))
+    slip_m_s = slip_speed(mesh, pitch_point(pair, mesh), force_n, healthy_m)
+    return composite_friction(table, mesh.boundary_friction, slip_m_s)
 
 
 def _places_m(pair: GearPair) -> tuple[float, float]:
@@ -99,5 +98,5 @@ def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) ->
         pressure_viscosity_per_pa=oil.pressure_viscosity_per_pa(temperature_c),
         viscosity_fall_per_k=oil.viscosity_fall_per_k(temperature_c),
         inlet_temperature_k=temperature_c + 273.15,
-        hardness_pa=HARDNESS_PA,
+        boundary_friction=constant(section.boundary_friction),
     )

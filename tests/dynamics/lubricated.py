@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
-import numpy as np
-
-from siggen.dynamics.friction.asperity_share import RATIO_MODELS
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
-from siggen.dynamics.friction.lubrication import FilmGroups, LubricatedMesh
+from siggen.dynamics.friction.lubrication import LubricatedMesh
 from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47(module_m=3e-3)
@@ -32,11 +29,6 @@ def mesh(**other: float) -> LubricatedMesh:
         "pressure_viscosity_per_pa": 2.2e-8,
         "viscosity_fall_per_k": 0.052,
         "inlet_temperature_k": 323.15,
-        "hardness_pa": 7e9,
+        "boundary_friction": 0.09,
     }
     return LubricatedMesh(**(numbers | other))
-
-
-def mixed_share(groups: FilmGroups, model: str = "masjedi_khonsari") -> np.ndarray:
-    """Asperity share La between 0 and 1, directly: what tables of it interpolate."""
-    return np.minimum(RATIO_MODELS[model](groups), 1.0)

@@ -77,7 +77,7 @@ def test_slow_gears_without_friction_take_steps_of_1_4_rad_of_the_teeth_s_vibrat
 
 
 def test_friction_that_stops_light_gears_at_once_takes_more_steps() -> None:
-    light = ["dynamics.pinion.mass_kg=0.05", "operating_points=[{speed_hz: 33, torque_nm: 60}]"]
+    light = ["dynamics.pinion.mass_kg=0.05", "operating_points=[{speed_hz: 5, torque_nm: 60}]"]
     assert steps_of(loaded(*light)) > steps_of(loaded(*light, "dynamics.friction.model=off"))
 
 

@@ -1,8 +1,8 @@
 """AsperityTable: asperity share and fluid friction over position and load, for the compiled time loop.
 
 Derived: bilinear interpolation over the position s (uniform) and the logarithm of the load group Ŵ (uniform from
-`LOAD_FLOOR`, below which the models hold their values), one layer per roughness. The film formulas are power laws,
-hence nearly linear in that logarithm, and the ratio is cut off at 1 after the interpolation, so the table has no kinks.
+`LOAD_FLOOR`, below which the film holds its value), one layer per roughness. The film is a power law and the share is
+flat where it ends, so both are nearly linear within a cell.
 The error is measured at the middle of every cell, where that of a smooth function is largest
 (`tests/dynamics/friction/test_asperity_table.py`): below 1.2e-3 in the share (1e-4 in the friction coefficient) for the
 default grid, 18/47 teeth of module 3 mm at 30 Hz in ISO VG 220, the path of contact with 0.5 mm on either side and
@@ -19,23 +19,26 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.compiled import entry, njit
-from siggen.dynamics.friction.asperity_share import RATIO_MODELS
+from siggen.dynamics.friction.asperity_share import asperity_load_share
 from siggen.dynamics.friction.contact_kinematics import Values, relative_radius
 from siggen.dynamics.friction.film_traction import film_traction
-from siggen.dynamics.friction.lubrication import LOAD_FLOOR, LubricatedMesh
+from siggen.dynamics.friction.lubrication import LOAD_FLOOR, LubricatedMesh, central_film_m, film_ratio
 from siggen.lanes import Choice, Lanes, Whole, as_doubles, gather_pairs, larger, logarithm, smaller, truncated
+
+LEAST_ROUGHNESS_M = 1e-12
+"""A smooth flank has a film ratio too."""
 
 
 class AsperityTable(NamedTuple):
     """Tables over (roughness, position, load); a named tuple, since compiled code takes no dataclass.
 
-    `ratio` (roughnesses, positions, loads): asperity load ratio, whose minimum with 1 is the share; `fluid` (positions,
-    loads): friction coefficient of the lubricated part; `line_m`: T; `start_m`, `per_m`: first position and grid points
-    per metre; `floor_n_per_m`: force at the lower end of the load axis over R_e; `per_log`: grid points per unit of the
-    natural logarithm of the load.
+    `share` (roughnesses, positions, loads): asperity share of the load; `fluid` (positions, loads): coefficient of the
+    film; `line_m`: T; `start_m`, `per_m`: first position and grid points per metre; `floor_n_per_m`:
+    force at the lower end of the load axis over R_e; `per_log`: grid points per unit of the natural logarithm of the
+    load.
     """
 
-    ratio: FloatArray
+    share: FloatArray
     fluid: FloatArray
     line_m: float
     start_m: float
@@ -49,8 +52,7 @@ def asperity_table(
     roughness_m: Sequence[float],
     range_m: tuple[float, float],
     largest_force_n: float,
-    model: str = "masjedi_khonsari",
-    points: tuple[int, int] = (97, 65),
+    points: tuple[int, int] = (257, 25),
 ) -> AsperityTable:
     """Return the table of a mesh at its speed.
 
@@ -58,22 +60,20 @@ def asperity_table(
     ----------
     mesh : LubricatedMesh
     roughness_m : sequence of float
-        Composite rms roughness σ of each layer [m], for example the healthy flank, then pitted ones. The film is that
-        of the first.
+        Composite rms roughness σ of each layer [m], for example the healthy flank, then pitted ones. The oil is warmed
+        by the friction of the first.
     range_m : (first, last)
         Positions s that the grid reaches [m], a cell inside the line of action; beyond them the end values hold.
     largest_force_n : float
         The load axis reaches this force at every position; beyond its end the end values hold [N].
-    model : str
-        A name of `RATIO_MODELS`.
     points : (positions, loads)
 
     Raises
     ------
     ValueError
-        If the range, the force, a roughness, the model or the number of points is impossible.
+        If the range, the force, a roughness or the number of points is impossible.
     """
-    _check(mesh, roughness_m, range_m, model, points)
+    _check(mesh, roughness_m, range_m, points)
     position = _positions(mesh, range_m, points[0])
     floor = LOAD_FLOOR * mesh.contact_length_m * mesh.effective_modulus_pa
     lowest = np.asarray(floor * relative_radius(position, mesh.line_m))
@@ -82,12 +82,12 @@ def asperity_table(
         allowed = f"allowed are finite forces above {lowest.min():.3g} N"
         raise ValueError(f"largest_force_n: received {largest_force_n}; {allowed}")
     force = lowest[:, None] * np.exp(span * np.arange(points[1]) / (points[1] - 1))
-    ratio = np.stack([ratios_at(mesh, sigma, position[:, None], force, model) for sigma in roughness_m])
-    fluid = film_traction(mesh, position[:, None], force, roughness_m[0], np.minimum(ratio[0], 1.0))
-    for array in (ratio, fluid):
+    share = np.stack([share_at(mesh, sigma, position[:, None], force) for sigma in roughness_m])
+    fluid = film_traction(mesh, position[:, None], force, share[0])
+    for array in (share, fluid):
         array.setflags(write=False)
     return AsperityTable(
-        ratio=ratio,
+        share=share,
         fluid=fluid,
         line_m=mesh.line_m,
         start_m=float(position[0]),
@@ -109,9 +109,10 @@ def _cell_m(range_m: tuple[float, float], points: int) -> float:
     return (range_m[1] - range_m[0]) / (points - 2)
 
 
-def ratios_at(mesh: LubricatedMesh, roughness_m: float, position_m: Values, force_n: Values, model: str) -> FloatArray:
-    """Return the load ratio directly by the model at positions [m] and forces [N] that broadcast."""
-    return np.asarray(RATIO_MODELS[model](mesh.groups(position_m, force_n, roughness_m)), dtype=np.float64)
+def share_at(mesh: LubricatedMesh, roughness_m: float, position_m: Values, force_n: Values) -> FloatArray:
+    """Return the asperity share directly by the law at positions [m] and forces [N] that broadcast."""
+    film_m = central_film_m(mesh.groups(position_m, force_n))
+    return np.asarray(asperity_load_share(film_ratio(film_m, max(roughness_m, LEAST_ROUGHNESS_M))), dtype=np.float64)
 
 
 class LoadGrid(NamedTuple):
@@ -137,8 +138,8 @@ def mixed_contact(table: AsperityTable, layer: int, position_m: float, force_n: 
         positions, loads, table.line_m, table.start_m, table.per_m, table.floor_n_per_m, table.per_log
     )  # fmt: skip
     corner, a, b = contact_cell(grid, position_m, force_n, True)
-    ratio = cell_value(table.ratio[layer].reshape(-1), corner, loads, a, b)
-    return min(ratio, 1.0), cell_value(table.fluid.reshape(-1), corner, loads, a, b)
+    share = cell_value(table.share[layer].reshape(-1), corner, loads, a, b)
+    return share, cell_value(table.fluid.reshape(-1), corner, loads, a, b)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
@@ -174,7 +175,6 @@ def _check(
     mesh: LubricatedMesh,
     roughness_m: Sequence[float],
     range_m: tuple[float, float],
-    model: str,
     points: tuple[int, int],
 ) -> None:
     if min(points) < 3:
@@ -186,5 +186,3 @@ def _check(
         raise ValueError(f"range_m: received {range_m}; {allowed}")
     if not roughness_m or not all(np.isfinite(value) and value >= 0.0 for value in roughness_m):
         raise ValueError(f"roughness_m: received {tuple(roughness_m)}; allowed is at least one finite value from 0")
-    if model not in RATIO_MODELS:
-        raise ValueError(f"model: received {model!r}; allowed are {', '.join(RATIO_MODELS)}")

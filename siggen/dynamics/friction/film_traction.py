@@ -33,10 +33,8 @@ from siggen.dynamics.friction.contact_kinematics import (
     relative_radius,
     sliding_speed,
 )
-from siggen.dynamics.friction.lubrication import LubricatedMesh, masjedi_khonsari_central
+from siggen.dynamics.friction.lubrication import LubricatedMesh, central_film_m
 
-BOUNDARY_FRICTION = 0.11
-"""Friction of the asperities (reference: standard literature, 0.1 to 0.13)."""
 EYRING_STRESS_PA = 5e6
 """τ_E of mineral oils (from memory: 2 to 10 MPa, usually 5)."""
 ROELANDS_PRESSURE_PA = 1.0 / 5.1e-9
@@ -73,9 +71,7 @@ class Film(NamedTuple):
     flank_warms: FloatArray
 
 
-def film_traction(
-    mesh: LubricatedMesh, position_m: Values, force_n: Values, roughness_m: float, share: Values
-) -> FloatArray:
+def film_traction(mesh: LubricatedMesh, position_m: Values, force_n: Values, share: Values) -> FloatArray:
     """Return the friction coefficient of the load that the oil carries, from 0 at the pitch point.
 
     Parameters
@@ -84,12 +80,10 @@ def film_traction(
         At its mean speeds: the slide is that of the place.
     position_m, force_n : float or array
         Places s [m] and normal forces [N]; they broadcast.
-    roughness_m : float
-        Composite rms roughness σ, on which the film's thickness depends [m].
     share : float or array
         La, the share of the load that asperities carry, 0 to 1.
     """
-    film = _film(mesh, position_m, force_n, roughness_m, np.minimum(share, MOST_SHARE))
+    film = _film(mesh, position_m, force_n, np.minimum(share, MOST_SHARE))
     warmth = np.zeros_like(film.thickness_m)
     stress, softening = _mean_stress(mesh, film, warmth)
     for _ in range(NEWTON_STEPS):
@@ -101,13 +95,13 @@ def film_traction(
     return np.asarray(stress / film.mean_pressure_pa)
 
 
-def _film(mesh: LubricatedMesh, position_m: Values, force_n: Values, roughness_m: float, share: Values) -> Film:
+def _film(mesh: LubricatedMesh, position_m: Values, force_n: Values, share: Values) -> Film:
     radius, line_load = relative_radius(position_m, mesh.line_m), force_n / mesh.contact_length_m
     speeds = mesh.line_m, mesh.speed_1_rad_s, mesh.speed_2_rad_s
     half_width = hertz_half_width(line_load, radius, mesh.effective_modulus_pa)
     passage_s = 2.0 * np.asarray(half_width) / entrainment_speed(position_m, *speeds)
     slide = np.abs(sliding_speed(position_m, *speeds, 0.0))
-    thickness = np.asarray(masjedi_khonsari_central(mesh.groups(position_m, force_n, roughness_m)))
+    thickness = np.asarray(central_film_m(mesh.groups(position_m, force_n)))
     mean = 0.25 * np.pi * np.asarray(hertz_pressure(line_load, radius, mesh.effective_modulus_pa))
     pressure = (4.0 / np.pi * mean * (1.0 - share))[..., None] * _PRESSURE_COSINE
     at_inlet = np.log(mesh.viscosity_pa_s) + ROELANDS_LOG
@@ -117,7 +111,7 @@ def _film(mesh: LubricatedMesh, position_m: Values, force_n: Values, roughness_m
         thickness_m=thickness,
         slide_m_s=np.asarray(slide),
         mean_pressure_pa=mean * (1.0 - share),
-        rub_pa=BOUNDARY_FRICTION * share * mean,
+        rub_pa=mesh.boundary_friction * share * mean,
         film_warms=slide * thickness / (12.0 * OIL_CONDUCTIVITY_W_PER_M_K),
         flank_warms=0.5 * slide * np.sqrt(16.0 * passage_s / (9.0 * np.pi)) / STEEL_EFFUSIVITY,
     )

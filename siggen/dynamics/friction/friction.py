@@ -16,7 +16,6 @@ import numpy as np
 
 from siggen.compiled import entry, njit
 from siggen.dynamics.friction.asperity_table import AsperityTable, mixed_contact
-from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
 from siggen.lanes import Lanes, smaller
 
 SLIP_SPEED_M_S = 0.02
@@ -34,9 +33,7 @@ class FrictionLaw(NamedTuple):
     slip_speed_m_s: float
 
 
-def composite_friction(
-    table: AsperityTable, boundary: float = BOUNDARY_FRICTION, slip_speed_m_s: float = SLIP_SPEED_M_S
-) -> FrictionLaw:
+def composite_friction(table: AsperityTable, boundary: float, slip_speed_m_s: float = SLIP_SPEED_M_S) -> FrictionLaw:
     """Return the composite law of a table of shares and fluid friction.
 
     Raises
@@ -45,7 +42,7 @@ def composite_friction(
         If the boundary friction is outside 0 to 1 or the slip speed is not positive.
     """
     if not 0.0 <= boundary <= 1.0:
-        raise ValueError(f"boundary: received {boundary}; allowed are 0 to 1, usual are 0.10 to 0.12")
+        raise ValueError(f"boundary: received {boundary}; allowed are 0 to 1, usual are 0.07 to 0.12")
     if not (np.isfinite(slip_speed_m_s) and slip_speed_m_s > 0.0):
         raise ValueError(f"slip_speed_m_s: received {slip_speed_m_s}; allowed are finite values above 0")
     return FrictionLaw(table, float(boundary), float(slip_speed_m_s))
@@ -59,10 +56,10 @@ def constant_friction(coefficient: float, slip_speed_m_s: float = SLIP_SPEED_M_S
     ValueError
         If the coefficient is outside 0 to 1 or the slip speed is not positive.
     """
-    ratio, fluid = np.zeros((layers, 2, 2)), np.full((2, 2), float(coefficient))
-    for array in (ratio, fluid):
+    share, fluid = np.zeros((layers, 2, 2)), np.full((2, 2), float(coefficient))
+    for array in (share, fluid):
         array.setflags(write=False)
-    table = AsperityTable(ratio, fluid, line_m=4.0, start_m=1.0, per_m=1.0, floor_n_per_m=1.0, per_log=1.0)
+    table = AsperityTable(share, fluid, line_m=4.0, start_m=1.0, per_m=1.0, floor_n_per_m=1.0, per_log=1.0)
     return composite_friction(table, coefficient, slip_speed_m_s)
 
 

@@ -23,10 +23,12 @@ from __future__ import annotations
 from math import log, pi, sqrt
 from typing import NamedTuple
 
-from siggen.dynamics.friction.asperity_share import gaussian_integral, masjedi_khonsari_ratio
-from siggen.dynamics.friction.contact_kinematics import hertz_half_width, relative_radius
-from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
-from siggen.dynamics.friction.lubrication import LubricatedMesh, film_ratio, masjedi_khonsari_central
+import numpy as np
+from scipy.special import gamma, pbdv
+
+from siggen.dynamics.friction.asperity_share import asperity_load_share
+from siggen.dynamics.friction.contact_kinematics import Values, hertz_half_width, relative_radius
+from siggen.dynamics.friction.lubrication import LubricatedMesh, central_film_m, film_ratio
 
 POISSON_RATIO = 0.3
 """Of steel; enters by a few per cent."""
@@ -62,15 +64,28 @@ def slip_speed(mesh: LubricatedMesh, pitch: PitchPoint, force_n: float, roughnes
 
 def presliding_m(mesh: LubricatedMesh, pitch: PitchPoint, force_n: float, roughness_m: float) -> float:
     """Return δ, by which a pair's flanks give way before asperities slip [m]."""
-    groups = mesh.groups(pitch.position_m, force_n, roughness_m)
-    share = min(float(masjedi_khonsari_ratio(groups)), 1.0)
+    separation = float(film_ratio(central_film_m(mesh.groups(pitch.position_m, force_n)), roughness_m))
+    share = float(asperity_load_share(separation))
     line_load = force_n / mesh.contact_length_m
     radius = float(relative_radius(pitch.position_m, mesh.line_m))
     width = float(hertz_half_width(line_load, radius, mesh.effective_modulus_pa))
     bracket = log(2.0 * pitch.depth_m / width) - POISSON_RATIO / (2.0 * (1.0 - POISSON_RATIO))
     approach = 4.0 * line_load / (pi * mesh.effective_modulus_pa) * max(bracket, 0.0)
-    # Beyond, both integrals vanish; asperities carry nothing there.
-    separation = min(float(film_ratio(masjedi_khonsari_central(groups), roughness_m)), THICKEST)
+    separation = min(separation, THICKEST)  # beyond, both integrals vanish; asperities carry nothing there
     pressed = roughness_m * float(gaussian_integral(2.5, separation) / gaussian_integral(1.5, separation))
     mindlin = (2.0 - POISSON_RATIO) / (2.0 * (1.0 - POISSON_RATIO))
-    return BOUNDARY_FRICTION * (share * approach + mindlin * pressed)
+    return mesh.boundary_friction * (share * approach + mindlin * pressed)
+
+
+def gaussian_integral(order: float, separation: Values) -> Values:
+    """Return F_n(H) = ∫_H^∞ (x - H)^n exp(-x²/2)/√(2π) dx, exact by the parabolic cylinder function.
+
+    F_n(H) = Γ(n + 1) exp(-H²/4) D_{-n-1}(H)/√(2π) (reference: standard literature).
+    """
+    value: Values = (
+        gamma(order + 1.0)
+        * np.exp(-0.25 * np.square(separation))
+        * pbdv(-order - 1.0, separation)[0]
+        / np.sqrt(2.0 * np.pi)
+    )
+    return value

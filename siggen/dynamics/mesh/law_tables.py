@@ -109,7 +109,7 @@ def _friction(law: PairLaw) -> dict[str, NDArray[Any]]:
         int(law.places[place]) for place in (layout.ROUGHNESSES, layout.LUBRICATED_POSITIONS, layout.LUBRICATED_LOADS)
     )
     return {
-        "friction.table.ratio": _numbers(law, layout.RATIO_AT, (roughnesses, positions, loads)),
+        "friction.table.share": _numbers(law, layout.SHARE_AT, (roughnesses, positions, loads)),
         "friction.table.fluid": _numbers(law, layout.FLUID_AT, (positions, loads)),
     }
 

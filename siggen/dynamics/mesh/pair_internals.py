@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.friction.contact_kinematics import hertz_pressure, relative_radius
-from siggen.dynamics.friction.lubrication import LubricatedMesh, film_ratio, masjedi_khonsari_central
+from siggen.dynamics.friction.lubrication import LubricatedMesh, central_film_m, film_ratio
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, PER_CONTACT, PER_FILM
 from siggen.dynamics.mesh.pair_columns import (
     ARM,
@@ -147,6 +147,6 @@ def _contact_values(pairs: FloatArray, line_m: float, contact: PairContact) -> l
     if contact.oil is not None:
         healthy, pitted = contact.roughness_m
         roughness = np.sqrt(healthy**2 + np.where(touching, pairs[:, :, ROUGH], 0.0) * (pitted**2 - healthy**2))
-        film = masjedi_khonsari_central(contact.oil.groups(position, force, roughness))
+        film = central_film_m(contact.oil.groups(position, force))
         values += [film, film_ratio(film, roughness), pairs[:, :, ASPERITY_SHARE]]
     return [np.where(touching, value, np.nan) for value in values]

@@ -84,7 +84,7 @@ MISSING_2_AT = next(_place)
 OFFSET_1_AT = next(_place)
 OFFSET_2_AT = next(_place)
 COUPLING_AT = next(_place)
-RATIO_AT = next(_place)
+SHARE_AT = next(_place)
 FLUID_AT = next(_place)
 TABLE_AT = next(_place)  # where tables begin in `places` itself
 KIND_1_AT = next(_place)
@@ -273,10 +273,10 @@ def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: i
 
 def _pack_friction(packed: PackedTables, scalars: FloatArray, friction: FrictionLaw) -> None:
     table = friction.table
-    packed.head(ROUGHNESSES, table.ratio.shape[0])
+    packed.head(ROUGHNESSES, table.share.shape[0])
     packed.head(LUBRICATED_POSITIONS, table.fluid.shape[0])
     packed.head(LUBRICATED_LOADS, table.fluid.shape[1])
-    packed.add(RATIO_AT, table.ratio)
+    packed.add(SHARE_AT, table.share)
     packed.add(FLUID_AT, table.fluid)
     scalars[SLIP_SPEED], scalars[BOUNDARY] = friction.slip_speed_m_s, friction.boundary
     scalars[LUBRICATED_LINE], scalars[LUBRICATED_START] = table.line_m, table.start_m

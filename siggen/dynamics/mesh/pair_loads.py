@@ -13,7 +13,7 @@ from siggen.dynamics.friction.friction import friction_mixed
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import Spring
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.lanes import Choice, Lanes, any_of, hyperbolic_tangent, larger, magnitude, select, smaller
+from siggen.lanes import Choice, Lanes, any_of, hyperbolic_tangent, larger, magnitude, select
 
 STRAIGHT = 10.0
 """tanh is 1 within 4e-9 beyond."""
@@ -71,9 +71,9 @@ def lubricated(law: PairLaw, position_m: Value, load_n: Value, rough: Value, cho
         scalars[layout.LUBRICATED_PER_M], scalars[layout.LUBRICATED_FLOOR], scalars[layout.LUBRICATED_PER_LOG],
     )  # fmt: skip
     corner, a, b = contact_cell(grid, position_m, load_n, chosen)
-    share = smaller(cell_value(numbers, corner + index[layout.RATIO_AT], loads, a, b), 1.0)
+    share = cell_value(numbers, corner + index[layout.SHARE_AT], loads, a, b)
     if index[layout.ROUGHNESSES] > 1 and any_of(chosen & (rough > 0.0)):
-        raised = smaller(cell_value(numbers, corner + (index[layout.RATIO_AT] + positions * loads), loads, a, b), 1.0)
+        raised = cell_value(numbers, corner + (index[layout.SHARE_AT] + positions * loads), loads, a, b)
         share = select(rough > 0.0, share * (1.0 - rough) + raised * rough, share)
     fluid = cell_value(numbers, corner + index[layout.FLUID_AT], loads, a, b)
     return share, friction_mixed(share, scalars[layout.BOUNDARY], fluid)

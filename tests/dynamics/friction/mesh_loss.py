@@ -58,18 +58,22 @@ def mesh_power_loss(
     return float(coefficient * force * (share * slide).sum(axis=0).mean())
 
 
-def mesh_mean_friction(pair: GearPair, law: FrictionLaw, torque_nm: float, layer: int = 0, points: int = 200) -> float:
-    """Return the mean friction coefficient over one base pitch, weighted by the load, with equal sharing.
+def mesh_mean_friction(pair: GearPair, law: FrictionLaw, torque_nm: float, points: int = 200) -> float:
+    """Return the coefficient that loses the same power, Σ μ N |v|/Σ N |v| over one base pitch, with equal load sharing.
 
-    To be compared with `schlenk_mean_friction`.
+    That is what formulas fitted to measured losses give. The sliding speed |v| is proportional to the distance from the
+    pitch point.
     """
     force = torque_nm / pair.pinion.base_radius_m
-    total = 0.0
+    lost, slid = 0.0, 0.0
     for start in pair.contact_start_m + pair.base_pitch_m * (np.arange(points) + 0.5) / points:
         places = start + pair.base_pitch_m * np.arange(int(pair.contact_ratio) + 1)
         places = places[places <= pair.contact_end_m]
-        total += float(np.mean([friction_coefficient(law, layer, place, force / places.size) for place in places]))
-    return float(total / points)
+        for place in places:
+            power = abs(place - pair.pitch_point_m) / places.size
+            lost += power * friction_coefficient(law, 0, place, force / places.size)
+            slid += power
+    return lost / slid
 
 
 def schlenk_mean_friction(

@@ -14,7 +14,7 @@ from siggen.dynamics.friction.friction import (
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
 
 ROUGHNESS = (0.57e-6, 2.04e-6, 5e-6)
-COMPOSITE = composite_friction(asperity_table(mesh(), ROUGHNESS, RANGE, 2e4))
+COMPOSITE = composite_friction(asperity_table(mesh(), ROUGHNESS, RANGE, 2e4), 0.11)
 
 
 @settings(deadline=None)
@@ -34,7 +34,7 @@ def test_a_rougher_flank_rubs_more(position: float, force: float) -> None:
 
 def test_a_fluid_friction_above_the_boundary_value_is_capped() -> None:
     table = COMPOSITE.table._replace(fluid=np.full_like(COMPOSITE.table.fluid, 5.0))
-    assert friction_coefficient(composite_friction(table), 0, PITCH_POINT, FORCE) == 0.11
+    assert friction_coefficient(composite_friction(table, 0.11), 0, PITCH_POINT, FORCE) == 0.11
 
 
 def test_constant_friction_and_friction_off() -> None:

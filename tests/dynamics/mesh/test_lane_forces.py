@@ -63,7 +63,7 @@ def spalled(seed: int, *, tilts: bool, coupled: bool = True, **other: Any) -> Pa
         missing_material(pair, RELIEF),
         whole_face(pair, tuple(damage), TEETH, POINTS),
         contact=contact_table(pair, tuple(damage), TEETH, options, POINTS, lead),
-        friction=composite_friction(asperity_table(mesh(), [0.3e-6, 2e-6], RANGE, 2e4)),
+        friction=composite_friction(asperity_table(mesh(), [0.3e-6, 2e-6], RANGE, 2e4), 0.11),
         coupling_m_per_n=body_coupling(pair, TEETH, along) if coupled else None,
         **other,
     )
