@@ -23,6 +23,9 @@ HYSTERESIS = 0.2
 """Share of the swing that the waveform must fall below the middle before the next rise counts."""
 
 FEWEST_PULSES = 2
+TACHOS_ALIKE = 1e-3
+"""Relative difference of mean speeds by which two tachos may differ: their first and last turns are not the same."""
+
 SPEED_MARGIN = 0.01
 """Beyond what a column of speed shows: instruments are off by some permille, and lag behind."""
 
@@ -219,10 +222,24 @@ def _full_scale(path: Path, found: Columns, facts: RecordingFacts) -> float:
 
 def _tacho(taken: TakenRecording, fs_hz: float, facts: RecordingFacts) -> np.ndarray | None:
     """Return the times of whole turns (k,) [s], from the column that tells the angle."""
+    columns = _tacho_columns(taken, facts)
+    turns = {column: _turns(taken, column, fs_hz, facts) for column in columns}
+    speeds = {name: (times.size - 1) / float(times[-1] - times[0]) for name, times in turns.items() if times.size > 1}
+    spans = {name: (hz, hz) for name, hz in speeds.items()}
+    if speeds and facts.tacho is None and (span := _speed_span_hz(taken)):
+        spans["speed"] = span
+    if spans and max(low for low, _ in spans.values()) > (1.0 + TACHOS_ALIKE) * min(high for _, high in spans.values()):
+        seen = ", ".join(f"{name} {0.5 * (low + high):.4g} Hz" for name, (low, high) in spans.items())
+        raise UsageError(
+            f"{taken.path}: columns that tell the speed of the first shaft disagree ({seen}). Say which is on it, and "
+            f"its pulses per turn: --tacho {columns[0]} --tacho-pulses 1; or leave them out: --speed-range"
+        )
+    return turns[columns[0]] if columns else None
+
+
+def _turns(taken: TakenRecording, column: str, fs_hz: float, facts: RecordingFacts) -> np.ndarray:
+    """Return the times of whole turns (k,) [s] that a column tells."""
     path, found = taken.path, taken.found
-    column = _tacho_column(taken, facts)
-    if column is None:
-        return None
     values, one = found.values[column], taken.column(column)
     unit = known_unit(one.unit)
     if one.role is ColumnUse.ANGLE and unit is not None and unit.quantity == "angle":
@@ -249,7 +266,8 @@ def _tacho(taken: TakenRecording, fs_hz: float, facts: RecordingFacts) -> np.nda
     return np.asarray(times_s[::pulses])
 
 
-def _tacho_column(taken: TakenRecording, facts: RecordingFacts) -> str | None:
+def _tacho_columns(taken: TakenRecording, facts: RecordingFacts) -> list[str]:
+    """Return the column that the user names, else all that tell the angle by name and unit."""
     found = taken.found
     if facts.tacho is not None:
         column = column_called(found, facts.tacho, facts.tacho)
@@ -257,17 +275,12 @@ def _tacho_column(taken: TakenRecording, facts: RecordingFacts) -> str | None:
             raise UsageError(
                 f"{taken.path}: no column {facts.tacho} for --tacho; the file holds {', '.join(found.values)}"
             )
-        return column
+        return [column]
     if not facts.tacho_by_name:
-        return None
+        return []
     named = [one.name for one in taken.of_role(ColumnUse.TACHO)]
     angles = [one.name for one in taken.of_role(ColumnUse.ANGLE) if known_unit(one.unit) is not None]
-    if len(named or angles) > 1:
-        raise UsageError(
-            f"{taken.path}: columns {', '.join(named or angles)} may each tell the angle of the first shaft; say "
-            f"which: --tacho {(named or angles)[0]}"
-        )
-    return next(iter(named or angles), None)
+    return [*named, *angles]
 
 
 def _unwrapped(values: np.ndarray, period: float) -> np.ndarray:

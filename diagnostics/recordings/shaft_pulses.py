@@ -93,6 +93,12 @@ def shaft_pulses(
         found = _against_carrier(recording, planets)
     elif recording.tacho_s is not None:
         found = ShaftPulses(recording.tacho_s)
+        low, high = speed_range_hz or (0.0, np.inf)
+        if recording.tacho_s.size > 1 and not low <= found.speed_hz <= high:
+            raise UsageError(
+                f"{recording.path}: the tacho gives {found.speed_hz:.4g} Hz of the first shaft, outside of {low:g} to "
+                f"{high:g} Hz. Is it on this shaft, with as many pulses per turn (--tacho-pulses)?"
+            )
     elif (span := speed_range_hz or recording.speed_span_hz) is None:
         raise UsageError(
             f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, the speed with --speed, "
