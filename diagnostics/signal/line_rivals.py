@@ -35,9 +35,9 @@ PINION_NEAR, GEAR_NEAR = 8, 12
 """How many teeth more and fewer are tried."""
 
 LEAST_SHARE_OF_TEETH = 0.7
-APART_CELLS, KNOWN_SIDEBANDS, MIXED, JUDGED_SIDEBANDS = 2.5, 12, (2, 5), 3
-"""Cells within which two lines are one; sidebands of the given teeth that are known, so that they speak for no other
-teeth; sidebands of a shaft that tell its teeth."""
+APART_CELLS, TOGETHER_CELLS, KNOWN_SIDEBANDS, MIXED, JUDGED_SIDEBANDS = 2.5, 0.4, 12, (2, 5), 3
+"""Cells within which two lines overlap, and within which their peaks are one; sidebands of the given teeth that are
+known, so that they speak for no other teeth; sidebands of a shaft that tell its teeth."""
 
 SPEEDS_AT_ONCE = 20_000
 
@@ -61,9 +61,16 @@ class OrderLevels:
         return np.asarray(said)
 
     def sharpness(self, orders: np.ndarray) -> np.ndarray:
-        """Return the sharp level at these orders, (orders,); zero above the band."""
-        cells = np.rint(orders * self.revolutions).astype(np.intp)
-        return np.where(cells < self.sharp.size, self.sharp[np.minimum(cells, self.sharp.size - 1)], 0.0)
+        """Return the sharp level at these orders, (orders,), by parabolas between cells; zero above the band.
+
+        About its top the logarithm of a line behind a Hann window is a parabola to 0.1 nat.
+        """
+        places = orders * self.revolutions
+        cells = np.clip(np.rint(places).astype(np.intp), 1, self.sharp.size - 2)
+        before, level, behind = (self.sharp[cells + k] for k in (-1, 0, 1))
+        away = places - cells
+        between = level + 0.5 * away * (behind - before) + 0.5 * away**2 * (before - 2.0 * level + behind)
+        return np.where(places < self.sharp.size - 2, np.maximum(between, 0.0), 0.0)
 
     def total(self, orders: np.ndarray, scale: float = 1.0) -> float:
         """Return what all lines at these orders say."""
@@ -237,22 +244,14 @@ def _behind_shaft(
 ) -> float | None:
     """Return how far the sidebands of a shaft with another step lie behind those with the given one [nats].
 
-    Only rival sidebands that no other line of the given teeth explains are compared, each with the one in its place;
-    None where there is none, or where both shafts turn alike.
+    A rival sideband speaks against the given teeth where it stands above the one in its place and above every line of
+    the given teeth beside it: a peak at its very order is not theirs, though they may be only a cell away. What falls
+    together with such a line counts only against a first shaft that says nothing: its angle would be another shaft's.
+    None where nothing can be compared, or where both shafts turn alike.
     """
     apart = APART_CELLS / levels.revolutions
     if abs(step - other_step) < apart:
         return None
-    sides = np.concatenate([np.arange(-JUDGED_SIDEBANDS, 0.0), np.arange(1.0, JUDGED_SIDEBANDS + 1.0)])
-    if abs(rival_step - other_step) < 1e-9:
-        # both shafts may turn alike: if the given one says nothing, and it is the one whose angle is wanted
-        if step != 1.0:
-            return None
-        judged, rival = (
-            float((levels.sharpness((mesh[:, None] + sides * one).ravel()) - NOISE_SAYS).sum())
-            for one in (step, rival_step)
-        )
-        return judged - rival if judged < LEAST_SAID else None
     own, other = (
         grid.ravel()
         for grid in np.mgrid[-KNOWN_SIDEBANDS : KNOWN_SIDEBANDS + 1, -KNOWN_SIDEBANDS : KNOWN_SIDEBANDS + 1]
@@ -260,16 +259,21 @@ def _behind_shaft(
     # sidebands of one shaft, and those of both together where one of them modulates little
     inside = (np.minimum(abs(own), abs(other)) <= MIXED[0]) & (np.maximum(abs(own), abs(other)) <= MIXED[1])
     inside |= (own == 0) | (other == 0)
-    combined = own[inside] * step + other[inside] * other_step
-    total, compared = 0.0, False
-    for k in range(1, JUDGED_SIDEBANDS + 1):
-        known = combined[np.abs(combined - k * step) > 0.5 * apart]  # the line in its place is compared, not left out
-        if np.abs(known - k * rival_step).min() < apart:
+    known = np.unique(np.round(own[inside] * step + other[inside] * other_step, 9))
+    total, said, shared, compared = 0.0, 0.0, 0.0, False
+    for k in (*range(-JUDGED_SIDEBANDS, 0), *range(1, JUDGED_SIDEBANDS + 1)):
+        place = k * rival_step
+        mine, rival = levels.sharpness(mesh + k * step), levels.sharpness(mesh + place)
+        beside = known[np.abs(known - place) < apart]
+        if beside.size and np.abs(beside - place).min() < TOGETHER_CELLS / levels.revolutions:
+            said += float((mine - NOISE_SAYS).sum())
+            shared += float((rival - NOISE_SAYS).sum())
             continue
         compared = True
-        for side in (-k, k):
-            difference = levels.sharpness(mesh + side * step) - levels.sharpness(mesh + side * rival_step)
-            total += float(np.clip(difference, -MOST_SAID, MOST_SAID).sum())
+        best = np.max([mine, *(levels.sharpness(mesh + order) for order in beside)], axis=0)
+        total += float(np.clip(best - rival, -MOST_SAID, MOST_SAID).sum())
+    if step == 1.0 and said < LEAST_SAID < shared and total >= 0.0:
+        return min(said - shared, total)
     return total if compared else None
 
 

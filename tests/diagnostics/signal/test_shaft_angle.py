@@ -70,9 +70,16 @@ def test_a_range_that_misses_the_speed_is_refused_with_the_speed_that_was_seen(l
         shaft_angle(made.channels, made.fs_hz, TEETH, limits)
 
 
-@pytest.mark.parametrize("given", [(26, 71), (28, 71), (27, 70), (27, 73)])
-def test_wrong_teeth_of_either_gear_are_refused(given: tuple[int, int]) -> None:
-    made = made_gears(TEETH)
+@pytest.mark.parametrize(
+    ("teeth", "given"),
+    [
+        *((TEETH, given) for given in ((26, 71), (28, 71), (27, 70), (27, 73))),
+        # sidebands of twice the pinion's teeth fall upon those of the pinion, or a cell beside them
+        *(((33, 66), given) for given in ((33, 67), (34, 66))),
+    ],
+)
+def test_wrong_teeth_of_either_gear_are_refused(teeth: tuple[int, int], given: tuple[int, int]) -> None:
+    made = made_gears(teeth)
     with pytest.raises(UsageError, match=r"teeth better than|the lines fit|are not told apart"):
         shaft_angle(made.channels, made.fs_hz, given, (22.0, 26.0))
 
