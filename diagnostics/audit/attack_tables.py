@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from diagnostics.audit.audit import ALONE, SINGLE, UNPAIRED, WITH_REFERENCE, Audit
+from diagnostics.audit.audit import ALONE, UNPAIRED, WITH_REFERENCE, Audit
 from diagnostics.audit.detectability import Detection
 from diagnostics.page import html
 from diagnostics.page.html import Cell
@@ -38,29 +38,6 @@ def chance_sentence(audit: Audit) -> str:
         f"{strongest} reaches an AUC of {decimal(chance.auc)} in 5 % of {turns} So no AUC here tells damage from "
         "chance, and no length of damage is named."
     )
-
-
-def probe_table(audit: Audit) -> list[str]:
-    """Return what every probe reached for every state, and what that means."""
-    names = list(dict.fromkeys(name for state in audit.states for name in audit.probes(state)))
-    head = ["state", "best indicator", "its AUC", *(_heading(name, audit) for name in names), "verdict"]
-    rows = []
-    for state in audit.states:
-        best, probes = audit.best.get(state), audit.probes(state)
-        own = [f"`{best.column}`", _auc(best.auc.value)] if best else ["-", "-"]
-        rows.append([state, *own, *(_auc(probes.get(name, math.nan)) for name in names), verdict_words(audit, state)])
-    return [
-        "The table gives the AUC against healthy. The AUC of the best indicator is optimistic: it is chosen on the "
-        "same gearboxes. The other columns are judged on gearboxes that were not seen.",
-        "",
-        f"| {' | '.join(head)} |",
-        f"|{'---|' * len(head)}",
-        *(f"| {' | '.join(row)} |" for row in rows),
-    ]
-
-
-def _heading(name: str, audit: Audit) -> str:
-    return f"best of {tried(audit)}, chosen on other gearboxes" if name == SINGLE else name
 
 
 def tried(audit: Audit) -> int:

@@ -37,6 +37,7 @@ from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.records.named_set import words_of
 from diagnostics.records.recording import gear_names
+from diagnostics.statistics.indicator_result import finite
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, how_to_install
 from siggen.file_writing import write_file
@@ -60,7 +61,7 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
         "summary": audit_summary(audit),
         "findings": [asdict(finding) for finding in audit.findings],
         "realism": _realism_numbers(audit.realism) if audit.realism else None,
-        "reference": asdict(audit.reference) | {"discriminator_auc": _number(audit.reference.discriminator_auc)}
+        "reference": asdict(audit.reference) | {"discriminator_auc": finite(audit.reference.discriminator_auc)}
         if audit.reference
         else None,
         "detectability": {name: _entries_numbers(entries, audit) for name, entries in audit.detections.items()},
@@ -75,7 +76,7 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
                 "indicator": found.column,
                 "tried": found.tried,
                 "auc_chosen_on_the_same_gearboxes": found.auc.numbers(),
-                "auc_chosen_on_other_gearboxes": _number(found.held_out),
+                "auc_chosen_on_other_gearboxes": finite(found.held_out),
             }
             for state, found in audit.best.items()
         },
@@ -93,7 +94,7 @@ def _entries_numbers(entries: list[Detection], audit: Audit) -> dict[str, Any]:
                 "specimens": entry.specimens,
                 "chosen": entry.basis,
                 "tried": entry.tried,
-                **{size: _number(value) for size, value in entry.sizes.items()},
+                **{size: finite(value) for size, value in entry.sizes.items()},
                 "auc": entry.auc.numbers(),
             }
             for entry in entries
@@ -110,10 +111,10 @@ def _entries_numbers(entries: list[Detection], audit: Audit) -> dict[str, Any]:
 
 def _chance_numbers(chance: ChanceLimit) -> dict[str, Any]:
     states = {
-        state: asdict(law) | {"auc": _number(law.auc), "p_value": _number(law.p_value)}
+        state: asdict(law) | {"auc": finite(law.auc), "p_value": finite(law.p_value)}
         for state, law in chance.states.items()
     }
-    return asdict(chance) | {"auc": _number(chance.auc), "states": states}
+    return asdict(chance) | {"auc": finite(chance.auc), "states": states}
 
 
 def _realism_numbers(found: Realism) -> dict[str, Any]:
@@ -123,11 +124,11 @@ def _realism_numbers(found: Realism) -> dict[str, Any]:
         "share_inside_all": found.all_inside,
         "quantities": _share_numbers(found.shares),
         "background": {
-            "mean_share_inside": _number(found.background_inside),
+            "mean_share_inside": finite(found.background_inside),
             "quantities": _share_numbers(found.background),
         },
         "sensor_spread": [
-            {"name": s.name, "spread_db": _number(s.spread_db), "wanted_db": s.wanted_db} for s in found.spreads
+            {"name": s.name, "spread_db": finite(s.spread_db), "wanted_db": s.wanted_db} for s in found.spreads
         ],
     }
 
@@ -137,16 +138,12 @@ def _share_numbers(shares: tuple[QuantityShare, ...]) -> list[dict[str, Any]]:
         {
             "name": share.quantity.name,
             "ranges": share.quantity.ranges,
-            **{name: _number(value) for name, value in zip(("q05", "q50", "q95"), share.quantiles, strict=True)},
+            **{name: finite(value) for name, value in zip(("q05", "q50", "q95"), share.quantiles, strict=True)},
             "inside": share.inside,
             "undefined": share.undefined,
         }
         for share in shares
     ]
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 @dataclass(frozen=True, slots=True)

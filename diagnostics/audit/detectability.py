@@ -55,7 +55,7 @@ def features(measured: MeasuredSet, *, paired: bool = False) -> np.ndarray:
     columns = [*(_log(values) for values in _taken(measured, LEVELS)), *_taken(measured, PLAIN)]
     if paired:
         columns += _taken(measured, ADDED)
-    found = np.stack([_channel_mean(column) for column in columns], axis=1)
+    found = np.stack([channel_mean(column) for column in columns], axis=1)
     if not paired:
         return found
     reference = reference_records(measured)
@@ -92,7 +92,8 @@ def _log(values: np.ndarray) -> np.ndarray:
     return np.log10(np.where(values > 0, values, np.nan))
 
 
-def _channel_mean(values: np.ndarray) -> np.ndarray:
+def channel_mean(values: np.ndarray) -> np.ndarray:
+    """Return the mean over channels (n, channels) that are defined; NaN without any."""
     defined = np.isfinite(values)
     with np.errstate(invalid="ignore"):
         return np.asarray(

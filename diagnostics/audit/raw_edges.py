@@ -33,11 +33,11 @@ def edge_ranks(signal: np.ndarray) -> dict[str, float]:
             if size < EDGE_SAMPLES[0] or signal.size < EDGE_PARTS * size:
                 continue
             blocks = turned[: signal.size // size * size].reshape(-1, size)
-            found[f"level, {edge} {size} samples"] = _rank(np.square(blocks).mean(axis=1))
+            found[f"level, {edge} {size} samples"] = rank_of_first(np.square(blocks).mean(axis=1))
             if size == SHAPED_SAMPLES:
-                found[f"mean, {edge} {size} samples"] = _rank(blocks.mean(axis=1))
+                found[f"mean, {edge} {size} samples"] = rank_of_first(blocks.mean(axis=1))
                 half = np.square(blocks).reshape(len(blocks), 2, -1).mean(axis=2)
-                found[f"slope of the level, {edge} {size} samples"] = _rank(
+                found[f"slope of the level, {edge} {size} samples"] = rank_of_first(
                     np.log((half[:, 1] + TINY) / (half[:, 0] + TINY))
                 )
     return found
@@ -49,6 +49,6 @@ def offsets(signal: np.ndarray) -> dict[str, float]:
     return {"mean": float(signal.mean()), "rise": 12.0 * float(np.mean(signal * course))}
 
 
-def _rank(values: np.ndarray) -> float:
+def rank_of_first(values: np.ndarray) -> float:
     """Return the share of the others that lie below the first, ties counted half."""
     return float(np.mean(0.5 + 0.5 * np.sign(values[0] - values[1:])))

@@ -28,6 +28,7 @@ import numpy as np
 
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.column_attackers import all_columns, best_column
+from diagnostics.audit.detectability import channel_mean
 from diagnostics.audit.held_out import Attacker, Trial, Verdicts
 from diagnostics.audit.innovations import innovations
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
@@ -198,7 +199,7 @@ def attackers_on(
     return [
         best_column(f"best band{suffix}", values, names),
         all_columns(f"all bands{suffix}", values),
-        best_column(f"kurtogram{suffix}", _mean(highest)[:, None], ("",)),
+        best_column(f"kurtogram{suffix}", channel_mean(highest)[:, None], ("",)),
         all_columns(f"random convolutions{suffix}", features),
         *(attacker for attacker in (teeth, network) if attacker),
     ]
@@ -208,7 +209,7 @@ def over_channels(bank: Bank) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return mean and largest value over the channels, (records, 2 columns), with their names."""
     with np.errstate(invalid="ignore"):
         largest = np.nanmax(np.where(np.isfinite(bank.values), bank.values, -np.inf), axis=1, initial=-np.inf)
-    values = np.concatenate([_mean(bank.values), np.where(np.isfinite(largest), largest, np.nan)], axis=1)
+    values = np.concatenate([channel_mean(bank.values), np.where(np.isfinite(largest), largest, np.nan)], axis=1)
     names = [f"{name} ({how} channels)" for how in ("mean of the", "largest of the") for name in bank.names]
     return values, tuple(names)
 
@@ -223,12 +224,3 @@ def level_waves(residual: np.ndarray, reference: np.ndarray | None) -> np.ndarra
     size = np.sqrt(np.square(level, dtype=np.float64).mean(axis=-1, keepdims=True))
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(wave / np.where(size > 0.0, size, np.nan), dtype=np.float32)
-
-
-def _mean(values: np.ndarray) -> np.ndarray:
-    """Return the mean over channels that are defined; NaN without any."""
-    defined = np.isfinite(values)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(
-            np.where(defined, values, 0.0).sum(axis=1) / np.where(defined.any(axis=1), defined.sum(axis=1), np.nan)
-        )

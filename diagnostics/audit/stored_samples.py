@@ -15,6 +15,8 @@ import hashlib
 
 import numpy as np
 
+from diagnostics.audit.raw_edges import rank_of_first
+
 MARKED_PARTS, MARK_REACH, FEWEST_VALUES = 32, 8, 12
 """Runs of 17 samples around the largest of every part; one of fewer values, such as a clipped one, marks nothing."""
 
@@ -35,8 +37,8 @@ def stored_numbers(signal: np.ndarray) -> dict[str, float]:
     return {
         "repeats": repeats_beyond_chance(apart),
         "samples as large as the largest": float(np.sum(size >= size.max() - near)),
-        "first difference": _rank(apart),
-        "last difference": _rank(apart[::-1]),
+        "first difference": rank_of_first(apart),
+        "last difference": rank_of_first(apart[::-1]),
         TOP: float(size.max()),
     }
 
@@ -56,11 +58,6 @@ def repeats_beyond_chance(apart: np.ndarray) -> float:
     few = float(np.sum((steps >= 1.0) & (steps <= NEIGHBOURS)))
     expected = few / (2.0 * NEIGHBOURS)
     return float((np.sum(apart == 0.0) - expected) / np.sqrt(expected + few / (2.0 * NEIGHBOURS) ** 2 + 1.0))
-
-
-def _rank(values: np.ndarray) -> float:
-    """Return the share of the others that lie below the first, ties counted half."""
-    return float(np.mean(0.5 + 0.5 * np.sign(values[0] - values[1:])))
 
 
 def without_ends(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

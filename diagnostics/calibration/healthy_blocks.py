@@ -29,8 +29,6 @@ FEWEST_RECORDINGS = 3
 """Fewer give no interval: two have one difference, which is small by chance too often to tell a spread."""
 
 FEWEST_TURNS = 10
-LEAST_LINE = 0.3
-"""Share of a mesh line's bins above the floor; the strongest of the recording must be that much."""
 
 Source = tuple[Path, int | None]
 

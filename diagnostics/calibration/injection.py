@@ -70,9 +70,6 @@ docs/understand/calibration.md compares them with shuffled phases and with no da
 
 LONGEST_S = 10.0
 SPARE_TURNS = 2
-FADE_TURNS = 0.5
-PHYSICS, SHUFFLED, WHITE = "physics", "shuffled phases", "white noise"
-CONTROLS = (SHUFFLED, WHITE)
 
 
 def splits_of(recordings: int) -> tuple[str, ...]:
@@ -302,28 +299,3 @@ def _continued(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
     first, last = pulses_s[1] - pulses_s[0], pulses_s[-1] - pulses_s[-2]
     found = np.where(time_s < pulses_s[0], (time_s - pulses_s[0]) / first, found)
     return np.asarray(np.where(time_s > pulses_s[-1], turns[-1] + (time_s - pulses_s[-1]) / last, found))
-
-
-def control_difference(difference: Difference, kind: str, rng: np.random.Generator) -> Difference:
-    """Return a difference of the same energy without the physics: with shuffled phases, or white.
-
-    Parameters
-    ----------
-    difference : Difference
-    kind : str
-        PHYSICS leaves it as it is; SHUFFLED keeps every line's energy and gives it a random phase; WHITE keeps the
-        energy of every channel alone.
-    rng : numpy Generator
-    """
-    if kind == PHYSICS:
-        return difference
-    channels = {name: _control(signal, kind, rng) for name, signal in difference.channels.items()}
-    return Difference(channels, difference.fs_hz, difference.pulses_s, difference.labels, difference.identity)
-
-
-def _control(signal: np.ndarray, kind: str, rng: np.random.Generator) -> np.ndarray:
-    if kind == WHITE:
-        return np.asarray(rng.standard_normal(signal.size) * float(np.sqrt(np.mean(signal**2))))
-    spectrum = np.fft.rfft(signal)
-    spectrum[1:-1] *= np.exp(2j * np.pi * rng.random(spectrum.size - 2))
-    return np.asarray(np.fft.irfft(spectrum, signal.size))

@@ -13,21 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import mesh_words
 from diagnostics.page.provenance import without_path
 from diagnostics.page.sideband_marks import PASSING, draw_marks, mark_handles, order_words, sideband_places, turn_words
 from diagnostics.page.style import SLANTED, new_figure, state_colours, state_ticks
-from diagnostics.page.tables import indicator_links, records_line, records_link, state_links
-from diagnostics.records.channel_quantities import channel_quantities
+from diagnostics.page.tables import records_line, records_link, state_links
 from diagnostics.records.gear_train import Mesh
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures
 from diagnostics.report.examples import Example, ExampleSet, around_mesh, example_set
-from diagnostics.report.indicator_figures import column_title
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
-from diagnostics.statistics.separability import Separability
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
@@ -53,7 +49,6 @@ BEHIND_COLOUR, LOWEST = "#b9c4cd", 1e-12
 """Of the healthy record behind a damaged one, and where its area begins, below every figure."""
 
 FIRST_HARMONICS = (1, 2)
-INDICATORS_SHOWN = 4
 
 
 def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colours: dict[str, str]) -> Figure:
@@ -194,13 +189,12 @@ class Drawing:
     vibration: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     damage: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     scores: dict[str, tuple[Figure, str]] = field(default_factory=dict)
-    indicators: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     behind: dict[str, str] = field(default_factory=dict)
 
     def figures(self) -> dict[str, tuple[Figure, str]]:
         """Return all figures by file name."""
-        return {**self.vibration, **self.damage, **self.scores, **self.indicators}
+        return {**self.vibration, **self.damage, **self.scores}
 
 
 def draw(
@@ -208,7 +202,6 @@ def draw(
     matrix: FeatureMatrix,
     classes: tuple[str, ...],
     training: Training | None,
-    found: list[Separability],
 ) -> Drawing:
     """Draw what the report shows of signals, damage and scores; figures lead to records."""
     healthy = {state for state in classes if (matrix.labels["fault"][matrix.labels["state"] == state] == HEALTHY).all()}
@@ -218,24 +211,7 @@ def draw(
     _draw_damage(drawing, dataset, classes, colours)
     if training:
         _draw_scores(drawing, training)
-    shown = distinct_features(found, INDICATORS_SHOWN)
-    if shown:
-        figure = score_figures.indicator_figure(matrix, shown, classes, colours, channel_quantities(dataset))
-        drawing.indicators["indicators"] = (
-            figure,
-            "The strongest single indicators of different definitions, on all specimens.",
-        )
-        titles = {entry.feature: column_title(entry.feature) for entry in shown}
-        drawing.behind["indicators"] = records_line("All records by", indicator_links(titles))
     return drawing
-
-
-def distinct_features(found: list[Separability], count: int) -> list[Separability]:
-    """Return the strongest features of different definition (one in two channels or bands counts once)."""
-    chosen: dict[str, Separability] = {}
-    for entry in found:
-        chosen.setdefault(base_name(entry.feature), entry)
-    return list(chosen.values())[:count]
 
 
 def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str]) -> None:

@@ -15,10 +15,8 @@ from diagnostics.indicators.classifier_table import write_table
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.records.named_set import words_of
-from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report.indicator_sentences import indicator_findings
 from diagnostics.statistics.assessment import AssessmentSettings, assessment, result_table
-from diagnostics.statistics.detectable_size import NoiseCurve, noise_curve
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.judged_records import JudgedRecords, judged_records
 from diagnostics.training.realism import meaning_of_scores
@@ -37,7 +35,6 @@ class Evaluated:
     settings: AssessmentSettings
     records: JudgedRecords
     found: list[IndicatorResult]
-    noise: dict[str, dict[str, NoiseCurve]]
 
     @property
     def shown(self) -> list[IndicatorResult]:
@@ -66,8 +63,7 @@ def evaluated(
     with stage("evaluation", len(table.matrix.names)) as advance:
         found = assessment(table, chosen, advance)
     records = judged_records(table.matrix.labels, chosen.seed, chosen.resamples)
-    first = Evaluated(table, chosen, records, found, {})
-    return Evaluated(table, chosen, records, found, _noise_curves(first))
+    return Evaluated(table, chosen, records, found)
 
 
 def findings(dataset: Dataset, found: Evaluated) -> list[str]:
@@ -97,27 +93,6 @@ def _specimens(table: IndicatorTable) -> int:
     return int(np.unique(table.matrix.labels["specimen_id"]).size)
 
 
-def _noise_curves(evaluated: Evaluated) -> dict[str, dict[str, NoiseCurve]]:
-    """Return AUC over signal-to-noise ratio of the indicators shown, by column and state."""
-    labels, curves = evaluated.table.matrix.labels, {}
-    for result in evaluated.shown:
-        if f"snr_{result.channel}_db" not in labels:
-            continue
-        values = result.direction * evaluated.table.matrix.values[:, evaluated.table.matrix.names.index(result.column)]
-        found = {}
-        for state in evaluated.records.states:
-            chosen = np.isfinite(values) & ((labels["fault"] == HEALTHY) | (labels["state"] == state))
-            found[state] = noise_curve(
-                values[chosen],
-                (labels["state"] == state)[chosen],
-                labels[f"snr_{result.channel}_db"][chosen],
-                labels["specimen_id"][chosen],
-                evaluated.records.weights[:, chosen],
-            )
-        curves[result.column] = found
-    return curves
-
-
 def report_numbers(dataset: Dataset, found: Evaluated, sentences: Sequence[str]) -> dict[str, Any]:
     """Return the content of `indicators.json`; undefined and unreached numbers are null."""
     table = found.table
@@ -133,10 +108,6 @@ def report_numbers(dataset: Dataset, found: Evaluated, sentences: Sequence[str])
         "left_out": [str(problem) for problem in table.problems],
         "notes": note_counts(table),
         "results": [result.numbers() for result in found.found],
-        "noise_curves": {
-            column: {state: {"snr_db": c.snr_db, "auc": [a.numbers() for a in c.auc]} for state, c in curves.items()}
-            for column, curves in found.noise.items()
-        },
     }
 
 

@@ -1,4 +1,4 @@
-"""Figures of the evaluation of indicators: curves over severity, size of damage and noise.
+"""Figures of the evaluation of indicators: curves over severity and size of damage.
 
 Indicators as people call them, with their definitions on hover and a link to the table of definitions.
 """
@@ -18,11 +18,11 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import BY_NAME, indicator_titles, mesh_words
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.html import Cell
-from diagnostics.page.style import fault_colours, new_figure, state_ticks
+from diagnostics.page.style import new_figure, state_ticks
 from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.assessment import SIZES
-from diagnostics.statistics.detectable_size import NoiseCurve, detection_curve
+from diagnostics.statistics.detectable_size import detection_curve
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.judged_records import JudgedRecords
 
@@ -35,10 +35,8 @@ AXES = ("vertical", "horizontal", "axial")
 CROWDED = 8
 """States beyond which their names are small."""
 ROWS_SHOWN = 36
-CAUSES = ("speed", "load", "sensor", "noise", "specimen")
 CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b")
 MARKERS = "osD^vP"
-MOST_LINES = 5
 LEGEND_SIGNS = 66
 
 
@@ -198,42 +196,4 @@ def detection_figure(
     axis.set_xlabel("Damaged area [mm²]")
     axis.set_ylabel("Share of alarms [-]")
     figure.legend(loc="outside lower center", ncols=1, fontsize=8)
-    return figure
-
-
-def shown_states(states: tuple[str, ...]) -> tuple[str, ...]:
-    """Return at most five states, spread evenly over their order, the first and the last among them."""
-    if len(states) <= MOST_LINES:
-        return states
-    return tuple(states[k] for k in np.linspace(0, len(states) - 1, MOST_LINES).round().astype(int))
-
-
-def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ...]) -> Figure | None:
-    """Return AUC over signal-to-noise ratio, one panel per indicator, a line per state; None without curves.
-
-    Of many states a few stand for all, spread evenly over their order: more lines could not be told apart.
-    """
-    states = shown_states(states)
-    usable = {name: found for name, found in curves.items() if any(curve.auc for curve in found.values())}
-    if not usable:
-        return None
-    rows = (len(usable) + 1) // 2
-    figure, axes = new_figure(rows, 2, height_in=0.8 + 1.75 * rows, sharex=True, sharey=True)
-    for axis, (name, found) in zip(axes.ravel(), usable.items(), strict=False):
-        for place, (colour, state) in enumerate(zip(fault_colours(len(states)), states, strict=True)):
-            curve, marker = found[state], MARKERS[place % len(MARKERS)]
-            low, high = [a.low for a in curve.auc], [a.high for a in curve.auc]
-            axis.fill_between(curve.snr_db, low, high, color=colour, alpha=0.12, linewidth=0)
-            label = state if axis is axes[0, 0] else None
-            axis.plot(
-                curve.snr_db, [a.value for a in curve.auc], color=colour, marker=marker, markersize=3, label=label
-            )
-        axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
-        axis.set_title(panel_title(name), loc="left", fontsize=7)
-    for axis in axes.ravel()[len(usable) :]:
-        axis.set_visible(False)
-    axes[0, 0].set_ylim(-0.03, 1.03)
-    figure.supxlabel("Signal-to-noise ratio of the records [dB]", fontsize=10)
-    figure.supylabel("AUC, healthy against state [-]", fontsize=10)
-    figure.legend(loc="outside upper center", ncols=min(len(states), 3), fontsize=8.5)
     return figure

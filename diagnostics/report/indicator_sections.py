@@ -1,4 +1,4 @@
-"""What a report says of indicators one by one: ranking, curves over severity, size and noise, causes, notes."""
+"""What a report says of indicators one by one: ranking, curves over severity and size, notes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnostics.page import html
 from diagnostics.page.tables import indicator_links, records_line
-from diagnostics.page.wording import joined, percent
+from diagnostics.page.wording import percent
 from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.recording import gear_names
 from diagnostics.records.state_classes import damage_kinds, ordered_states
@@ -23,13 +23,10 @@ from siggen.dataset.reading import Dataset
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MOST_DETAILED = 150
-"""Columns in the tables below the ranking: with all of 422 the page of a small set would be 1.3 MB larger."""
 MOST_RANKED = 600
 """Columns in the ranking: all of two channels; six would make it 1.4 MB."""
-CAUSES_TEXT = (
-    "The table gives the adjusted share of rank variance that each cause explains alone. Speed, load and "
-    "signal-to-noise ratio are fitted as a parabola, sensor and specimen as groups. Causes may share variance."
+OF_THE_FILE = (
+    "Trends, smallest sizes found, effects, causes and p-values of every column are in evaluation.csv beside this page."
 )
 HOW_TO_READ = (
     'Indicators are judged in two designs. "Other specimens" compares healthy with damaged records of all gearboxes. '
@@ -64,11 +61,6 @@ def figures(evaluated: Evaluated, held: Mapping[str, ShownQuantity]) -> dict[str
             f"Share of alarms over the damaged area at {percent(evaluated.settings.false_alarms)} false alarms "
             "(dashed), between different specimens, with 95 % limits. Dotted: a50 and a90.",
         ),
-        "noise": (
-            indicator_figures.noise_figure(evaluated.noise, names),
-            f"Separation of {joined(indicator_figures.shown_states(names))} over the signal-to-noise ratio, with 95 % "
-            "limits. Each group has the same number of records.",
-        ),
     }
     return {name: (figure, caption) for name, (figure, caption) in drawn.items() if figure is not None}
 
@@ -88,19 +80,13 @@ def ranking_blocks(dataset: Dataset, evaluated: Evaluated) -> list[str]:
 
 
 def detail_blocks(evaluated: Evaluated, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
-    """Return trends, sizes, effects, causes and p-values of the best indicators, and their figures."""
-    found, names = evaluated.found, evaluated.records.states
-    first, line = found[:MOST_DETAILED], _behind(evaluated)
-    shown = [name for name in ("severity", "noise", "detection") if name in pictures]
+    """Return the figures of the best indicators, and what is undefined."""
+    line = _behind(evaluated)
+    shown = [name for name in ("severity", "detection") if name in pictures]
     return [
-        *([html.paragraph(_detail_text(len(found)))] if len(found) > MOST_DETAILED else []),
         html.figure_grid([html.figure_block(*pictures[name], line) for name in shown]),
-        html.paragraph(_size_text(evaluated)),
-        *(indicator_tables.trend_html(first, names), indicator_tables.same_specimen_html(first, names)),
-        indicator_tables.p_value_html(first, names),
-        html.paragraph(CAUSES_TEXT),
-        indicator_tables.sensitivity_html(first),
-        indicator_tables.undefined_html(found, _left_out(evaluated)),
+        html.paragraph(OF_THE_FILE),
+        indicator_tables.undefined_html(evaluated.found, _left_out(evaluated)),
     ]
 
 
@@ -118,30 +104,6 @@ def _left_out(evaluated: Evaluated) -> dict[str, float]:
         (p.record_id, channel) for p in table.problems for channel in ([p.channel] if p.channel else table.channels)
     }
     return {channel: sum(name == channel for _, name in lost) / rows for channel in table.channels}
-
-
-def _detail_text(count: int) -> str:
-    ranked = f"all {count}" if count <= MOST_RANKED else f"the first {MOST_RANKED} of {count}"
-    return (
-        f"The ranking has {ranked} columns. The tables here have the first {MOST_DETAILED} of the ranking, so "
-        "that the page opens quickly. The file evaluation.csv beside this page has every number of every column."
-    )
-
-
-def _size_text(evaluated: Evaluated) -> str:
-    repeated = evaluated.records.pairs.null_rows.size > 0
-    same = (
-        "On the same specimen, changes are taken against its first healthy record. Its other healthy records set the "
-        "threshold."
-        if repeated
-        else "On the same specimen no threshold can be set: the set has no repeated healthy records (repeats > 1)."
-    )
-    return (
-        f"a50 and a90 are the sizes at which 50 % and 90 % of the damaged records give an alarm. The rate of false "
-        f"alarms among healthy records is {percent(evaluated.settings.false_alarms)}. The sign ≤ means: found already "
-        f"at the smallest damage of the set. {same} Monotonicity is the mean sign of the steps from each severity to "
-        "the next. An indicator need not be monotone: pitting over many teeth lowers FM4 again."
-    )
 
 
 def evaluation_notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 from diagnostics.page.wording import counted, limits, percent
 from diagnostics.report.indicator_figures import in_a_sentence
-from diagnostics.report.indicator_tables import size_text
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.multiple_tests import smallest_paired_p
 
@@ -134,3 +133,8 @@ def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
         f"{at_most}{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}) "
         f"with 90\N{NO-BREAK SPACE}% probability."
     ]
+
+
+def size_text(size: float) -> str:
+    """Return a size, or the sign for one that is not reached."""
+    return f"{size:.3g}" if math.isfinite(size) else "∞"

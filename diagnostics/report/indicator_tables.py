@@ -1,4 +1,4 @@
-"""Tables of the evaluation of indicators: ranking, trend and size, causes, what is undefined, definitions."""
+"""Tables of the evaluation of indicators: ranking, what is undefined, definitions."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.registry import ALL, BY_NAME
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell, linked_cell
-from diagnostics.report.indicator_figures import CAUSES, term_cell
-from diagnostics.statistics.evaluation import Interval
+from diagnostics.report.indicator_figures import term_cell
 from diagnostics.statistics.indicator_result import IndicatorResult
 
 ARROWS = {1: "rises", -1: "falls"}
@@ -66,35 +65,6 @@ def _separation(value: float) -> Cell:
     return Cell(f"{value:.2f}", value=value, shade=2.0 * value - 1.0)
 
 
-def same_specimen_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
-    """Return the shares of pairs of one specimen that rise, by state."""
-    head = ["Indicator, channel", "Score", *(f"Pairs that rise, {state}" for state in states)]
-    rows = [
-        [
-            term_cell(r.column),
-            interval_cell(r.score_same),
-            *(interval_cell(r.same[state].separation) for state in states),
-        ]
-        for r in found
-    ]
-    caption = "Same specimen before and after damage: share of pairs in which the indicator rises, with 95 % limits."
-    return table(head, rows, caption=caption, sortable=True, tall=True)
-
-
-def p_value_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
-    """Return the adjusted p-values of both designs."""
-    head = ["Indicator, channel", *(f"Others, {state}" for state in states), *(f"Same, {state}" for state in states)]
-    rows = [
-        [
-            term_cell(r.column), *(p_cell(r.others[state].holm) for state in states),
-            *(p_cell(r.same[state].holm) for state in states),
-        ]
-        for r in found
-    ]  # fmt: skip
-    caption = "p-values between different specimens and on the same specimen, adjusted by Holm's method."
-    return table(head, rows, caption=caption, sortable=True, tall=True)
-
-
 def best_html(best: Mapping[str, tuple[float, str]]) -> str:
     """Return the best single indicator of every state."""
     rows = [
@@ -103,91 +73,6 @@ def best_html(best: Mapping[str, tuple[float, str]]) -> str:
     caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
     head = ["State", "AUC [-]", "Indicator and channel"]
     return table(head, rows, caption=caption, sortable=True, text=True) if rows else ""
-
-
-def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
-    """Return trend with severity and the smallest sizes found, then effect sizes."""
-    sizes = {name: None for r in found for name in r.detectable}
-    head = ["Indicator, channel", "Spearman, area", "Spearman, stiffness loss", "Monotonicity", *map(size_title, sizes)]
-    rows = [
-        [
-            term_cell(r.column), interval_cell(r.spearman_area, sign=True),
-            interval_cell(r.spearman_stiffness, sign=True), interval_cell(r.monotonicity, sign=True),
-            *(size_cell(r, name) for name in sizes),
-        ]
-        for r in found
-    ]  # fmt: skip
-    caption = "Trend with severity and the smallest damage found, with 95 % limits."
-    effects = [f"Cohen's d, {state}" for state in states] + [f"Paired d, {state}" for state in states]
-    effect_rows = [
-        [
-            term_cell(r.column),
-            *(interval_cell(r.others[state].effect, sign=True) for state in states),
-            *(interval_cell(r.same[state].effect, sign=True) for state in states),
-        ]
-        for r in found
-    ]
-    return table(head, rows, caption=caption, sortable=True, tall=True) + table(
-        ["Indicator, channel", *effects],
-        effect_rows,
-        caption="Effect sizes between different specimens and on the same specimen, with 95 % limits.",
-        sortable=True,
-        tall=True,
-    )
-
-
-def size_title(name: str) -> str:
-    """Return the head of a column of sizes: `others_area_mm2_a90` is the area found with 90 %, other specimens."""
-    design, kind, unit, share = name.split("_")
-    size = {"area": "area", "profile": "profile length"}[kind]
-    return f"{share}, {size} [{unit.replace('mm2', 'mm²')}], {'other' if design == 'others' else 'same'} specimen"
-
-
-def size_cell(result: IndicatorResult, name: str) -> Cell:
-    """Return a smallest size: with an upper-bound sign where the smallest damage is found, or that none is."""
-    found = result.detectable[name]
-    smallest = result.smallest_size[name.rsplit("_", 1)[0]]
-    if math.isnan(found.value):
-        return Cell("undefined", value=math.nan)
-    if math.isinf(found.value):
-        return Cell("not reached", f"from {size_text(found.low)}" if math.isfinite(found.low) else "", 1e9)
-    bound = "≤ " if found.value <= smallest * (1.0 + 1e-9) else ""
-    return Cell(f"{bound}{found.value:.3g}", size_limits(found), found.value)
-
-
-def size_limits(found: Interval) -> str:
-    """Return the limits of a size."""
-    return f"{size_text(found.low)} … {size_text(found.high)}"
-
-
-def size_text(size: float) -> str:
-    """Return a size, or the sign for one that is not reached."""
-    return f"{size:.3g}" if math.isfinite(size) else "∞"
-
-
-def p_cell(p_value: float) -> Cell:
-    """Return an adjusted p-value."""
-    if math.isnan(p_value):
-        return Cell("–", value=math.nan)
-    return Cell("< 0.001" if p_value < 0.001 else f"{p_value:.3f}", value=p_value)
-
-
-def sensitivity_html(found: Sequence[IndicatorResult]) -> str:
-    """Return the heat map of what explains each indicator in healthy records."""
-    rows = [
-        [
-            term_cell(r.column),
-            *(_behind(_share(r.sensitivity.get(cause, math.nan)), r.column) for cause in CAUSES),
-        ]
-        for r in found
-    ]
-    head = ["Indicator, channel", *(cause.capitalize() for cause in CAUSES)]
-    caption = "Share of the rank variance of healthy records that each cause explains alone [-]."
-    return table(head, rows, caption=caption, sortable=True, tall=True)
-
-
-def _share(value: float) -> Cell:
-    return Cell(f"{value:.2f}" if math.isfinite(value) else "–", value=value, shade=value)
 
 
 def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> str:

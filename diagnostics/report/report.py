@@ -138,7 +138,7 @@ def write_report(
         advance()
     words, classes = words_of(dataset), ordered_states(matrix.labels)
     with stage("figures", 1) as advance, styled():
-        drawing = draw(dataset, matrix, classes, training, found)
+        drawing = draw(dataset, matrix, classes, training)
         opening = _opening(dataset, matrix, classes, detectors)
         in_detail = figures(judged, channel_quantities(dataset))
         advance()

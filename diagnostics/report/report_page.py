@@ -171,7 +171,7 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
 
 def _features(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
     evaluated = reported.evaluated
-    details = html.folded("Trends, sizes, effects and causes of every feature", detail_blocks(evaluated, pictures))
+    details = html.folded("The best features over severity and size", detail_blocks(evaluated, pictures))
     return [*ranking_blocks(reported.dataset, evaluated), details]
 
 

@@ -1,19 +1,14 @@
-"""Figures of scores: values with intervals, the permutation control, the strongest indicators."""
+"""Figures of scores: values with intervals, the permutation control."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.page.style import new_figure, state_ticks
-from diagnostics.records.channel_quantities import ShownQuantity
-from diagnostics.report.indicator_figures import panel_title, unit_of
+from diagnostics.page.style import new_figure
 from diagnostics.statistics.judgement import TITLES, Judged
-from diagnostics.statistics.separability import Separability
 from diagnostics.training.training import Training
 
 if TYPE_CHECKING:
@@ -65,35 +60,3 @@ def permutation_figure(training: Training) -> Figure:
     axis.set_xlabel("Macro-AUROC on test specimens [-]")
     figure.legend(loc="outside upper center", ncols=3, fontsize=9)
     return figure
-
-
-def indicator_figure(
-    matrix: FeatureMatrix,
-    found: list[Separability],
-    classes: tuple[str, ...],
-    colours: dict[str, str],
-    channels: Mapping[str, ShownQuantity],
-) -> Figure:
-    """Return the values of the strongest indicators by state, one row each, a dot per record."""
-    figure, axes = new_figure(len(found), 1, height_in=0.6 + 1.25 * len(found), sharex=True)
-    for axis, entry in zip(axes[:, 0], found, strict=True):
-        _draw_indicator(axis, matrix, entry.feature, classes, colours)
-        axis.set_ylabel(f"[{unit_of(entry.feature, channels)}]")
-    state_ticks(axes[-1, 0], classes)
-    axes[-1, 0].set_xlabel("State (one dot per record)")
-    return figure
-
-
-def _draw_indicator(
-    axis: Any, matrix: FeatureMatrix, feature: str, classes: tuple[str, ...], colours: dict[str, str]
-) -> None:
-    values = matrix.values[:, matrix.names.index(feature)]
-    for position, state in enumerate(classes):
-        chosen = values[matrix.labels["state"] == state]
-        spread = 0.5 * (np.arange(chosen.size) / max(chosen.size - 1, 1) - 0.5)
-        axis.plot(
-            position + spread, chosen, linestyle="none", marker="o", markersize=3, alpha=0.6, color=colours[state]
-        )
-    if (values > 0).all() and values.max() > 30.0 * values.min():
-        axis.set_yscale("log")
-    axis.set_title(panel_title(feature, 50), loc="left", fontsize=9, fontweight="bold")

@@ -23,9 +23,6 @@ from diagnostics.training.splits import SpecimenSplit
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
 
-OTHER_SPECIMENS = 1 << 40
-"""Added to specimen numbers of the other set where both sets are in one table: they share numbers, not gearboxes."""
-
 
 @dataclass(frozen=True, slots=True)
 class OtherSet:
