@@ -12,8 +12,6 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.views.stiffness_curves import StiffnessCurve
-from siggen.views.stiffness_figure import stiffness_figure
 
 runner = CliRunner()
 
@@ -139,18 +137,6 @@ def test_where_damage_takes_stiffness_the_curve_is_the_potential_energy_and_has_
     assert "mesh stiffness by potential energy" in said
     names = pyarrow.parquet.read_table(tmp_path / "tvms.parquet").column_names
     assert not [name for name in names if "sink" in name or "potential" in name]
-
-
-def test_no_two_of_sixteen_states_look_alike() -> None:
-    pytest.importorskip("matplotlib")
-    angle = np.linspace(0.0, 1.0, 5)
-    curves = [StiffnessCurve(f"state_{i}", angle, np.full(5, 1e8 + i), {}) for i in range(16)]
-    figure = stiffness_figure(curves)
-    stiffness, loss = ({(line.get_color(), line.get_linestyle()) for line in axis.lines} for axis in figure.axes)
-    assert len(stiffness) == 16
-    assert len(loss) == 15
-    (mildest, *_, worst) = figure.axes[0].lines
-    assert mildest.get_zorder() > worst.get_zorder() > 2.0
 
 
 def test_parts_of_a_contact_across_the_face_add_up_to_the_pair_that_is_simulated(tmp_path: Path) -> None:

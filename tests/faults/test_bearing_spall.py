@@ -181,14 +181,6 @@ def test_half_of_the_tooth_force_loads_the_bearing_along_the_line_of_action() ->
     assert np.sign(gear.order) == -np.sign(pinion.order)
 
 
-def test_without_torque_to_speak_of_nothing_is_heard() -> None:
-    pushes = [sources_of(with_states(SPALL, operating_points__0__torque_nm=torque), 1)[0] for torque in (1e-3, 60.0)]
-    angle = np.linspace(0.0, 60.0, 20_000)
-    light, heavy = (source.lost_n(angle)[0].max() for source in pushes)
-    assert 0.0 < light < 0.1
-    assert heavy > 100.0
-
-
 def test_a_grown_spall_takes_the_place_of_the_milder_one() -> None:
     drawn = {"kind": "uniform", "low": 0.5, "high": 3.0}
     longer = {"kind": "uniform", "low": 1.0, "high": 4.0}
@@ -249,16 +241,6 @@ def test_what_cannot_be_is_refused_with_what_is_allowed(
     found = {problem.path: problem for problem in problems}
     assert f"states.1.damage.{path}" in found, problems
     assert allowed in found[f"states.1.damage.{path}"].allowed
-
-
-def test_a_grown_spall_is_longer() -> None:
-    states = [
-        {"name": "slight", "damage": SPALL},
-        {"name": "moderate", "damage": {**SPALL, "length_mm": 1.0}},
-        {"name": "severe", "damage": {**SPALL, "length_mm": 3.0}},
-    ]
-    problems = {problem.path: problem for problem in parse(minimal(states=states)).problems}
-    assert set(problems) == {"states.1.damage.length_mm"}
 
 
 def test_a_spall_is_in_the_bearing_of_its_shaft_and_else_in_a_6205() -> None:

@@ -79,15 +79,6 @@ def test_a_more_severe_state_contains_the_damage_of_the_milder_one(ladder: list[
         assert set(milder) < set(harder)
 
 
-def test_counts_are_totals_per_tooth() -> None:
-    config = config_with(
-        *({"kind": "clustered", "count": n, "teeth": 2, "spread_profile_mm": 0.3, **PIT} for n in (4, 9))
-    )
-    harder = damage_of(config, 2)
-    assert len(harder) == 18
-    assert sorted(np.unique([p.tooth for p in harder], return_counts=True)[1]) == [9, 9]
-
-
 def test_layers_fill_the_lattice_without_gaps_or_doubles() -> None:
     config = config_with(
         *({"kind": "layered", "layers": layers, "pits_per_layer": n, **PIT} for layers, n in ((2, 2), (2, 4), (3, 6)))
@@ -97,12 +88,6 @@ def test_layers_fill_the_lattice_without_gaps_or_doubles() -> None:
     heights, faces = {h for h, _ in places}, {w for _, w in places}
     assert len(severe) == len(places) == 18
     assert places == {(h, w) for h in heights for w in faces}
-
-
-def test_damage_does_not_depend_on_later_states_nor_on_other_specimens() -> None:
-    ladder = [{"kind": "clustered", "count": n, "spread_profile_mm": 0.3, **DRAWN_PIT} for n in (4, 9, 20)]
-    assert damage_of(config_with(*ladder), 1) == damage_of(config_with(*ladder[:1]), 1)
-    assert damage_of(config_with(*ladder), 1, specimen_id=1) != damage_of(config_with(*ladder), 1, specimen_id=2)
 
 
 def test_the_damaged_tooth_differs_between_specimens_and_stays_in_all_states() -> None:

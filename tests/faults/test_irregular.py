@@ -12,12 +12,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from siggen.errors import ConfigError
-from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.damage.heights import clipped_arc_m
 from siggen.gears.damage.irregular import IrregularSpall
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import PIT, config_with, damage_of
 
@@ -28,12 +26,6 @@ GROWN = [
     {**SPALL, "profile_length_mm": 1.6, "face_share": 1.0},
 ]
 STRAIGHT = {"waviness": 0.0, "skew_mm_per_10mm": 0.0}
-
-
-@pytest.fixture
-def smooth(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Floors without roughness."""
-    monkeypatch.setattr("siggen.faults.irregular.FLOOR_ROUGHNESS", 0.0)
 
 
 def holds(severe: IrregularSpall, mild: IrregularSpall) -> bool:
@@ -78,31 +70,6 @@ def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
         assert severe.depth_m >= moderate.depth_m >= slight.depth_m
 
 
-@pytest.mark.usefixtures("smooth")
-def test_neighbouring_teeth_are_in_stages_of_their_own_and_each_grows() -> None:
-    full = {**SPALL, "teeth": 3, "depth_mm": 0.1, **STRAIGHT}
-    config = config_with(
-        {**full, "stages": [0.5, 0.3, 0.2]}, {**full, "stages": [1.0, 0.6, 0.2]}, {**full, "teeth": 4, "stages": 1.0}
-    )
-    before = {one.tooth: one for one in damage_of(config, 1)}
-    for state, stages in ((1, (0.5, 0.3, 0.2)), (2, (1.0, 0.6, 0.2)), (3, (1.0, 1.0, 1.0, 1.0))):
-        found = damage_of(config, state)
-        teeth = [(found[0].tooth + i) % 18 for i in range(len(stages))]
-        assert [one.tooth for one in found] == teeth
-        for one, stage in zip(found, stages, strict=True):
-            gear = gear_pair(draw_specimen(config, 0).gears).pinion
-            assert one.profile_arc_m(gear) == pytest.approx(stage * 0.6e-3, rel=1e-9)
-            assert np.ptp([face for face, _, _ in one.stations_m]) == pytest.approx(stage * 5e-3, rel=1e-9)
-            assert one.depth_m == pytest.approx(stage * 0.1e-3, rel=1e-12)
-            if state > 1 and one.tooth in before:
-                assert holds(one, before[one.tooth])
-        before = {one.tooth: one for one in found}
-    labels = specimen_state(config, draw_specimen(config, 0), 2).labels
-    assert labels["faulty_teeth_pinion"] == sorted(one.tooth for one in damage_of(config, 2))
-    assert labels["damage_count"] == 3
-    assert labels["damaged_area_mm2"] == pytest.approx(0.6 * 5.0 * (1.0 + 0.36 + 0.04), rel=1e-3)
-
-
 def test_a_drawn_stage_keeps_its_rank_while_the_spall_grows_and_one_is_no_change() -> None:
     drawn = {"teeth": 3, "stages": {"kind": "uniform", "low": 0.2, "high": 0.5}}
     later = {"teeth": 3, "stages": {"kind": "uniform", "low": 0.6, "high": 1.0}}
@@ -123,26 +90,10 @@ def test_stages_that_fit_no_teeth_are_refused(changes: dict[str, Any], received:
         config_with({**SPALL, "teeth": 3, **changes})
 
 
-def test_a_state_is_the_same_alone_and_after_any_others() -> None:
-    config = config_with(*GROWN)
-    alone = damage_of(config_with(*GROWN), 3)
-    for state in (2, 1, 3, 1):
-        damage_of(config, state)
-    assert damage_of(config, 3) == alone
-
-
 def test_teeth_and_gearboxes_have_outlines_of_their_own() -> None:
     config = config_with({**SPALL, "teeth": 2, "face_share": 1.0})
     shapes = {one.outline for specimen in range(3) for one in damage_of(config, 1, specimen)}
     assert len(shapes) == 6
-
-
-def test_either_edge_has_a_skew_of_its_own() -> None:
-    skews = {"kind": "uniform", "low": -0.1, "high": 0.1}
-    (one,) = damage_of(config_with({**SPALL, **STRAIGHT, "face_share": 1.0, "skew_mm_per_10mm": skews}), 1)
-    stations = np.array(one.stations_m)
-    rise = stations[-1] - stations[0]
-    assert len({0.0, rise[1], rise[2]}) == 3
 
 
 def test_skews_are_millimetres_of_arc_over_ten_of_face() -> None:
@@ -156,36 +107,11 @@ def test_skews_are_millimetres_of_arc_over_ten_of_face() -> None:
     assert one.profile_arc_m(pair.pinion) == pytest.approx(0.6e-3, rel=1e-9)
 
 
-@pytest.mark.usefixtures("smooth")
-@pytest.mark.parametrize("floor", ["flat", "dish"])
-def test_without_skew_waves_and_roughness_it_is_the_rectangle_in_labels_and_in_the_law(floor: str) -> None:
-    same = {"profile_length_mm": 1.0, "depth_mm": 0.2, "centre_height_mm": "pitch"}
-    straight = {**same, **STRAIGHT, "face_share": 1.0, "kind": "irregular", "floor": floor, "edge_radius_mm": 0.1}
-    states = []
-    for damage in (straight, {**same, "face_length_mm": 20.0, "kind": "spall", "floor": floor}):
-        config = config_with(damage)
-        states.append(specimen_state(config, draw_specimen(config, 0), 1))
-    irregular, rectangle = states
-    assert irregular.labels == rectangle.labels
-    assert isinstance(irregular.mesh.contact, ContactTable)
-    assert isinstance(rectangle.mesh.contact, ContactTable)
-    for found, expected in zip(irregular.mesh.contact, rectangle.mesh.contact, strict=True):
-        # Equal but for the mean of as many equal radii, which rounds.
-        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-15)
-
-
 def test_it_takes_the_place_of_the_milder_one_and_leaves_pits_beside_it() -> None:
     cluster = {"kind": "clustered", "count": 4, "spread_profile_mm": 0.5, **PIT}
     config = config_with(cluster, *GROWN[1:])
     assert [one.kind for one in damage_of(config, 3)].count("spall") == 1
     assert [state.fault for state in config.states] == ["healthy", "pitting", "spalling", "spalling"]
-
-
-@pytest.mark.usefixtures("smooth")
-def test_depth_grows_with_the_area() -> None:
-    flat = [{**damage, "floor": "flat"} for damage in GROWN]
-    depths = [damage_of(config_with(*flat), state)[0].depth_m for state in (1, 2, 3)]
-    assert depths == pytest.approx([0.05e-3 * np.sqrt(a * b) for a, b in ((0.6, 5.0), (1.0, 12.0), (1.6, 20.0))])
 
 
 def test_rows_hold_the_outline_the_edges_and_the_depth_of_every_strip() -> None:

@@ -41,15 +41,6 @@ def test_a_state_grows_from_the_milder_one_and_is_nowhere_less_deep() -> None:
             assert np.all(np.asarray(two.depths_m) >= np.asarray(one.depths_m))
 
 
-def test_another_operating_point_moves_no_record() -> None:
-    alone = config_with(WEAR)
-    points = alone.operating_points
-    with_more = alone.model_copy(
-        update={"operating_points": (*points, points[0].model_copy(update={"torque_nm": 250.0}))}
-    )
-    assert damage_of(alone, 1) == damage_of(with_more, 1)
-
-
 def test_rows_tell_the_depths_of_all_teeth_of_each_gear() -> None:
     config = config_with(WEAR)
     parts = damage_of(config, 1)

@@ -163,12 +163,6 @@ def test_levels_of_sensors_and_forces_belong_to_the_gearbox_with_a_background() 
         assert not np.allclose(first.channels["lid_vertical"], second.channels["lid_vertical"])
 
 
-def test_adding_a_sensor_leaves_the_bytes_of_the_others() -> None:
-    alone = record(loaded(ON_LID, background=ALL)).channels["lid_vertical"]
-    both = record(loaded(PLAIN, {**ON_LID, "name": "other"}, ON_LID, background=ALL)).channels["lid_vertical"]
-    assert alone.tobytes() == both.tobytes()
-
-
 def test_a_second_stage_turns_the_housing_and_pushes_it_nowhere() -> None:
     # a mesh inside presses on two seats with equal and opposite forces: far above all modes a = F arm x / I
     places = (0.0, 100.0, -200.0)
@@ -248,12 +242,6 @@ def spectrum_steepness(rubbing: RubbingNumbers) -> float:
     return constant(rubbing.hurst_exponent) + 1.0
 
 
-def test_a_film_takes_roughness_back() -> None:
-    slow, fast = (loaded(operating_points__0__speed_hz=speed, background={"rubbing": {}}) for speed in (5.0, 40.0))
-    shares = [added(config)[1]["rubbing_asperity_share"] for config in (slow, fast)]
-    assert 1.0 >= shares[0] > 2.0 * shares[1] > 0.0
-
-
 def test_bearings_have_the_velocities_of_their_class_at_its_speed_and_their_waves_at_any() -> None:
     numbers = BearingNumbers.model_construct(low_um_s=60.0, middle_um_s=100.0, high_um_s=150.0)
     for (low, high), rms in (((50, 300), 60e-6), ((300, 1800), 100e-6), ((1800, 10_000), 150e-6)):
@@ -300,12 +288,6 @@ def test_a_base_needs_a_casing() -> None:
     with pytest.raises(ConfigError) as refused:
         load_config(minimal(**{**plain, "dynamics__model": "8dof", "background": {"base": {}}}))
     assert "background.base" in {problem.path for problem in refused.value.problems}
-
-
-def test_a_gearbox_without_casing_or_path_has_its_background_too() -> None:
-    parts = {name: part for name, part in ALL.items() if name not in {"base", "second_stage", "auxiliary_drive"}}
-    config = loaded(PLAIN, dynamics__model="8dof", background=parts)
-    assert added(config)[0]["bearing_vertical"].std() > 1e-3
 
 
 def test_a_random_level_gives_the_noise_of_bearings_its_tails_and_no_power() -> None:

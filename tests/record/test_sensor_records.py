@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate, simulate_specimen
+from siggen.record.simulation import record_response, simulate
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.measured_path import INPUTS
@@ -96,15 +95,6 @@ def test_an_instrument_without_a_path_leaves_plain_channels_as_they_were() -> No
     assert both["filtered_vertical"].tobytes() != alone.tobytes()
 
 
-def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
-    config = loaded(LID)
-    together = list(simulate_specimen(config, [2, 3]))
-    for record_id, found in zip([2, 3], together, strict=True):
-        assert isinstance(found, Record)
-        for name, signal in record(config, record_id).channels.items():
-            assert signal.tobytes() == found.channels[name].tobytes()
-
-
 DISTURBED = {
     **LID,
     "gain": {"kind": "uniform", "low": 0.9, "high": 1.1},
@@ -152,19 +142,6 @@ def test_contradictions_are_named(sensor: dict, changes: dict, path: str, said: 
     found = problems(sensor, **changes)
     assert list(found) == [path]
     assert said in found[path]
-
-
-@pytest.mark.slow  # a set without sensors of its own: tests/sets/test_generation.py
-def test_the_bytes_do_not_depend_on_workers(tmp_path: Path) -> None:
-    from siggen.sets.generation import generate
-
-    config = loaded(DISTURBED, fs_hz=25600.0)
-    for workers in (0, 2):
-        generate(config, tmp_path / str(workers), workers)
-    files = sorted(p.relative_to(tmp_path / "0") for p in (tmp_path / "0" / "data").rglob("*.parquet"))
-    assert files
-    for file in files:
-        assert (tmp_path / "0" / file).read_bytes() == (tmp_path / "2" / file).read_bytes()
 
 
 def line_ratio(first: np.ndarray, second: np.ndarray, cycles: int) -> complex:

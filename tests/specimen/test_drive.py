@@ -106,18 +106,3 @@ def test_unbalance_belongs_to_the_specimen() -> None:
     mass = structure(config, draw_specimen(config, 0)).mass[1, 1]
     expected = mass * 6.3e-3 * (2.0 * math.pi * point.speed_hz) ** 2 / (2.0 * math.pi * 50.0)
     assert np.hypot(first[:, 0], first[:, 1]) == pytest.approx(expected, rel=1e-9)
-
-
-def test_constant_speed_without_forces_has_no_inputs() -> None:
-    drive = drive_of(load(), 0)
-    assert drive.excitation is None
-    assert drive.speed_input == -1
-    assert drive.torque is None
-
-
-@pytest.mark.parametrize("mesh", [["dynamics.mesh.law=pairs", "dynamics.friction.model=constant"], []])
-def test_pairs_and_casing_take_all_of_it(mesh: list[str]) -> None:
-    config = load(*VARYING, *FORCES, "dynamics.model=casing", *mesh)
-    (found,) = simulate(config, [0])
-    assert isinstance(found, Record), found
-    assert all(np.isfinite(signal).all() for signal in found.channels.values())

@@ -12,7 +12,7 @@ from siggen.columns.record import Record, label_names
 from siggen.config import Config
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import simulate, simulate_specimen
+from siggen.record.simulation import simulate
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.errors import SpecimenErrors, specimen_errors
 from siggen.specimen.gears import gear_pair
@@ -43,10 +43,6 @@ def differ(first: SpecimenErrors, second: SpecimenErrors) -> bool:
     return not np.isclose(places(first), places(second), rtol=1e-6, atol=0.0).any()
 
 
-def test_perfect_gears_have_no_errors() -> None:
-    assert specimen_errors(made(), PAIR, 0, 0) is None
-
-
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6))
 def test_drawn_gears_keep_to_their_class_and_use_their_share(specimen: int) -> None:
@@ -63,17 +59,6 @@ def test_states_of_a_specimen_share_its_gears_or_do_not() -> None:
     np.testing.assert_array_equal(places(errors_of(CLASS_6, 3, 0)), places(errors_of(CLASS_6, 3, 2)))
     assert differ(errors_of(PER_STATE, 3, 0), errors_of(PER_STATE, 3, 2))
     assert differ(errors_of(CLASS_6, 3), errors_of(CLASS_6, 4))
-
-
-def test_the_pinion_does_not_depend_on_the_gear() -> None:
-    other = made("manufacture={accuracy_class: 6, accuracy_class_gear: 9}", "gears.gear.teeth=53")
-    changed = errors_of(other, pair=gear_pair(draw_specimen(other, 0).gears))
-    before, after = errors_of(CLASS_6).pinion, changed.pinion
-    # A longer path of contact reaches a little further along the flank, so sizes move; shapes and places do not.
-    assert before.tolerance_share == after.tolerance_share
-    assert before.errors.phase_rad == after.errors.phase_rad
-    assert np.corrcoef(before.errors.pitch_m, after.errors.pitch_m)[0, 1] == pytest.approx(1.0, abs=1e-12)
-    assert changed.gear.accuracy_class == 9
 
 
 def test_classes_of_a_choice_all_occur_and_gears_draw_their_own() -> None:
@@ -133,26 +118,6 @@ def test_no_share_of_the_tolerance_gives_the_bytes_of_perfect_gears() -> None:
         assert zero.channels[name].tobytes() == signal.tobytes()
 
 
-def test_a_record_does_not_depend_on_its_company() -> None:
-    together = list(simulate_specimen(CLASS_6, [0, 1]))
-    alone = records(CLASS_6, [1])[0]
-    assert isinstance(together[1], Record)
-    for name, signal in alone.channels.items():
-        assert together[1].channels[name].tobytes() == signal.tobytes()
-
-
-def test_misaligned_shafts_change_healthy_and_damaged_records_alike() -> None:
-    aligned, askew = (
-        records(made(f"manufacture={{accuracy_class: 6, lead_misalignment_um: {lead}}}"), [0, 2]) for lead in (0.0, 8.0)
-    )
-    for before, after in zip(aligned, askew, strict=True):
-        signal = before.channels["lid_vertical"].astype(float)
-        change = np.std(after.channels["lid_vertical"] - signal) / np.std(signal)
-        assert 0.05 < change < 1.0
-        assert abs(after.labels["lead_misalignment_um"]) == pytest.approx(8.0)  # type: ignore[arg-type]
-        assert after.labels["sink_depth_um"] == before.labels["sink_depth_um"]
-
-
 def with_helix(config: Config, **keys: object) -> Config:
     section = {"accuracy_class": 6, **keys}
     return Config.model_validate({**config.canonical(), "manufacture": section})
@@ -173,14 +138,6 @@ def test_helix_slopes_are_those_of_misaligned_by_the_standard_and_forms_are_one_
         expected = one.pinion.helix.missing_m(place) + one.gear.helix.missing_m(place)
         np.testing.assert_allclose(one.lead_m(100), expected, atol=1e-18)
         assert not np.allclose(one.pinion.helix.form_m, one.gear.helix.form_m)
-
-
-def test_new_keys_that_are_not_used_leave_identity_and_draws_as_they_were() -> None:
-    assert with_helix(CLASS_6, crowning_um=0.0, helix="off").identity == CLASS_6.identity
-    plain, crowned = errors_of(CLASS_6), errors_of(with_helix(CLASS_6, crowning_um=5.0, helix="iso_1328"))
-    np.testing.assert_array_equal(places(plain), places(crowned))
-    assert plain.even
-    assert not crowned.even
 
 
 def test_a_crowned_pair_at_rest_gives_way_by_up_to_the_mean_of_its_parabola() -> None:
@@ -215,9 +172,3 @@ def test_records_say_which_helix_and_crowning_were_drawn() -> None:
     crowned = errors_of(with_helix(CLASS_6, crowning_um=6.0))
     lead = crowned.lead_m(200)
     np.testing.assert_allclose(lead, lead[::-1], atol=1e-18)
-
-
-def test_errors_shake_a_healthy_gearbox() -> None:
-    perfect, errors = (records(config, [0])[0] for config in (made(), CLASS_6))
-    assert errors.channels["lid_vertical"].std() > 1.2 * perfect.channels["lid_vertical"].std()
-    assert errors.labels["contact_loss_share"] == 0.0

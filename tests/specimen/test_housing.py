@@ -20,7 +20,6 @@ from siggen.specimen.instrument import specimen_instrument
 from siggen.specimen.measured_path import INPUTS
 from siggen.specimen.specimen_housing import SpecimenHousing, modes_settle_s
 from siggen.specimen.structure import specimen_body, structure
-from tests.dynamics.natural_frequencies import natural_frequencies_hz
 from tests.specimen.rigid_twin import rigid_twin
 
 CONFIG = load_config("quickstart")
@@ -48,29 +47,6 @@ def stiff(monkeypatch, made_anew) -> None:
     """Let walls be 10,000 times as stiff as those of steel."""
     monkeypatch.setattr("siggen.specimen.housing_layout._material", lambda _: Material(2.06e15, 0.3, 7850.0))
     made_anew()
-
-
-@pytest.mark.usefixtures("stiff")
-@pytest.mark.parametrize("specimen_id", [0, 4])
-def test_a_box_of_very_stiff_walls_is_the_rigid_casing_of_its_mass_inertia_and_bolts(specimen_id: int) -> None:
-    """Of two boxes without ribs, which the points of mass that stand for plates and bosses leave out."""
-    config = load_config("quickstart", ["dynamics.shafts=null"])
-    specimen = draw_specimen(config, specimen_id)
-    housing = housing_of(config, specimen_id)
-    assert housing.coupled == 6
-    assert not housing.box.ribs
-    box, rigid = locked_load(structure(config, specimen)), rigid_twin(config, specimen, housing)
-    found, expected = (natural_frequencies_hz(one, MESH.stiffness_n_per_m) for one in (box, rigid))
-    # the box moves along the shafts and tilts too: three modes that gears between alike walls do not excite
-    assert found.size == expected.size + 3
-    for frequency in expected:
-        # 1 %: the inertia that stands for shear of thick plates also counts in a rotation
-        assert np.abs(found - frequency).min() < 0.01 * frequency + 1e-6
-    # where the damping of bolts, which the two define differently, does not count
-    hz = np.array([30.0, 60.0, 4000.0, 9000.0])
-    of_box, of_rigid = in_mesh(box, hz).bearing_force, in_mesh(rigid, hz).bearing_force
-    for name in INPUTS:
-        np.testing.assert_allclose(of_box[name], of_rigid[name], rtol=0.003)
 
 
 @pytest.mark.parametrize("share", [1.0, 0.1])
@@ -135,15 +111,6 @@ def test_below_250_hz_a_place_moves_about_as_on_a_rigid_casing(specimen_id: int)
         ratio = np.sqrt(sum(np.abs(one) ** 2 for one in seen) / sum(np.abs(rigid[name][0]) ** 2 for name in names))
         assert ratio.min() > 0.8
         assert ratio.max() < 2.0
-
-
-@pytest.mark.parametrize("specimen_id", DRAWN)
-def test_opposed_vertical_forces_of_both_shafts_cancel_on_the_lid(specimen_id: int) -> None:
-    housing, hz = housed(specimen_id), np.arange(50.0, 1000.0, 2.0)
-    lid = housing.motions["casing_lid/vertical"]
-    pinion, gear = housing.accelerance(lid, ("pinion_bearing/vertical", "gear_bearing/vertical"), hz)
-    opposed, independent = (np.abs(pinion - gear) ** 2).mean(), (np.abs(pinion) ** 2 + np.abs(gear) ** 2).mean()
-    assert 10.0 * np.log10(opposed / independent) < -6.0
 
 
 def test_gearboxes_have_housings_of_their_own_and_states_share_one() -> None:

@@ -156,21 +156,6 @@ def test_the_set_needs_the_file_no_more(tmp_path: Path) -> None:
     assert signal(load_config(tmp_path / "stored.yaml")).tobytes() == signal(config).tobytes()
 
 
-def test_the_identity_follows_the_content_and_not_the_folder(tmp_path: Path) -> None:
-    (tmp_path / "a").mkdir()
-    values = columns()
-    save(values, tmp_path / "lid.csv")
-    save(values, tmp_path / "a" / "lid.csv")
-    here = load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"}))
-    there = load_config(written(tmp_path, {"kind": "measured", "file": "a/lid.csv"}))
-    assert here.identity == there.identity
-    values["vertical_from_gear_bearing_vertical_real_m_s2_per_n"] = (
-        1.01 * values["vertical_from_gear_bearing_vertical_real_m_s2_per_n"]
-    )
-    save(values, tmp_path / "lid.csv")
-    assert load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"})).identity != here.identity
-
-
 def renamed(values: dict[str, np.ndarray], old: str, new: str) -> dict[str, np.ndarray]:
     return {name.replace(old, new): value for name, value in values.items()}
 

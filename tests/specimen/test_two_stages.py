@@ -202,21 +202,6 @@ def lines(motion: PairMotion, point: OperatingPoint, orders: Sequence[float]) ->
     return found[1:] / found[0]
 
 
-def test_a_second_mesh_of_constant_stiffness_without_errors_has_no_line() -> None:
-    """Neither its own nor sums with lines of the first mesh; as it is made its line stands beside the first one's."""
-    overrides = (*WITHOUT_FRICTION, "dynamics.mesh.tip_relief_um=0")
-    _, specimen, mesh, point = machine(*overrides)
-    own = 47 / 17  # of the first mesh's order
-    orders = [1 / own, 2 / own, 1 - 1 / own, 1 + 1 / own, 2 - 1 / own]
-    behind = mesh.behind[0]._replace(mesh=smooth(mesh.behind[0].mesh))
-    even = specimen_motion(specimen.dynamics, replace(mesh, behind=(behind,)), point, STEP_S)
-    real = specimen_motion(specimen.dynamics, mesh, point, STEP_S)
-    found = lines(real, point, orders)
-    assert found[0] > 0.01
-    # What is left leaks from other lines through the window.
-    assert lines(even, point, orders).max() < 1e-4
-
-
 def test_all_teeth_meet_as_at_the_start_after_the_hunting_turns_and_not_before() -> None:
     found, specimen, _, _ = machine()
     whole = hunting_turns(specimen.gears, specimen.stages)
@@ -273,29 +258,6 @@ def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -
     force = driven.excitation.inputs(times, driven.rotation) @ driven.excitation.vectors[:, names]
     turned = np.unwrap(np.angle(force[:, 0] + 1j * force[:, 1]))
     assert np.diff(turned) == pytest.approx(np.sign(order) * pi / 2 * np.ones(3), rel=1e-9)
-
-
-def test_the_missing_tooth_points_away_from_the_pull_when_its_place_meets_the_mate() -> None:
-    """When the middle of the path of contact of the missing tooth's pair comes, the pull points away from its mate."""
-    found = config("states.1.damage={kind: chip, gear: slow.pinion, height_mm: whole}")
-    specimen, record = draw_specimen(found, 0), planned_record(found, 3)
-    state = specimen_state(found, specimen, 1)
-    mesh, behind = state.mesh, state.mesh.behind[0]
-    point, pair = draw_operating_point(found, 0, 0), behind.mesh.pair
-    driven = record_drive(found, specimen, mesh.structure, point, record, 0.0, state.parts, state.parts_behind)
-    tooth = state.behind[0].parts[0].tooth
-    # Of the pair of this tooth at the pitch point: base pitches of the second mesh, and the time of them.
-    along = (pair.pitch_point_m - pair.contact_start_m) / pair.base_pitch_m
-    per_s = 17 * behind.turning * point.speed_hz
-    time = ((tooth + along - behind.turned_pitches) % 17) / per_s
-    assert driven.excitation is not None
-    names = [mesh.structure.coordinates.index(f"{axis}_3") for axis in "xy"]
-    x, y = (driven.excitation.inputs(np.array([time]), driven.rotation) @ driven.excitation.vectors[:, names])[0]
-    direction = np.radians(70.0)
-    away = np.angle((x + 1j * y) / -np.exp(1j * direction))
-    # At the pitch point the flank is on the line of centres; the tooth's middle is half a tooth, a quarter of the
-    # pitch's angle, beside it.
-    assert abs(away) == pytest.approx(0.5 * pi / 17, abs=0.02)
 
 
 def test_shafts_that_let_gears_part_are_refused_with_the_place_to_change() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -146,13 +145,6 @@ def test_a_random_walk_of_the_cage_widens_lines_the_more_the_higher_they_are() -
         assert kept < 1.05 if h == 1 else kept < 0.5
 
 
-def test_without_load_no_spall_pushes() -> None:
-    for element in ("outer", "inner", "ball"):
-        source = spalled(element, load=np.zeros(2))
-        assert not source.ever_pushes
-        assert not force_of(source).any()
-
-
 def test_an_outer_race_pushes_only_where_its_spall_reaches_into_the_zone() -> None:
     half = bearing_of().half_zone_rad(spalled("outer").zone.deflection_m)
     assert 0.9 < half < 0.5 * math.pi
@@ -161,45 +153,6 @@ def test_an_outer_race_pushes_only_where_its_spall_reaches_into_the_zone() -> No
         source = spalled("outer", place_rad=place)
         assert source.ever_pushes == pushes, place
         assert force_of(source).any() == pushes, place
-
-
-def test_without_length_nothing_is_lost_and_more_length_never_means_less() -> None:
-    assert not force_of(spalled("inner", length_m=0.0)).any()
-    lost = [spalled("inner", length_m=length).lost_n(ANGLE)[0] for length in (0.2e-3, 0.5e-3, 1e-3, 3e-3)]
-    assert all((longer >= shorter).all() for shorter, longer in pairwise(lost))
-
-
-def test_no_ball_loses_more_than_its_load() -> None:
-    source = spalled("inner", length_m=4e-3, depth_m=1e-3)
-    lost, toward = source.lost_n(ANGLE)
-    from_load = toward - source.zone.direction_rad
-    bearing = source.spall.bearing
-    load = bearing.contact_n_per_m15 * bearing.squeezed_m(source.zone.deflection_m, from_load) ** 1.5
-    assert (lost <= load + 1e-6).all()  # of 300 N, by angles of 100 rad in doubles
-    assert lost.max() == pytest.approx(load.max(), rel=1e-3)
-
-
-def test_twice_the_balls_pass_twice_as_often() -> None:
-    rates = []
-    for balls in (6, 12):
-        lost, _ = spalled("outer", balls=balls).lost_n(ANGLE)
-        rates.append(int(((lost[1:] > 0.0) & (lost[:-1] == 0.0)).sum()))
-    assert abs(rates[1] - 2 * rates[0]) <= 1
-    assert rates[0] == pytest.approx(6 * bearing_of().cage_order * TURNS, abs=1.0)
-
-
-def test_a_cage_never_runs_beyond_its_course() -> None:
-    source = spalled("outer")
-    with pytest.raises(ValueError, match="shaft_rad: received"):
-        source.lost_n(np.array([1e4]))
-
-
-def test_a_later_end_leaves_the_course_as_it_was() -> None:
-    short, long = (
-        cage_course(bearing_of(), np.random.default_rng(3), 0.01, 0.01, (-5.0, end)).angle_rad(np.linspace(-5, 90, 999))
-        for end in (100.0, 900.0)
-    )
-    np.testing.assert_array_equal(short, long)
 
 
 def test_turning_the_other_way_mirrors_the_force_about_the_load() -> None:

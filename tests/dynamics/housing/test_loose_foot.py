@@ -69,22 +69,6 @@ def test_frequencies_are_those_of_the_pencil_of_both_halves(sound: HousingModes,
     assert off.max() < 2e-4
 
 
-def test_a_foot_that_is_nearly_tight_leaves_the_sound_box(sound: HousingModes) -> None:
-    found = loosened(sound, BOX, 1.0 - 1e-9)
-    # rounding of both pencils
-    np.testing.assert_allclose(found.frequency_hz, sound.frequency_hz, rtol=1e-8)
-    np.testing.assert_allclose(found.bolt_share, sound.bolt_share, rtol=1e-5)
-    shapes = [modes.shapes(seen(modes)) for modes in (found, sound)]
-    np.testing.assert_allclose(np.abs(shapes[0]), np.abs(shapes[1]), atol=1e-4 * np.abs(shapes[1]).max())
-
-
-def test_modes_are_no_higher_than_sound_ones_and_no_lower_than_the_third_below(sound: HousingModes) -> None:
-    """Three springs are taken off (Courant and Fischer)."""
-    found = loosened(sound, BOX, 0.05).frequency_hz
-    assert (found <= sound.frequency_hz * (1.0 + 1e-9)).all()
-    assert (found[3:] >= sound.frequency_hz[:-3] * (1.0 - 1e-9)).all()
-
-
 @pytest.mark.parametrize("share", [0.02, 0.3])
 def test_a_very_stiff_box_is_a_rigid_body_on_unequal_bolts(share: float) -> None:
     stiff = iron_box(material=replace(IRON, youngs_modulus_pa=1e4 * IRON.youngs_modulus_pa))
@@ -131,19 +115,6 @@ def test_accelerance_is_that_of_a_direct_solution(sound: HousingModes) -> None:
         assert np.sqrt(np.mean(np.abs(own - expected) ** 2)) < 0.01 * np.sqrt(np.mean(np.abs(expected) ** 2))
 
 
-def test_the_bolts_share_of_energy_is_what_stiffer_bolts_raise(sound: HousingModes) -> None:
-    """d ln ω²/d ln k of all bolts together (Rayleigh), by boxes that are solved anew."""
-    step = 1e-3
-    squared = []
-    for factor in (1.0 - step, 1.0 + step):
-        bolts = tuple(replace(b, stiffness_n_per_m=tuple(factor * k for k in b.stiffness_n_per_m)) for b in BOX.bolts)
-        box = replace(BOX, bolts=bolts)
-        squared.append(np.log(loosened(housing_modes(box, 3000.0), box, 0.2).frequency_hz[:15] ** 2))
-    found = loosened(sound, BOX, 0.2).bolt_share[:15]
-    # 1e-3: central differences of 0.1 %, and modes beyond 3 kHz that both boxes lack
-    np.testing.assert_allclose((squared[1] - squared[0]) / (2.0 * step), found, atol=1e-3)
-
-
 def test_modes_fall_as_those_of_solid_finite_elements(sound: HousingModes) -> None:
     share, count = 0.05, 12
     tight, loose = (solid_box(BOX, 0.016, count, left).frequency_hz for left in (1.0, share))
@@ -151,10 +122,3 @@ def test_modes_fall_as_those_of_solid_finite_elements(sound: HousingModes) -> No
     assert found.min() < 0.8
     # 1.2 %: each mode of plates lies within 3 % of the solid's; near ones, such as 580 and 584 Hz, share what they lose
     np.testing.assert_allclose(found, loose / tight, atol=0.012)
-
-
-def test_both_walls_move_as_far_until_a_foot_is_loose(sound: HousingModes) -> None:
-    motions = [motion_at(sound.halves, Place(wall, 0.1, 0.1, Axis.X)) for wall in ("front", "back")]
-    tight, loose = (np.abs(modes.shapes(motions))[:, :6] for modes in (sound, loosened(sound, BOX, 0.05)))
-    np.testing.assert_allclose(tight[0], tight[1], rtol=1e-12)
-    assert np.abs(loose[0] - loose[1]).max() > 0.1 * loose.max()

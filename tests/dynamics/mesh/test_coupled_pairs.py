@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from siggen.dynamics.mesh.pair_columns import COLUMNS, NORMAL, WHOLE
+from siggen.dynamics.mesh.pair_columns import NORMAL
 from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
@@ -29,7 +29,6 @@ STIFFNESS = 1.57e8
 TABLES = constant_tables(STIFFNESS, 2.05)
 TABLES_RATIO = 2.05
 POINTS = 65
-THREE_PAIRS = 5.02
 ANGLES = st.floats(4.0, 6.0)
 
 
@@ -81,26 +80,6 @@ def test_coupled_pairs_carry_what_least_squares_find(
         assert pairs[n % len(pairs), NORMAL] == pytest.approx(force, rel=1e-8, abs=1e-8 * STIFFNESS * approach)
 
 
-@settings(deadline=None)
-@given(st.floats(-1e-4, 2e-5), st.floats(-0.05, 0.05), st.floats(0.0, 60.0))
-def test_a_coupling_of_zeros_is_none_to_the_bit(approach: float, rate: float, pitches: float) -> None:
-    results = []
-    for coupling in (None, np.zeros((2, POINTS))):
-        chosen = law(coupling)
-        pairs = pair_table(chosen)
-        pair_forces(chosen, approach, rate, pitches, 0.1, -3.0, pairs)
-        results.append(pairs[:, :COLUMNS])
-    np.testing.assert_array_equal(*results)
-
-
-def test_a_neighbour_that_deflects_the_body_takes_load_off_a_pair() -> None:
-    alone, coupled = loaded(law(None), 5e-6, THREE_PAIRS), loaded(law(table(0.2, 0.0)), 5e-6, THREE_PAIRS)
-    assert (alone[:, WHOLE] > 0.0).sum() == 3
-    assert coupled[:, NORMAL].sum() < alone[:, NORMAL].sum()
-    # The middle one has two neighbours.
-    assert coupled[4 % 3, NORMAL] < min(coupled[5 % 3, NORMAL], coupled[3 % 3, NORMAL])
-
-
 def test_two_coupled_pairs_have_the_closed_form() -> None:
     coupling, depth, angle = table(0.25, 0.0), 5e-6, 5.5
     pairs = loaded(law(coupling), depth, angle)
@@ -108,12 +87,6 @@ def test_two_coupled_pairs_have_the_closed_form() -> None:
     # Equal springs: N (1/k + c) = d.
     for n in (5, 4):
         assert pairs[n % 3, NORMAL] == pytest.approx(depth / (1.0 / STIFFNESS + c), rel=1e-9)
-
-
-def test_the_back_flanks_couple_alike() -> None:
-    chosen = law(table(0.25, 0.1))
-    drive, back = loaded(chosen, 5e-6, 5.5), loaded(chosen, -85e-6, 5.5)
-    np.testing.assert_allclose(back[:, NORMAL], -drive[:, NORMAL], rtol=1e-9)
 
 
 def test_a_coupled_mesh_runs_and_carries_the_torque() -> None:

@@ -6,11 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from siggen.dynamics.friction.contact_kinematics import relative_radius
-from siggen.dynamics.mesh.pair_forces import static_approach_m
 from siggen.dynamics.mesh.static_stiffness import (
     largest_secant_loss,
     pairs_before_damage,
@@ -44,21 +41,6 @@ def test_healthy_teeth_without_relief_have_the_mesh_stiffness_of_the_tables() ->
     direct = mesh_stiffness(PAIR, 2.0 * np.pi * pitches / PAIR.pinion.teeth, TEETH)
     # Linear interpolation between 2049 points.
     np.testing.assert_allclose(found, direct, rtol=1e-5)
-
-
-@settings(deadline=None)
-@given(st.floats(0.0, 1.8), st.floats(10.0, 5000.0))
-def test_false_position_ends_where_halving_ends(pitches: float, force: float) -> None:
-    found = static_approaches_m(THROUGH, force, np.array([pitches]))[0]
-    # 80 halvings of a bracket of 2 mm against 1e-12 of the force.
-    assert found == pytest.approx(static_approach_m(THROUGH, force, pitches), rel=1e-9)
-
-
-def test_a_whole_land_loses_nothing() -> None:
-    # Below the path of contact of the gear, further than a loaded contact is wide: by 1.1 mm of arc.
-    below = chord_pit(PAIR, 0.1e-3, PAIR.contact_end_m + 5e-3, which="gear")
-    assert largest_secant_loss(contact_law((below,)), HEALTHY, FORCE) == 0.0
-    assert largest_secant_loss(HEALTHY, HEALTHY, FORCE) == 0.0
 
 
 def test_lands_beside_a_spall_lose_what_the_contact_softens() -> None:

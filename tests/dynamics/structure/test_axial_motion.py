@@ -15,7 +15,6 @@ from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import Structure, eight_dof, vector
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from tests.dynamics.casing_stage import BASE_RADIUS_1, MEAN_STIFFNESS, PRESSURE_ANGLE, make_casing, make_stage
-from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 BASE_HELIX = np.radians(14.0)
 SLOPE = float(np.tan(BASE_HELIX))
@@ -64,25 +63,6 @@ def test_mean_axial_displacement_is_the_axial_force_over_the_stiffness(number: i
         assert q[z] == pytest.approx(sign * axial_n / stiffness, rel=1e-9)
         pressed = structure.bearing_forces[f"{name}_bearing/axial"][0] @ np.array(list(q.values()))
         assert pressed == pytest.approx(sign * axial_n, rel=1e-9)
-
-
-def test_a_right_handed_pinion_is_pushed_where_its_rotation_points() -> None:
-    """By hand: a screw that turns from x to y moves on along z = x × y, and its nut is pushed back.
-
-    `eight_dof` has the pinion turn that way, and flanks of a right-handed pinion are ahead at larger z there.
-    """
-    assert static(eight_dof(helical_stage()))["z_1"] > 0.0
-    assert static(eight_dof(helical_stage(-BASE_HELIX)))["z_1"] < 0.0
-
-
-def test_the_other_hand_is_the_mirror_image_across_the_shafts() -> None:
-    mirrored = tuple(replace(shaft, gear_share=1.0 - shaft.gear_share) for shaft in SHAFTS)
-    for right, left in zip(kinds(), kinds(-BASE_HELIX, mirrored), strict=True):
-        one, other = static(right), static(left)
-        turned = {name for name in one if name.startswith(("z_", "phi_")) and name != "phi_c"}
-        for name, value in one.items():
-            expected = -value if name in turned else value
-            assert other[name] == pytest.approx(expected, rel=1e-9, abs=1e-15), name
 
 
 def test_double_helical_teeth_push_no_shaft() -> None:
@@ -156,16 +136,6 @@ def test_seats_of_a_body_take_the_axial_force_and_give_way_along_it() -> None:
     chosen = list(place.values())
     expected = 1e8 * np.array([[1.0, 0.0, -1.0], [0.0, 1.0, -1.0], [-1.0, -1.0, 2.0]])
     np.testing.assert_allclose(structure.stiffness[np.ix_(chosen, chosen)], expected, rtol=1e-12)
-
-
-def test_natural_frequencies_with_an_immovable_casing_are_those_on_the_ground() -> None:
-    heavy = make_casing(mass_kg=2e7, inertia_kg_m2=2.5e5)
-    stiff = replace(heavy.bolts, shear_stiffness_n_per_m=8e13, axial_stiffness_n_per_m=1.5e14)
-    grounded = natural_frequencies_hz(
-        casing_structure(helical_stage(), replace(heavy, bolts=stiff)), MEAN_STIFFNESS
-    )  # fmt: skip
-    for frequency in natural_frequencies_hz(eight_dof(helical_stage()), MEAN_STIFFNESS)[1:]:
-        assert np.abs(grounded / frequency - 1.0).min() < 1e-6
 
 
 def test_back_flanks_push_the_other_way_along_the_shafts() -> None:

@@ -5,21 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.body import Bolts, bolt_elements
-from siggen.dynamics.structure.casing_structure import casing_structure
+from siggen.dynamics.structure.body import bolt_elements
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import eight_dof, vector
-from siggen.dynamics.time.modes import natural_modes
 from tests.dynamics.casing_stage import (
     BASE_RADIUS_1,
-    BASE_RADIUS_2,
     MEAN_STIFFNESS,
     PRESSURE_ANGLE,
     grounded_structure,
     make_casing,
     make_stage,
     make_structure,
-    torsional,
 )
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
@@ -39,33 +35,6 @@ def test_natural_frequencies_of_the_standard_gearbox() -> None:
     np.testing.assert_allclose(found, expected, atol=0.55)
     mesh_mode = [natural_frequencies_hz(make_structure(), k)[-1] for k in (2.05e8, 3.78e8)]
     np.testing.assert_allclose(mesh_mode, [5750.0, 7714.0], atol=0.55)
-
-
-def test_the_mesh_mode_has_its_strain_energy_in_the_mesh() -> None:
-    modes = natural_modes(make_structure(), MEAN_STIFFNESS)
-    assert modes.mesh_share[-1] == pytest.approx(0.965, abs=0.005)
-    assert modes.mesh_share[0] == 0.0
-
-
-def test_one_free_rotation_without_any_mesh_are_two() -> None:
-    assert (natural_frequencies_hz(make_structure(), MEAN_STIFFNESS) == 0.0).sum() == 1
-    assert (natural_frequencies_hz(make_structure(), 0.0) == 0.0).sum() == 2
-
-
-def test_torsional_limit_of_the_mesh_mode() -> None:
-    structure = torsional(make_stage())
-    assert structure.mesh.mass_kg == pytest.approx(0.2124, abs=5e-5)
-    limit = np.sqrt(MEAN_STIFFNESS / structure.mesh.mass_kg) / (2.0 * np.pi)
-    assert limit == pytest.approx(6120.0, abs=1.0)
-    # The shafts stiffen it: (6300/R_b1² + 2100/R_b2²)/k = 3 % at most, half of that in frequency.
-    assert natural_frequencies_hz(structure, MEAN_STIFFNESS)[-1] == pytest.approx(limit, rel=0.015)
-    stiff = casing_structure(
-        make_stage(bearing_stiffness=1e14),
-        make_casing(bolts=Bolts(1e14, 1e14, 0.04, ((0.09, 0.0), (-0.09, 0.0)))),
-    )
-    rigid = natural_frequencies_hz(stiff, MEAN_STIFFNESS)
-    slow = rigid[rigid < 2e4]
-    np.testing.assert_allclose(slow[-1], natural_frequencies_hz(structure, MEAN_STIFFNESS)[-1], rtol=1e-4)
 
 
 def test_an_immovable_casing_leaves_the_eight_degrees_of_freedom() -> None:
@@ -115,22 +84,6 @@ def test_a_sensor_sees_translation_and_rocking_of_its_place() -> None:
     )  # one unit horizontally
     assert structure.motions["casing_lid/horizontal"] @ moved == pytest.approx(1.0)
     assert structure.motions["casing_lid/vertical"] @ moved == pytest.approx(0.0, abs=1e-15)
-
-
-@pytest.mark.parametrize("name", ["casing", "8dof", "torsional"])
-def test_sliding_vanishes_at_the_pitch_point_of_the_rigid_rotation(name: str) -> None:
-    stage = make_stage()
-    structure = {"casing": make_structure(), "8dof": eight_dof(stage), "torsional": torsional(stage)}[name]
-    rotation = vector(structure.coordinates, {"theta_1": 1.0, "theta_2": 18.0 / 47.0})
-    still, arm = structure.mesh.sliding @ rotation
-    assert -still / arm == pytest.approx(BASE_RADIUS_1 * np.tan(PRESSURE_ANGLE), rel=1e-12)
-    assert stage.line_of_action_m == pytest.approx((BASE_RADIUS_1 + BASE_RADIUS_2) * np.tan(PRESSURE_ANGLE))
-
-
-def test_friction_and_mesh_force_act_across_each_other() -> None:
-    for structure in (make_structure(), eight_dof(make_stage())):
-        moving = [i for i, name in enumerate(structure.coordinates) if name[0] in "xy"]
-        assert structure.mesh.vector[moving] @ structure.mesh.sliding[0, moving] == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("places", [(), ((0.09, 0.0),), ((0.09, 0.0), (0.09, 0.0))])

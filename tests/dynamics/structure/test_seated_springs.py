@@ -65,15 +65,6 @@ def test_springs_on_seats_that_give_way_are_those_of_a_model_with_the_seats() ->
     np.testing.assert_allclose(springs.damping, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
 
 
-def test_at_2_khz_the_dampers_behind_the_seats_are_off_by_little() -> None:
-    stiffness, damping, _ = whole_model()
-    springs, omega = found(), 2.0 * np.pi * 2000.0
-    exact = condensed(stiffness + 1j * omega * damping)
-    error = np.abs(springs.stiffness + 1j * omega * springs.damping - exact).max()
-    # the next order is (ω c/k)², 0.6 %, times the share of the seats' flexibility in the whole
-    assert error < 0.003 * np.abs(exact).max()
-
-
 def test_forces_between_shaft_and_seat_are_those_of_the_model_with_the_seats() -> None:
     stiffness, _, rows = whole_model()
     moved = np.array([1e-6, -2e-6, 3e-5, 0.5e-6])
@@ -82,9 +73,3 @@ def test_forces_between_shaft_and_seat_are_those_of_the_model_with_the_seats() -
     springs = found()
     assert springs.forces["a/vertical"][0] @ moved == pytest.approx(forces[0] + forces[1], rel=1e-9)
     assert springs.forces["b/vertical"][0] @ moved == pytest.approx(forces[2], rel=1e-9)
-
-
-def test_softer_seats_make_a_softer_whole() -> None:
-    stiff, soft = (np.linalg.eigvalsh(found(scale * FLEXIBILITY).stiffness) for scale in (1.0, 3.0))
-    assert (stiff - soft >= -1e-3).all()
-    assert stiff[-1] > 1.05 * soft[-1]

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from siggen.dynamics.structure.gear_stage import GearStage
 from siggen.dynamics.structure.structure import Element, Structure, assemble, eight_dof, vector
-from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 POSITIVE = st.floats(min_value=1e-3, max_value=1e3)
 
@@ -32,34 +31,12 @@ def test_rigid_rotation_deforms_nothing_and_torques_balance_on_it(stage: GearSta
     assert abs(structure.torque_vector @ rigid) < 1e-14
 
 
-def test_exactly_one_natural_frequency_is_zero(stage: GearStage) -> None:
-    frequencies = natural_frequencies_hz(eight_dof(stage), 3.36e8)
-    assert frequencies.size == 8
-    # Rounding of a zero eigenvalue: sqrt(1e-16) of 7.8 kHz is below 1 mHz; the lowest elastic mode lies at tens of Hz.
-    assert frequencies[0] < 1e-3
-    assert frequencies[1] > 10.0
-
-
-def test_natural_frequencies_of_the_published_parameter_set(structure: Structure) -> None:
-    # Published to whole hertz (the lowest two rounded), at the mean stiffness of that gear pair.
-    expected = [0.0, 38.0, 76.0, 799.0, 830.0, 1830.0, 2290.0, 7832.0]
-    np.testing.assert_allclose(natural_frequencies_hz(structure, 3.3599e8), expected, atol=1.0)
-
-
 def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: GearStage) -> None:
     structure = eight_dof(stage)
     p = dict(zip(structure.coordinates, structure.mesh.vector, strict=True))
     assert p["x_1"] == -p["x_2"] == pytest.approx(np.sin(stage.working_pressure_angle_rad))
     assert p["y_1"] == -p["y_2"] == pytest.approx(np.cos(stage.working_pressure_angle_rad))
     assert (p["theta_1"], p["theta_2"]) == (stage.pinion.base_radius_m, -stage.gear.base_radius_m)
-
-
-def test_torsional_limit_frequency_follows_from_the_equivalent_mesh_mass(stage: GearStage) -> None:
-    structure = eight_dof(stage)
-    rotations = [structure.coordinates.index(name) for name in ("theta_1", "theta_2")]
-    p = structure.mesh.vector[rotations]
-    inverse_mass = (p**2 / np.diag(structure.mass)[rotations]).sum()
-    assert structure.mesh.mass_kg == pytest.approx(1.0 / inverse_mass, rel=1e-14)
 
 
 @given(stiffness=POSITIVE, damping=POSITIVE, first=POSITIVE, second=POSITIVE)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.structure.casing_structure import casing_structure
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import Element, Structure, assemble, vector
+from siggen.dynamics.structure.structure import Element, Structure, assemble
 from siggen.dynamics.structure.tilting_shaft import Shaft, cantilever_compliance_m_per_n, crossed_ends, tilting_ends
 from tests.dynamics.casing_stage import MEAN_STIFFNESS, make_casing, make_stage, make_structure
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
@@ -105,32 +104,6 @@ def beam_stiffness_of_end(length: float) -> float:
     """Stiffness at the free end of a clamped beam, from one element."""
     free = timoshenko_element(length, SHAFT.diameter_m)[2:, 2:]
     return float(1.0 / np.linalg.inv(free)[0, 0])
-
-
-def test_a_gear_in_the_middle_does_not_tilt_under_the_mesh_force_and_one_beside_it_does() -> None:
-    for share, tilted in ((0.5, False), (0.35, True)):
-        structure = tilting_structure(replace(SHAFT, gear_share=share))
-        loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh.vector, structure.mesh.vector)
-        q = static_solution(structure, loaded, 30.0 * structure.torque_vector)
-        tilt = [q[structure.coordinates.index(f"phi_y_{i}")] for i in "12"]
-        assert bool(max(abs(t) for t in tilt) > 1e-7) is tilted
-
-
-def test_seats_of_tilting_shafts_carry_the_mesh_force() -> None:
-    structure = tilting_structure()
-    loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh.vector, structure.mesh.vector)
-    q = static_solution(structure, loaded, 30.0 * structure.torque_vector)
-    force = 30.0 / make_stage().pinion.base_radius_m * np.cos(make_stage().working_pressure_angle_rad)
-    for place, sign in (("pinion_bearing", -1.0), ("gear_bearing", 1.0)):
-        assert structure.bearing_forces[f"{place}/vertical"][0] @ q == pytest.approx(sign * force, rel=1e-8)
-
-
-def test_moving_everything_together_bends_no_shaft() -> None:
-    structure = tilting_structure()
-    moved = vector(structure.coordinates, {name: 1.0 for name in structure.coordinates if name.startswith("x_")})
-    bare = make_structure()
-    alone = vector(bare.coordinates, {name: 1.0 for name in bare.coordinates if name.startswith("x_")})
-    assert moved @ structure.stiffness @ moved == pytest.approx(alone @ bare.stiffness @ alone, rel=1e-9)
 
 
 def test_the_tilt_vector_takes_the_pinion_against_the_gear_in_the_plane_of_action() -> None:

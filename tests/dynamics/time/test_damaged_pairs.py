@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.friction.contact_kinematics import relative_radius
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_columns import CARRYING, FLANK, NORMAL
+from siggen.dynamics.mesh.pair_columns import CARRYING, NORMAL
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, static_force
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.time.response import SampleGrid, response_of
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import columns, contact_law, contact_of, gear_pair, motion, settled
-from tests.gears.builders import pit
 from tests.gears.pit_shapes import chord_pit
 
 PAIR = gear_pair()
@@ -37,27 +33,10 @@ def through_face(length_m: float, centre_m: float = PITCH_POINT):
 
 
 HEALTHY = contact_law()
-PLAIN = contact_law(friction=constant_friction(0.05))
-NOTHING = contact_law(
-    (pit(height_mm=1.6, depth_mm=0.0), pit(height_mm=1.6, a_mm=0.0)), friction=constant_friction(0.05)
-)
-
-
-@settings(deadline=None)
-@given(st.floats(-9e-5, 2e-5), st.floats(-0.05, 0.05), st.floats(0.0, 900.0))
-def test_damage_without_depth_or_width_is_none_to_the_bit(approach: float, rate: float, pitches: float) -> None:
-    np.testing.assert_array_equal(loaded(NOTHING, approach, pitches, rate), loaded(PLAIN, approach, pitches, rate))
 
 
 WIDE = (through_face(1.5e-3),)
 WIDE_LAW = contact_law(WIDE)
-
-
-def test_away_from_the_damaged_tooth_nothing_changes_to_the_bit() -> None:
-    for pitches in np.linspace(3.0, 17.0, 57):
-        np.testing.assert_array_equal(
-            loaded(WIDE_LAW, 5e-6, pitches)[:, : FLANK + 1], loaded(HEALTHY, 5e-6, pitches)[:, : FLANK + 1]
-        )
 
 
 @pytest.mark.parametrize(
@@ -71,10 +50,6 @@ def test_the_flank_sinks_by_the_sagitta_of_the_pit(length_mm: float, sink_um: fl
     assert found == pytest.approx(sink_um, rel=0.02)
 
 
-def test_lands_leave_no_sink() -> None:
-    assert contact_of((chord_pit(PAIR, 1.5e-3, PITCH_POINT, semi_face_m=5e-3),)).touch_m.max() == 0.0
-
-
 def test_the_static_mesh_carries_the_load_over_a_sink_with_one_or_two_pairs() -> None:
     for pitches in np.linspace(0.0, 1.8, 91):
         approach = static_approach_m(WIDE_LAW, FORCE, pitches)
@@ -84,15 +59,6 @@ def test_the_static_mesh_carries_the_load_over_a_sink_with_one_or_two_pairs() ->
     for share, deeper_um in ((1e-3, 42.0), (1.0, 43.4)):
         deeper = static_approach_m(WIDE_LAW, share * FORCE, ALONE) - static_approach_m(HEALTHY, share * FORCE, ALONE)
         assert 1e6 * deeper == pytest.approx(deeper_um, rel=0.01)
-
-
-def test_the_back_flank_knows_no_pits() -> None:
-    for pitches in np.linspace(0.0, 1.6, 17):
-        np.testing.assert_array_equal(
-            loaded(WIDE_LAW, -85e-6, pitches)[:, NORMAL], loaded(HEALTHY, -85e-6, pitches)[:, NORMAL]
-        )
-        # A floor deeper than the backlash switches on no back flank in normal drive.
-        assert (loaded(WIDE_LAW, 5e-6, pitches)[:, FLANK] >= 0.0).all()
 
 
 def test_what_carries_is_the_land_or_the_edges() -> None:

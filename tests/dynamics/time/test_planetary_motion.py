@@ -88,21 +88,6 @@ def test_a_damaged_tooth_of_the_sun_adds_lines_at_sums_of_passing_planets_and_tu
     assert found[places % 75 != 0].sum() > 1e-3 * found.sum()  # ten times what may stand elsewhere
 
 
-@pytest.mark.slow
-def test_the_mean_force_of_every_mesh_is_the_static_one(healthy):
-    motion, pitches, states = healthy
-    last = slice(pitches.size // 2, pitches.size - 1, 4)
-    values = motion.internals(states[last], pitches[last])
-    force = [values[:, i].mean() for i, n in enumerate(motion.internal_names) if n.endswith("_mesh_force_n")]
-    assert len(force) == 6
-    assert force == pytest.approx(motion.equations.static_force, rel=2e-3)
-
-
-@pytest.mark.slow
-def test_the_exponential_steps_keep_the_orders_whatever_their_length():
-    assert share_of_others(power(*run(2**15, kind=ExponentialMotion))) < 1e-4
-
-
 BEGUN = 1 / 16
 """Of a turn: nearly five pitches of every mesh."""
 

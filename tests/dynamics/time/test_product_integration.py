@@ -55,28 +55,6 @@ def test_without_jumps_the_approach_is_exact_where_the_stiffness_is_the_mean(
     np.testing.assert_allclose(coarse[:, PINION_RATE], fine[:, PINION_RATE], rtol=0.0, atol=2e-8 * 1e-3)
 
 
-def test_needs_a_tenth_of_the_runge_kutta_error_at_jumps(structure: Structure, sharp_tables: MeshTables) -> None:
-    equations, law, start = model(structure, sharp_tables)
-    finest = trajectory(ProductIntegration, equations, law, start, STEP / 32, STEPS * 32)[::32]
-    product = relative_error(trajectory(ProductIntegration, equations, law, start, STEP, STEPS), finest, PINION_RATE)
-    classical = relative_error(trajectory(RungeKutta, equations, law, start, STEP, STEPS), finest, PINION_RATE)
-    assert product < 0.1 * classical
-
-
-def test_contact_loss_agrees_with_small_runge_kutta_steps(structure: Structure) -> None:
-    # 0.5 N m of torque and a strike of the pinion: the flanks part and meet again several times.
-    equations, law, start = model(structure, make_tables(arched_row(65)[None, :]), torque=0.5, backlash=4e-6)
-    start = start.copy()
-    start[8 + 3] = -3.0
-    states = trajectory(ProductIntegration, equations, law, start, STEP, STEPS)
-    fine = trajectory(RungeKutta, equations, law, start, STEP / 128, STEPS * 128)[::128]
-    approach = np.array([approach_of(equations, 0, state)[0] for state in fine])
-    assert (approach < -2e-6).any()
-    assert (np.abs(approach) < 2e-6).mean() > 0.05
-    # Both meet the flank's edge at first order: the substep of 0.3 µs against the free flight of 0.1 ms.
-    assert relative_error(states, fine, 8 + 3) < 2e-2
-
-
 def test_a_force_from_outside_goes_on_while_the_flanks_are_apart(structure: Structure) -> None:
     equations, law, start = model(structure, make_tables(arched_row(65)[None, :]), torque=0.5, backlash=4e-6)
     row = np.zeros((1, 8))
@@ -117,12 +95,6 @@ def test_response_weights_are_the_integrals_they_stand_for(structure: Structure,
     # Twelve nodes are exact for the smooth kernel; both sides lose digits to the size of M⁻¹K.
     scale = np.abs(expected).max(axis=0)
     assert (np.abs(constants.response[:, :16] - expected) <= 1e-10 * scale).all()
-
-
-def test_same_bytes_every_time(structure: Structure, sharp_tables: MeshTables) -> None:
-    equations, law, start = model(structure, sharp_tables)
-    runs = [trajectory(ProductIntegration, equations, law, start, STEP, 500).tobytes() for _ in range(2)]
-    assert runs[0] == runs[1]
 
 
 def test_no_cubic_dips_deeper_below_its_ends_than_the_bound_on_its_slopes() -> None:

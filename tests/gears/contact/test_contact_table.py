@@ -16,9 +16,7 @@ from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
 from siggen.gears.contact.pair_rest import pair_rest
 from siggen.gears.contact.table_columns import (
-    ACROSS,
     CARRYING,
-    ENERGY,
     FORCE,
     NO_ENERGY,
     SLOPE,
@@ -26,7 +24,6 @@ from siggen.gears.contact.table_columns import (
     node_places_m,
 )
 from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
-from siggen.gears.contact.tilt_rays import UPRIGHT
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.spall import Spall
@@ -126,13 +123,6 @@ def test_the_table_gives_the_force_of_the_solver(damage: Damage) -> None:
     assert share.max() < 1.5e-2
 
 
-def test_away_from_damage_a_damaged_tooth_is_a_healthy_one() -> None:
-    found = table(through_the_face())
-    for place in (20.5, POINTS - 30.25):
-        approach = np.array([2e-6, 8e-6])
-        np.testing.assert_array_equal(from_table(found, 1, place, approach), from_table(found, 0, place, approach))
-
-
 def test_a_crack_that_shows_on_no_flank_is_felt_along_the_whole_path() -> None:
     cracked = (Hinge("pinion", 3, depth_m=1e-3, spring_nm_per_rad=2e4),)
     found, approach = table(cracked), np.array([4e-6, 8e-6])
@@ -191,16 +181,6 @@ def test_missing_material_across_the_face_is_carried_by_the_near_end_first() -> 
     middle = OPTIONS.healthy_columns // 2
     assert tilted.upright[middle, 4, CARRYING] < 0.5 * even.upright[middle, 4, CARRYING]
     assert tilted.upright[middle, 4, FORCE] < even.upright[middle, 4, FORCE]
-
-
-def test_a_face_without_damage_and_lead_has_no_moment() -> None:
-    tilting = contact_table(gear_pair(), (), STIFFNESS, OPTIONS._replace(tilts=True), POINTS)
-    assert np.abs(tilting.upright[:, :, ACROSS]).max() < 1e-9 * FORCE_N * tilting.half_face_m
-    energy = tilting.curves[:, 8, :, ENERGY]
-    np.testing.assert_allclose(energy, energy[:, ::-1], rtol=1e-6)
-    # It takes energy to bring a face nearer by the same way as a whole, and none where a rigid corner comes to touch.
-    assert (np.diff(energy[:, UPRIGHT:], axis=1) < 0.0).all()
-    assert (energy[:, -1] == 0.0).all()
 
 
 def test_the_stated_error_is_that_of_direct_solutions() -> None:

@@ -28,15 +28,6 @@ from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_
 GAP, TIPS, RADII = (0.5e-3, 0.05e-3, 0.2e-3, 0.2e-3), (-NO_EDGE, -NO_EDGE), (RADIUS, 0.0)
 
 
-def test_a_slice_that_is_all_but_covered_or_free_has_the_law_of_gap_or_land() -> None:
-    for load in (0.05e-6, 0.3e-6, 1e-6):
-        plain = gap_sink(*GAP, *RADII, load)
-        nearly, hardly = (covered_sink(CoveredSlice(GAP, TIPS, c, 1.2, RADII), load) for c in (1.0 - 1e-9, 1e-9))
-        assert nearly.sink_m == pytest.approx(plain.sink_m, rel=1e-6)
-        assert nearly.slope == pytest.approx(plain.slope, rel=1e-5)
-        assert hardly.sink_m == pytest.approx(0.0, abs=1e-8 * load)
-
-
 def test_the_sink_is_that_of_the_least_energy_and_its_slope_its_derivative() -> None:
     """Independent: the energy of land and gap summed finely and searched for its least value."""
     covered, spread = 0.4, spread_of_cells(1.28)
@@ -82,13 +73,6 @@ def test_the_force_follows_the_end_of_a_spall_within_a_slice() -> None:
     steps = -np.diff(forces)
     assert np.all(steps > 0.0)
     assert steps.max() < 3.0 * steps.mean()
-
-
-def test_the_moment_of_a_spall_at_either_end_mirrors() -> None:
-    soft = {"teeth": BENDING, "rest": 0.25 * REST, "slices": 97}
-    one, other = (solve(part_spall(0.3e-3, half=3.3e-3, place=s * 6e-3, **soft), 12e-6, s * 3e-4)[0] for s in (1, -1))
-    assert one.force_n == pytest.approx(other.force_n, rel=1e-9)
-    assert one.moment_n_m == pytest.approx(-other.moment_n_m, rel=1e-8)
 
 
 def test_slices_know_which_part_of_them_damage_covers() -> None:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_force import face_force
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
@@ -56,16 +55,6 @@ def test_a_face_of_nine_depths_is_one_per_cent_stiffer_than_an_endless_line():
 
 
 SOFT = {"teeth": BENDING, "rest": 0.25 * REST}
-
-
-@pytest.mark.parametrize("teeth", [{}, SOFT], ids=["rigid", "bending"])
-def test_a_spall_through_the_face_touches_at_the_rigid_sink(teeth):
-    # that of `slice_contact.sink_depths` (test_two_edges)
-    for offset in (0.0, 0.2e-3, 0.45e-3):
-        whole = spall(offset, half=WIDTH, **teeth)
-        sink = (0.6e-3 - abs(offset)) ** 2 / (2.0 * whole.radius_m)
-        assert solve(whole, sink - 1e-9)[0].force_n == 0.0
-        assert solve(whole, sink + 1e-9)[0].force_n > 0.0
 
 
 @pytest.mark.parametrize(
@@ -210,43 +199,3 @@ def test_force_rises_with_the_approach_and_its_slope_has_no_jump(make, tilt):
     # under a tilt slices of land touch one by one, each with its 200th of the face; 20 nm may see two of them
     away = np.abs(curve.stiffness_n_per_m - slope)[1:-1][touching[:-2]]
     assert away.max() < 0.015 * curve.stiffness_n_per_m.max()
-
-
-def test_the_slope_starts_from_zero_at_first_touch():
-    slices = face()
-    stiffness = [solve(slices, d)[0].stiffness_n_per_m for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7)]
-    assert np.all(np.diff(stiffness) > 0.0)
-    contact = [1.0 / (1.0 / k - REST) for k in stiffness]
-    # Weber and Banaschek's tangent, L/(κ (ln(2 h/a) - ...)): every decade of load adds ln(10)/2 to the bracket
-    per_hundred = np.diff([WIDTH / (k * 5.6236e-12) for k in contact])
-    np.testing.assert_allclose(per_hundred[:2], -np.log(10.0), rtol=0.03)
-
-
-@pytest.mark.parametrize("teeth", [{}, SOFT], ids=["rigid", "bending"])
-def test_the_moment_balances_the_loads_and_mirrors_with_them(teeth):
-    slices = spall(0.1e-3, skew=0.05, **teeth)
-    answer, loads = solve(slices, 14e-6, 0.1e-3)
-    line = loads / slices.kappa_per_pa * slices.kernel.cell_m
-    assert answer.force_n == pytest.approx(line.sum(), rel=1e-10)
-    assert answer.moment_n_m == pytest.approx(line @ slices.face_m, rel=1e-10)
-    mirrored = slices._replace(left_m=slices.left_m[::-1].copy(), right_m=slices.right_m[::-1].copy())
-    other, _ = solve(mirrored, 14e-6, -0.1e-3)
-    assert other.force_n == pytest.approx(answer.force_n, rel=1e-9)
-    assert other.moment_n_m == pytest.approx(-answer.moment_n_m, rel=1e-9)
-    even, _ = solve(spall(0.0, **teeth), 14e-6)
-    assert abs(even.moment_n_m) < 1e-10 * even.force_n * WIDTH
-
-
-def test_the_share_on_damage_runs_from_none_to_all():
-    # between touching lands and gaps that carry as well
-    assert solve(spall(0.0), 8e-6)[0].on_damage == 0.0
-    assert 0.0 < solve(spall(0.5e-3), 14e-6)[0].on_damage < 1.0
-    assert solve(spall(0.0, half=WIDTH), 32e-6)[0].on_damage == pytest.approx(1.0)
-
-
-def test_the_answer_does_not_depend_on_the_guess():
-    slices = spall(0.55e-3, skew=0.01)
-    cold, loads = solve(slices, 14e-6, 0.1e-3)
-    warm = face_force(slices, 14e-6, 0.1e-3, loads[::-1].copy(), solver_room(200))
-    assert warm.force_n == pytest.approx(cold.force_n, rel=1e-9)
-    assert warm.moment_n_m == pytest.approx(cold.moment_n_m, rel=1e-8)

@@ -7,7 +7,7 @@ import pytest
 
 from siggen.gears.contact.own_width import mean_width, own_law
 from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
-from tests.gears.contact.faces import BENDING, KAPPA, REST, WIDTH, face, solve, spall
+from tests.gears.contact.faces import BENDING, KAPPA, REST, WIDTH, face, solve
 
 LENGTH, COMPLIANCE = 4e-3, 3e-9
 
@@ -24,32 +24,6 @@ def test_the_kernel_is_greens_function_of_a_tooth_with_free_ends() -> None:
     np.testing.assert_allclose(found, means, atol=5e-5 * means.max())
     scaled = tooth_kernel(unit_tooth(cells, WIDTH, LENGTH), COMPLIANCE, WIDTH, KAPPA)
     np.testing.assert_allclose(tooth_matrix(scaled), COMPLIANCE * WIDTH / KAPPA * found, rtol=1e-12)
-
-
-@pytest.mark.parametrize("length", [1e-5, 0.5e-3, 3e-3, 1.0, np.inf])
-def test_an_even_load_deflects_the_tooth_evenly_whatever_its_length(length: float) -> None:
-    matrix = tooth_matrix(unit_tooth(100, WIDTH, length))
-    np.testing.assert_allclose(matrix.sum(axis=1), 1.0, rtol=1e-13)
-    assert np.linalg.eigvalsh(matrix).min() > -1e-12
-
-
-@pytest.mark.parametrize("length", [1e-3, 4.8e-3, 1e-1])
-def test_a_wave_across_the_face_decays_by_its_length(length: float) -> None:
-    # the cosine modes of free ends: 1/(1 + (n pi l/b)²); cells average the wave twice, (n pi/400)²/3 = 5e-4
-    y, matrix = (np.arange(200) + 0.5) / 200, tooth_matrix(unit_tooth(200, WIDTH, length))
-    for number in (1, 2, 5):
-        wave = np.cos(number * np.pi * y)
-        expected = 1.0 / (1.0 + (number * np.pi * length / WIDTH) ** 2)
-        np.testing.assert_allclose(matrix @ wave, expected * wave, atol=6e-4)
-
-
-def test_a_tooth_without_end_in_its_length_is_rigid_across_the_face() -> None:
-    soft = spall(0.1e-3, skew=0.05, teeth=(np.inf, 0.75 * REST), rest=0.25 * REST)
-    stiff = spall(0.1e-3, skew=0.05)
-    for tilt in (0.0, 0.1e-3):
-        one, two = solve(soft, 14e-6, tilt)[0], solve(stiff, 14e-6, tilt)[0]
-        assert one.force_n == pytest.approx(two.force_n, rel=1e-9)
-        assert one.moment_n_m == pytest.approx(two.moment_n_m, rel=1e-9)
 
 
 def test_the_pair_carries_as_a_full_matrix_of_line_and_teeth_does() -> None:

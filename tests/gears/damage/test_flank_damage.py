@@ -10,8 +10,6 @@ from hypothesis import strategies as st
 
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights
-from siggen.gears.damage.pit import Pit
-from siggen.gears.damage.tooth_damage import damaged_teeth, pits_of
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, pair_stiffness
 from tests.gears.builders import layers, pair_18_47, pit
 from tests.gears.stiffness.test_sections import pits
@@ -52,13 +50,6 @@ def test_impossible_pits_are_named_with_index_value_and_limit(bad, received, all
     assert str(problems[0]).startswith("pit 1: received ")
 
 
-def test_depth_is_judged_where_the_tooth_is_thinnest_over_the_pit():
-    tip = PAIR.pinion.tip_half_thickness_m * 1e3
-    high = flank_heights(PAIR.pinion)[1] * 1e3 - 0.05
-    assert damage_problems(PAIR, (pit(high, b_mm=0.2, depth_mm=tip * 1.001),))
-    assert not damage_problems(PAIR, (pit(high, b_mm=0.2, depth_mm=tip * 0.999),))
-
-
 def test_a_whole_contact_length_must_not_be_lost_on_one_flank():
     chain = tuple(pit(1.9, w, 1.2, 0.3, depth_mm=0.3) for w in range(0, 21, 2))
     problems = damage_problems(PAIR, (pit(tooth=3), *chain))
@@ -82,17 +73,6 @@ def test_a_whole_contact_length_must_not_be_lost_by_two_mating_flanks_together()
     assert "together with gear tooth 30" in problems[0].received
 
 
-def test_mating_flanks_that_never_meet_may_be_damaged_alike():
-    # 18 and 48 teeth share the factor 6: tooth 0 meets every sixth tooth only.
-    pair = replace(PAIR, gear=replace(PAIR.gear, teeth=48))
-    s = pair.pitch_point_m
-    one = pit(float(pair.pinion.height_m(s / pair.pinion.base_radius_m)) * 1e3, 0.0, 12.0, 0.3, 0.2)
-    height = float(pair.gear.height_m((pair.line_of_action_m - s) / pair.gear.base_radius_m)) * 1e3
-    two = replace(pit(height, 20.0, 12.0, 0.3, 0.2), gear="gear")
-    assert damage_problems(pair, (one, replace(two, tooth=6)))
-    assert damage_problems(pair, (one, replace(two, tooth=7))) == ()
-
-
 @settings(max_examples=60, deadline=None)
 @given(st.lists(pits, min_size=1, max_size=10), st.sampled_from(["pinion", "gear"]))
 def test_damage_without_problems_has_a_positive_stiffness_everywhere(layout, which):
@@ -103,26 +83,3 @@ def test_damage_without_problems_has_a_positive_stiffness_everywhere(layout, whi
     s = [start + (end - start) * i / 40 for i in range(41)]
     found = pair_stiffness(PAIR, s, StiffnessOptions(), **{f"{which}_pits": damage})
     assert (found > 0).all()
-
-
-@settings(max_examples=100, deadline=None)
-@given(
-    st.lists(
-        st.builds(
-            Pit,
-            st.sampled_from(["pinion", "gear", "rim"]),
-            st.integers(-2, 60),
-            *[st.floats(-0.01, 0.03) | st.just(float("nan"))] * 5,
-            st.sampled_from(["flat", "dish", "hole"]),
-        ),
-        max_size=4,
-    )
-)
-def test_damage_problems_never_raises(layout):
-    assert all(0 <= problem.index < len(layout) for problem in damage_problems(PAIR, tuple(layout)))
-
-
-def test_pits_are_found_by_gear_and_tooth():
-    damage = (pit(tooth=4), pit(tooth=2), pit(tooth=4, gear="gear"))
-    assert damaged_teeth(damage, "pinion") == (2, 4)
-    assert pits_of(damage, "gear", 4) == (damage[2],)

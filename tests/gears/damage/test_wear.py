@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 from math import hypot, sqrt
 
 import numpy as np
@@ -62,25 +61,6 @@ def test_a_pass_takes_the_coefficient_times_the_work_of_sliding_from_either_gear
         assert volume == pytest.approx(COEFFICIENT * work, rel=1e-4)
 
 
-def test_nothing_wears_at_the_pitch_point_and_most_at_the_pinions_root() -> None:
-    worn = worn_until(PAIR, rigid, COEFFICIENT, depth_m=20e-6)
-    assert np.interp(PAIR.pitch_point_m, PATH, worn.pinion_m) < 0.02 * worn.largest_m  # linear beside the point itself
-    assert turn_factors(PAIR, np.array([PAIR.pitch_point_m]), 1.0)[0][0] == pytest.approx(0.0, abs=1e-12)
-    assert worn.largest_m == pytest.approx(20e-6, rel=1e-12)
-    assert worn.pinion_m[0] == worn.largest_m
-    assert worn.gear_m.max() == worn.gear_m[-1]
-
-
-def test_under_a_load_that_stays_depth_is_turns_times_that_of_one() -> None:
-    turns = 1e6
-    worn = worn_until(PAIR, rigid, COEFFICIENT, turns=turns)
-    factors = turn_factors(PAIR, PATH, COEFFICIENT)
-    for found, factor in zip((worn.pinion_m, worn.gear_m), factors, strict=True):
-        np.testing.assert_allclose(found, turns * factor * shared(PAIR, PATH), rtol=1e-9)
-    back = worn_until(PAIR, rigid, COEFFICIENT, depth_m=worn.largest_m)
-    assert back.turns == pytest.approx(turns, rel=1e-9)
-
-
 def test_the_other_gear_as_driver_wears_the_same() -> None:
     """The way of a pair runs backwards, and a turn of the new driver is another time."""
     swapped = replace(PAIR, pinion=PAIR.gear, gear=PAIR.pinion)
@@ -94,19 +74,6 @@ def test_the_other_gear_as_driver_wears_the_same() -> None:
     same = np.isclose(worn.pinion_m, other.gear_m[::-1], rtol=1e-9, atol=1e-15)
     assert np.count_nonzero(~same) <= 2
     assert other.turns == pytest.approx(worn.turns * 18 / 47, rel=1e-9)
-
-
-def test_more_wear_is_nowhere_less_deep_and_hides_the_milder() -> None:
-    softening = [5e-6, 7.3e-6, 20e-6]
-    found = [worn_until(PAIR, _yielding, COEFFICIENT, depth_m=depth) for depth in softening]
-    parts = [Wear("pinion", tuple(one.pinion_m.tolist())) for one in found]
-    for milder, deeper in pairwise(parts):
-        assert deeper.hides(milder)
-        assert not milder.hides(deeper)
-
-
-def _yielding(position_m: FloatArray, pinion_m: FloatArray, gear_m: FloatArray) -> AtRest:
-    return AtRest(shared(PAIR, position_m) * np.exp(-(pinion_m + gear_m) / 10e-6), 20e-6)
 
 
 def test_worn_flanks_miss_their_depth_on_all_teeth_and_two_of_them_the_deeper() -> None:

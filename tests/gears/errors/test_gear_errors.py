@@ -12,7 +12,7 @@ from siggen.gears.errors.error_shapes import FLANK_POINTS, slopes, without_line
 from siggen.gears.errors.gear_errors import deviations, eccentric_m, gear_errors
 from siggen.gears.geometry.gear_pair import GearPair
 from tests.gears.builders import pair_18_47, spur_gear
-from tests.gears.erroneous_gears import drawn, limits, named, only_eccentric, shapes
+from tests.gears.erroneous_gears import drawn, limits, only_eccentric, shapes
 
 PAIR = pair_18_47(module_m=3e-3, bores_m=(10e-3, 15e-3))
 SMALL = GearPair(spur_gear(9, 3e-3, 4e-3, 0.5), spur_gear(11, 3e-3, 5e-3, 0.5), 20e-3, 206e9, 0.3)
@@ -68,20 +68,6 @@ def test_eccentricity_moves_all_pairs_in_mesh_alike() -> None:
     np.testing.assert_allclose(newer, np.roll(older, 1, axis=0), atol=1e-20)
 
 
-def test_no_share_of_the_tolerances_is_a_perfect_gear() -> None:
-    errors = drawn(PAIR, "pinion", 4, share=0.0)
-    assert errors.eccentricity_m == 0.0
-    for values in (errors.pitch_m, errors.slope_m, errors.form_m):
-        assert not values.any()
-
-
-def test_teeth_and_gears_differ() -> None:
-    errors, other = drawn(PAIR, "pinion", 4), drawn(PAIR, "pinion", 5)
-    assert np.unique(errors.pitch_m).size == np.unique(errors.slope_m).size == 18
-    assert np.unique(errors.form_m, axis=0).shape == (18, FLANK_POINTS)
-    assert not np.isclose(errors.pitch_m, other.pitch_m, rtol=1e-6, atol=0.0).any()
-
-
 def test_slopes_are_those_of_one_tool_and_waves_have_the_cycles_that_were_asked_for() -> None:
     errors = drawn(PAIR, "gear", 8)
     assert (np.sign(errors.slope_m) == np.sign(errors.slope_m[0])).all()
@@ -92,16 +78,6 @@ def test_slopes_are_those_of_one_tool_and_waves_have_the_cycles_that_were_asked_
     cycles = spectrum.argmax(axis=1) / 20.0
     # Freeing a wave of its line pulls its peak by up to half a cycle.
     assert ((cycles > 2.0) & (cycles < 4.0)).all()
-
-
-def test_further_teeth_leave_the_shapes_of_those_before_them() -> None:
-    few, many = (shapes(teeth, 2) for teeth in (18, 19))
-    assert few.phase_rad == many.phase_rad
-    np.testing.assert_array_equal(few.slope, many.slope[:18])
-    draws = named(2)
-    waves = draws("waves").uniform(2.5, 3.5, 19)
-    np.testing.assert_array_equal(waves[:18], named(2)("waves").uniform(2.5, 3.5, 18))
-    np.testing.assert_array_equal(few.form, many.form[:18])
 
 
 def test_wrong_numbers_are_refused() -> None:

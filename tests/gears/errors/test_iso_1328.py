@@ -5,7 +5,7 @@ from math import sqrt
 
 import pytest
 
-from siggen.gears.errors.iso_1328 import CLASSES, FlankTolerances, flank_tolerances, outside_iso_1328
+from siggen.gears.errors.iso_1328 import CLASSES, flank_tolerances, outside_iso_1328
 from tests.gears.builders import spur_gear
 
 WIDTH_M = 20e-3
@@ -71,14 +71,6 @@ def test_the_first_edition_of_the_standard_allowed_about_the_same(teeth: int) ->
         assert 1e6 * getattr(found, name) == pytest.approx(first, rel=0.20), name
 
 
-def test_two_classes_double_every_tolerance() -> None:
-    gear = spur_gear(18, 3e-3)
-    for accuracy_class in range(1, 10):
-        fine, coarse = (flank_tolerances(gear, WIDTH_M, c) for c in (accuracy_class, accuracy_class + 2))
-        for name in FlankTolerances.__slots__:
-            assert getattr(coarse, name) == pytest.approx(2.0 * getattr(fine, name), rel=1e-12)
-
-
 @pytest.mark.parametrize("accuracy_class", [0, 12, 5.5, -1])
 def test_classes_that_do_not_exist_are_refused(accuracy_class: int) -> None:
     assert accuracy_class not in CLASSES
@@ -102,8 +94,3 @@ def test_gears_outside_the_standard_are_refused_by_name(
     assert len(outside_iso_1328(gear, 1e-3 * width_mm)) == 1
     with pytest.raises(ValueError, match=name):
         flank_tolerances(gear, 1e-3 * width_mm, 6)
-
-
-@pytest.mark.parametrize(("teeth", "module_mm", "width_mm"), [(10, 0.5, 4.0), (100, 70.0, 1200.0)])
-def test_the_ends_of_the_range_belong_to_it(teeth: int, module_mm: float, width_mm: float) -> None:
-    assert not outside_iso_1328(spur_gear(teeth, 1e-3 * module_mm, 1e-4), 1e-3 * width_mm)

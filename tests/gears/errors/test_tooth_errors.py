@@ -27,14 +27,6 @@ def erroneous(seed: int = 1, share: float = 0.4) -> MissingMaterial:
     return with_errors(perfect(), PAIR, pinion, gear)
 
 
-def test_errors_of_no_size_change_no_bit() -> None:
-    ideal, zero = perfect(), erroneous(share=0.0)
-    for which, teeth in (("pinion", 18), ("gear", 47)):
-        before, after = getattr(ideal, which), getattr(zero, which)
-        assert after.profile_m.tobytes() == np.repeat(before.profile_m, teeth, axis=0).tobytes()
-        assert not after.offset_m.any()
-
-
 def test_tables_hold_what_a_machine_measures() -> None:
     ideal, missing = perfect(), erroneous()
     position = np.linspace(missing.start_m, missing.end_m, missing.pinion.profile_m.shape[1])
@@ -100,12 +92,6 @@ def test_the_unloaded_transmission_error_is_that_of_the_first_pair_that_touches(
     np.testing.assert_allclose(unloaded_transmission_error_m(PAIR, missing, pitches), expected, atol=1e-17)
 
 
-def test_perfect_gears_transmit_exactly() -> None:
-    pitches = np.linspace(0.0, 5.0, 301)
-    exact = unloaded_transmission_error_m(PAIR, missing_material(PAIR, None), pitches)
-    np.testing.assert_allclose(exact, 0.0, atol=1e-12)
-
-
 def lines(missing: MissingMaterial) -> np.ndarray:
     """Return amplitudes of the unloaded error over lines per hunting period: mesh 846, shafts 47 and 18 [m]."""
     per_mesh = 64
@@ -127,12 +113,3 @@ def test_the_unloaded_transmission_error_shows_the_orders_of_both_shafts() -> No
         assert spectrum[line] == pytest.approx(whole, abs=0.35 * stepped), which
     others = np.delete(spectrum[1:400], [n - 1 for n in range(1, 400) if n % 47 == 0 or n % 18 == 0])
     assert others.max() < 0.25 * min(spectrum[line] for line in orders.values())
-
-
-def test_one_eccentric_gear_shows_its_own_orders_alone() -> None:
-    e = 5e-6
-    missing = with_errors(perfect(), PAIR, only_eccentric(PAIR, "pinion", 0.0), only_eccentric(PAIR, "gear", e))
-    spectrum = lines(missing)
-    assert spectrum[18] == pytest.approx(e, rel=1e-3)
-    foreign = [n for n in range(1, spectrum.size) if n % 18 and n % HUNTING]
-    assert spectrum[foreign].max() < 1e-6 * e

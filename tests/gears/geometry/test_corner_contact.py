@@ -7,7 +7,6 @@ from siggen.arrays import FloatArray
 from siggen.gears.geometry.corner_contact import tip_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair, ring_round
-from siggen.gears.geometry.missing_material import missing_material
 from tests.dynamics.pair_runs import gear_pair
 from tests.gears.builders import spur_gear
 
@@ -35,13 +34,6 @@ def test_near_the_end_the_gap_is_the_parabola_of_the_curvatures(which: str) -> N
     found = tip_gap_m(pair, which, np.array([end - small if which == "gear" else end + small]))[0]
     # Second order in a distance of 1e-6 m against radii of 1e-3 m; angles of 1 rad leave 3e-18 m of 8e-11 m.
     assert found == pytest.approx(law, rel=3e-3)
-
-
-@pytest.mark.parametrize("which", ["gear", "pinion"])
-def test_on_the_path_of_contact_no_corner_leaves_a_gap(which: str) -> None:
-    pair = gear_pair()
-    inside = np.linspace(pair.contact_start_m, pair.contact_end_m, 101)
-    assert (tip_gap_m(pair, which, inside) == 0.0).all()
 
 
 def planet_in_ring() -> InternalPair:
@@ -93,11 +85,3 @@ def test_corners_in_a_ring_leave_the_gap_of_turned_outlines_and_less_than_outsid
     assert small < 0.25 * 42.9e-6 * (1e-4 / 0.886e-3) ** 2 * 1.1  # of sun and planet 0.15 pitches beside their path
     inside = np.linspace(pair.contact_start_m, pair.contact_end_m, 101)
     assert (tip_gap_m(pair, which, inside) == 0.0).all()
-
-
-def test_corners_are_followed_until_they_have_parted_by_ten_times_a_usual_deflection() -> None:
-    outer = GearPair(spur_gear(25, 2e-3, 8e-3), spur_gear(26, 2e-3, 8e-3), 20e-3, 206e9, 0.3)
-    for pair in (outer, planet_in_ring()):
-        found = missing_material(pair)
-        assert found.gear.profile_m[0, 0] > 30e-6
-        assert found.pinion.profile_m[0, -1] > 30e-6

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.stiffness.body_coupling import body_coupling, neighbour_compliance, ring_torsion
 from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.coupled_pairs import approach_forces
 from siggen.gears.stiffness.coupled_rows import coupled_contributions, neighbour_runs
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness, pairs_in_contact
 from siggen.gears.stiffness.mesh_tables import (
@@ -21,7 +20,6 @@ from siggen.gears.stiffness.mesh_tables import (
     largest_stiffness_loss,
     mesh_tables,
     pair_kinds,
-    table_error,
 )
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -53,16 +51,6 @@ def test_ring_torsion_is_the_integrated_shear_of_a_ring():
     assert ring_torsion(gear, 0.3) == pytest.approx(slow, rel=1e-8)
 
 
-def test_a_ring_without_thickness_does_not_twist():
-    thin = replace(PAIR.pinion, bore_radius_m=PAIR.pinion.root_radius_m * (1 - 1e-9))
-    assert ring_torsion(thin, 0.3) == pytest.approx(0.0, abs=1e-8)
-
-
-def test_teeth_far_apart_share_the_twist_alone():
-    roll = np.array([0.1, 0.3])
-    np.testing.assert_array_equal(neighbour_compliance(PAIR.gear, roll, 3, 0.3), ring_torsion(PAIR.gear, 0.3))
-
-
 @settings(max_examples=60, deadline=None)
 @given(teeth=st.integers(17, 100), ratio=st.floats(1.4, 7.0))
 def test_a_neighbour_deflects_a_tooth_more_the_nearer_it_is_and_less_than_its_own_load(teeth, ratio):
@@ -77,29 +65,6 @@ def test_a_neighbour_deflects_a_tooth_more_the_nearer_it_is_and_less_than_its_ow
     assert np.all(near > neighbour_compliance(gear, lower, 2, 0.3))
     # Both forces stay positive at equal approach.
     assert np.all(near < np.minimum(own, mate))
-
-
-def test_coupling_falls_with_modulus_and_face_width_only():
-    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 11)
-    stiff = replace(PAIR, youngs_modulus_pa=2 * PAIR.youngs_modulus_pa, face_width_m=3 * PAIR.face_width_m)
-    np.testing.assert_allclose(
-        body_coupling(PAIR, BODY, position), 6 * body_coupling(stiff, BODY, position), rtol=1e-14
-    )
-    np.testing.assert_allclose(
-        body_coupling(pair_18_47(7e-3, (25e-3, 40e-3)), BODY, 2 * position),
-        body_coupling(PAIR, BODY, position),
-        rtol=1e-12,
-    )
-    assert not body_coupling(PAIR, PLAIN, position).any()
-
-
-@pytest.mark.parametrize("pair", [PAIR, tall_pair(), pair_18_47(shifts=(0.3, -0.1))], ids=["18/47", "tall", "shifted"])
-def test_swapping_driver_and_driven_mirrors_the_coupling(pair):
-    mirrored = replace(pair, pinion=pair.gear, gear=pair.pinion)
-    position = np.linspace(pair.contact_start_m, pair.contact_end_m - pair.base_pitch_m, 9)
-    there = mirrored.line_of_action_m - position - pair.base_pitch_m
-    one, two = body_coupling(pair, BODY, position)[0], body_coupling(mirrored, BODY, there)[0]
-    np.testing.assert_allclose(one, two, rtol=1e-12)
 
 
 def dense_stiffness(pair, angle, damage):
@@ -138,32 +103,11 @@ def test_coupling_softens_where_pairs_share_the_load_and_nowhere_else():
     assert np.all(mesh_stiffness(PAIR, angle, BODY, DAMAGE) <= mesh_stiffness(PAIR, angle, BODY) * (1 + 1e-14))
 
 
-def test_a_pair_without_contact_carries_nothing_and_its_neighbour_all():
-    # Damage through the face can leave one of two pairs open; the limit of a vanishing spring must be the open pair.
-    newest = np.array([PAIR.contact_start_m])
-    other = float(pair_stiffness(PAIR, newest + PAIR.base_pitch_m, BODY)[0])
-    open_pair = approach_forces(PAIR, BODY, newest, np.array([[0.0], [other]]))
-    np.testing.assert_array_equal(open_pair, [[0.0], [other]])
-    nearly = approach_forces(PAIR, BODY, newest, np.array([[1e-9 * other], [other]]))
-    np.testing.assert_allclose(nearly[1], other, rtol=1e-8)  # the spring's share of the load
-
-
 def test_the_loss_of_damage_through_the_face_is_known_with_coupling_where_two_pairs_share_the_load():
     # An ellipse far wider than the face, 2 mm high about the pitch point: it reaches into the zone of two pairs, where
     # the damaged pair is open beside another one.
     through = pit(1.9, 10.0, 500.0, 1.0, 0.1)
     assert largest_stiffness_loss(PAIR, (through,), BODY) == 1.0
-
-
-def test_forces_without_coupling_are_the_pairs_own_stiffness():
-    stiffness = np.array([[1.0, 2.0], [3.0, 4.0]])
-    newest = np.full(2, PAIR.contact_start_m)
-    assert np.array_equal(approach_forces(PAIR, PLAIN, newest, stiffness), stiffness)
-    soft = np.full((2, 1), 1e-3)
-    # Teeth that are far softer than the body do not notice each other.
-    np.testing.assert_allclose(approach_forces(PAIR, BODY, newest[:1], soft), soft, rtol=1e-10)
-    with pytest.raises(ValueError, match="own compliance is below"):
-        approach_forces(PAIR, BODY, newest[:1], np.array([[1e9], [1e15]]))
 
 
 @pytest.mark.parametrize(("pair", "damage"), [(PAIR, DAMAGE), (tall_pair(), ())], ids=["18/47 damaged", "tall"])
@@ -188,22 +132,6 @@ def test_contributions_add_up_to_the_mesh_stiffness_and_never_jump(pair, damage)
     step = 1e-7 * pair.base_pitch_m
     near = [coupled_contributions(pair, BODY, runs[:1], alone, s)[0] for s in (fine[:-1], fine[:-1] + step)]
     np.testing.assert_allclose(near[1], near[0], rtol=1e-5)
-
-
-def test_without_coupling_contributions_are_the_pairs_stiffness():
-    tables = mesh_tables(PAIR, DAMAGE, PLAIN, points=129)
-    assert tables.coupled is None
-    assert tables.contributions_n_per_m is tables.pair_stiffness_n_per_m
-    assert tables.row_of_pair is tables.table_of_pair
-    coupled = mesh_tables(PAIR, DAMAGE, BODY, points=129)
-    assert np.array_equal(coupled.pair_stiffness_n_per_m, tables.pair_stiffness_n_per_m)
-    assert coupled.coupled is not None
-    assert coupled.coupled.coupling_m_per_n.shape == (1, 129)
-
-
-def test_interpolation_of_contributions_errs_at_the_zone_edges_only_a_little():
-    # Two kinks, each 0.27 of a pair's stiffness over 0.64 of a pitch: a quarter of a step of 1/1251 pitch leaves 8e-5.
-    assert table_error(PAIR, (), BODY, mesh_tables(PAIR, (), BODY)) < 1e-4
 
 
 def test_largest_loss_is_that_of_the_coupled_curve():

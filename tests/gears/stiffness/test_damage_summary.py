@@ -12,7 +12,6 @@ from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.stiffness.damage_summary import DamageSummary, damage_summary, flank_arc_m
 from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
-from siggen.gears.stiffness.sections import union_area_m2
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.gears.builders import layers, pair_18_47, pit
 
@@ -47,21 +46,6 @@ def test_area_adds_over_teeth_and_the_share_is_the_most_damaged_flanks():
     assert whole.union_area_m2 == pytest.approx(sum(p.union_area_m2 for p in parts), rel=1e-13)
     assert whole.area_share == max(p.area_share for p in parts)
     assert whole.count == 12
-
-
-def test_duplicates_count_but_cover_nothing_more():
-    once, twice = damage_summary(PAIR, (pit(),)), damage_summary(PAIR, (pit(), pit()))
-    assert (once.count, twice.count) == (1, 2)
-    assert replace(twice, count=1) == once
-
-
-def test_lengths_are_clipped_to_face_and_flank():
-    summary = damage_summary(PAIR, (pit(5.5, 0.1, 0.3, 0.4, 0.2),))
-    assert summary.largest_face_length_m == pytest.approx(0.4e-3, rel=1e-12)
-    gear = PAIR.pinion
-    start, tip = float(gear.roll_at_height(5.1e-3)), gear.tip_roll_rad
-    assert summary.largest_profile_length_m == pytest.approx(0.5 * gear.base_radius_m * (tip**2 - start**2), rel=1e-9)
-    assert summary.union_area_m2 == union_area_m2(gear, (pit(5.5, 0.1, 0.3, 0.4, 0.2),), 20e-3)
 
 
 def test_through_face_means_that_no_contact_length_remains_somewhere():

@@ -14,7 +14,6 @@ from siggen.gears.damage.spall import Spall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import RingGear, ring_round
 from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness
 from siggen.gears.stiffness.ring_tooth import ROTATION
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.gears.builders import spur_gear
@@ -135,27 +134,3 @@ def test_the_foot_turns_on_the_half_plane_as_its_potential_says():
     work = -(2.0 / pi) * 9.0 * (weights * nodes) @ logs @ (weights * nodes)
     assert work == pytest.approx(18.0 / pi, rel=5e-3)
     assert abs(ROTATION - work) < 0.08 * work
-
-
-def test_the_mesh_with_the_ring_is_stiffer_than_that_with_the_sun_and_periodic():
-    sun_pair, pair = sets()
-    options = StiffnessOptions()
-    pitches = np.linspace(0.0, 1.0, 41)
-    inner = mesh_stiffness(pair, 2.0 * pi / 27 * pitches, options)
-    outer = mesh_stiffness(sun_pair, np.linspace(0.0, 2.0 * pi / 24, 41), options)
-    assert inner[0] == pytest.approx(inner[-1], rel=1e-12)
-    assert inner.mean() > outer.mean()
-    # the sum over pairs is the mean of one pair times the contact ratio
-    path = np.linspace(pair.contact_start_m, pair.contact_end_m, 4001)
-    fine = mesh_stiffness(pair, 2.0 * pi / 27 * np.arange(4000) / 4000, options).mean()
-    one = pair_stiffness(pair, path, options).mean()
-    assert fine == pytest.approx(pair.contact_ratio * one, rel=1e-3)
-
-
-def test_more_force_makes_the_contact_with_the_ring_stiffer():
-    _, pair = sets()
-    found = [
-        pair_stiffness(pair, [pair.pitch_point_m], StiffnessOptions(hertz="weber_banaschek", hertz_force_n=force))[0]
-        for force in (100.0, 1000.0)
-    ]
-    assert found[1] > found[0]

@@ -14,7 +14,6 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.gears.builders import layers, pair_18_47, pit
 
 PAIR = pair_18_47()
-BASE = StiffnessOptions("base_circle")
 TROCHOID = StiffnessOptions()
 
 
@@ -46,26 +45,10 @@ def test_damaged_teeth_of_both_gears_get_their_rows_and_share_the_healthy_one():
         assert np.array_equal(tables.pair_stiffness_n_per_m[index[i, j]], direct)
 
 
-def test_tables_are_read_only():
-    tables = mesh_tables(PAIR, (), TROCHOID, points=11)
-    with pytest.raises(ValueError, match="read-only"):
-        tables.pair_stiffness_n_per_m[0, 0] = 1.0
-    with pytest.raises(ValueError, match="read-only"):
-        tables.table_of_pair[0, 0] = 1
-
-
 def test_interpolation_error_falls_with_the_square_of_the_step_when_healthy():
     coarse, fine = (table_error(PAIR, (), TROCHOID, mesh_tables(PAIR, (), TROCHOID, n)) for n in (129, 257))
     assert coarse / fine == pytest.approx(4.0, rel=0.1)
     assert fine < 1e-5
-
-
-def test_interpolation_error_at_the_default_size_is_that_of_the_pits_square_root_ends():
-    damage = layers(1, 10)
-    tables = mesh_tables(PAIR, damage, TROCHOID)
-    # A cell that holds a pit's end misses at most a quarter of the jump sqrt(step/b) makes there: below 0.1 % of the
-    # stiffness.
-    assert 1e-5 < table_error(PAIR, damage, TROCHOID, tables) < 1e-3
 
 
 def test_tables_reproduce_the_mesh_stiffness_of_every_pair_in_turn():
@@ -90,11 +73,6 @@ def test_tables_reproduce_the_mesh_stiffness_of_every_pair_in_turn():
     assert np.median(np.abs(total / direct - 1)) < 1e-7
 
 
-def test_largest_loss_of_moderate_pitting_is_the_tabulated_one():
-    assert 100 * largest_stiffness_loss(PAIR, layers(1, 10), BASE) == pytest.approx(2.71, abs=0.0051)
-    assert largest_stiffness_loss(PAIR, (), BASE) == 0.0
-
-
 def test_largest_loss_is_the_maximum_over_the_whole_hunting_period():
     damage = (
         *(replace(p, tooth=0) for p in layers(1, 6)),
@@ -109,16 +87,6 @@ def test_largest_loss_is_the_maximum_over_the_whole_hunting_period():
     # The hunting period is sampled every 0.0007 rad, 25 um on a pit of 400 um: within (25/2/200)^2/2 of the peak.
     assert sampled <= largest * (1 + 1e-9)
     assert sampled == pytest.approx(largest, rel=4e-3)
-
-
-def test_neighbouring_damaged_teeth_in_contact_together_add_their_losses():
-    s = PAIR.contact_start_m + 0.4 * (PAIR.contact_end_m - PAIR.base_pitch_m - PAIR.contact_start_m)
-    heights = PAIR.pinion.height_m(np.array([s, s + PAIR.base_pitch_m]) / PAIR.pinion.base_radius_m) * 1e3
-    low, high = (layers(1, 10, height_mm=float(height)) for height in heights)
-    both = (*(replace(p, tooth=1) for p in low), *(replace(p, tooth=0) for p in high))
-    alone = [largest_stiffness_loss(PAIR, d, BASE) for d in (low, high)]
-    # Both peaks lie within a few micrometres above the pits' centres, where the losses are flat.
-    assert largest_stiffness_loss(PAIR, both, BASE) == pytest.approx(sum(alone), rel=5e-3)
 
 
 def test_bad_tables_are_refused():
