@@ -9,8 +9,6 @@ from siggen.config import Config
 
 ROOT = Path(__file__).resolve().parents[1]
 QUICKSTART = ROOT / "tests" / "configs" / "linear_pits.yaml"
-PAPER_A = ROOT / "configs" / "paper_a.yaml"
-PAPER_B = ROOT / "configs" / "paper_b.yaml"
 
 
 def shipped(path: Path, *overrides: str) -> Config:

@@ -20,10 +20,6 @@ CLUSTER = {
     "depth_mm": 0.2,
 }
 
-SOFT_BEARING = {
-    "name": "soft", "severity": "slight", "fault": "soft",
-    "changes": {"dynamics.pinion.bearing_stiffness_x_n_per_m": {"times": 0.5}},
-}  # fmt: skip
 
 # what is written, where: path of the problem, part of what was received, part of what is allowed
 MISTAKES = [

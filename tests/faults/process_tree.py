@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -53,18 +52,6 @@ def seconds_until_gone(processes: list[Process], most_s: float) -> float:
             return float("inf")
         time.sleep(0.01)
     return time.monotonic() - started_s
-
-
-def cpu_seconds(driver: subprocess.Popen[bytes]) -> float:
-    """Wait for a process and return the CPU time that it and all below it took, looked at ten times a second."""
-    found: dict[tuple[int, int], float] = {}
-    while driver.poll() is None:
-        for pid in (driver.pid, *(one.pid for one in below(driver.pid))):
-            fields = _fields(pid)
-            if fields:
-                found[pid, int(fields[19])] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-        time.sleep(0.1)
-    return sum(found.values())
 
 
 def _stat(pid: int) -> tuple[str, int, int] | None:

@@ -94,12 +94,6 @@ VECTORS = ("mesh.0.vector", "mesh.0.sliding_vectors")
 Change = Callable[[np.ndarray], np.ndarray]
 
 
-def last_bits(seed: int) -> Change:
-    """Return what changes the last bit of every number, as another processor's sums do."""
-    rng = np.random.default_rng(seed)
-    return lambda matrix: matrix * (1.0 + np.finfo(float).eps * rng.integers(-1, 2, matrix.shape))
-
-
 def beginning(
     config: str | dict,
     record: int,

@@ -57,7 +57,7 @@ class EdgeTerms(NamedTuple):
     centroid_slope_m: float
 
 
-@entry(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def half_length(ahead: float) -> float:
     """Return c, the contact's half length over a, at d̂ = `ahead` (1 at d̂ = 1)."""
     return _length_and_slope(ahead)[0]

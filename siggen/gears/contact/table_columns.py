@@ -32,7 +32,6 @@ FORCE, SLOPE, CARRYING, ROUGH, ACROSS, ACROSS_SLOPE, ENERGY = range(7)
 Where gears tilt, for every ray of `tilt_rays`: W_r [N] and W_rr, both shares, W_p [J], W_pr and W [J]; without tilt W_r
 is F."""
 VALUES, TILTING_VALUES = 4, 8
-NO_ENERGY = np.zeros((2, 0))
 TOLERANCE = 2e-2
 """Of the last Newton step of a column's loads: the force errs by 1e-4 of 1,200 N at most, by 1e-5 rms (measured)."""
 
@@ -110,7 +109,7 @@ def ray_curves(solver: TableSolver, row: KindRow, chosen: IntArray, rays: FloatA
     way = ray_way(rays, node, half_face)
     found = np.zeros((chosen.size, len(ForceCurve._fields), rays.size, node.size))
     for i, slices in enumerate(row_faces(solver, row, chosen)):
-        if not write_curves(slices, touch[i] + way.approach_m, way.tilt_rad, room, NO_ENERGY, TOLERANCE, found[i]):
+        if not write_curves(slices, touch[i] + way.approach_m, way.tilt_rad, room, TOLERANCE, found[i]):
             raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
     found = np.moveaxis(found, 0, 1)
     values = along_rays(rays, node, half_face, found)

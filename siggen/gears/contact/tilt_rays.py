@@ -23,7 +23,7 @@ HALF_RAYS = (0.0, 0.3, 0.8, 1.5, 1.0 + 2.0**0.5)
 RAYS = np.array([-p for p in HALF_RAYS[:0:-1]] + list(HALF_RAYS))
 UPRIGHT = len(HALF_RAYS) - 1
 """Number of the ray without tilt."""
-FORCE, MOMENT, STIFFNESS, CROSS, TURNING, CARRYING, ON_DAMAGE = range(1, 8)
+FORCE, MOMENT, STIFFNESS, CROSS, TURNING, CARRYING, ON_DAMAGE = range(7)
 """Where answers of the solver stand in a `ForceCurve`."""
 
 
@@ -43,7 +43,7 @@ def ray_way(rays: FloatArray, node_m: FloatArray, half_face_m: float) -> RayWay:
 def along_rays(rays: FloatArray, node_m: FloatArray, half_face_m: float, found: FloatArray) -> FloatArray:
     """Return W_r, W_rr, W_p and W_pr (4, ..., rays, nodes).
 
-    `found` (8, ..., rays, nodes): the solver's answers at the nodes in the order of `ForceCurve`.
+    `found` (7, ..., rays, nodes): the solver's answers at the nodes in the order of `ForceCurve`.
     """
     cosine, sine = _direction(rays)
     force, stiffness = found[FORCE], found[STIFFNESS]

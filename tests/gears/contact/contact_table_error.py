@@ -8,15 +8,14 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.contact.contact_table import ContactTable
-from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.kind_row import KindRow, first_touch, kind_row, pits_of_kind
-from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.table_columns import FORCE, NO_ENERGY, SLOPE, TableSolver, row_faces, table_solver
+from siggen.gears.contact.table_columns import FORCE, SLOPE, TableSolver, row_faces, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from tests.gears.contact.faces import force_curve
 
 APPROACHES = (0.12, 0.25, 0.4, 0.6)
 """Of the approach of the reference force, at which forces are compared."""
@@ -76,9 +75,7 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
     touch = float(first_touch(solver.pair, row, place, solver.lead_m)[0])
     approach = touch + np.array(APPROACHES) * solver.node_m[solver.reference]
     slices = row_faces(solver, row, place)[0]
-    direct = force_curve(
-        slices, approach, 0.0, np.zeros(solver.lead_m.size), solver_room(solver.lead_m.size), NO_ENERGY
-    )
+    direct = force_curve(slices, approach, 0.0)
     column = float(table.column[number, cell] + 0.5 * table.gain[number, cell])
     first = min(int(column), len(table.curves) - 2)
     beyond = approach - float(table.touch_m[number, cell : cell + 2].mean())

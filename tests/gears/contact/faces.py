@@ -11,6 +11,7 @@ from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_force import FaceForce, face_force
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
+from siggen.gears.contact.force_curve import ForceCurve, write_curves
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import carrying_length
@@ -101,3 +102,11 @@ def approach_under(slices, force: float, tilt: float = 0.0) -> float:
             break
         approach += (force - answer.force_n) / answer.stiffness_n_per_m if answer.force_n else 5e-6
     return approach
+
+
+def force_curve(slices: FaceSlices, approach_m: np.ndarray, tilt_rad: float) -> ForceCurve:
+    """Return the answers to ascending approaches (k,) [m] at one tilt, the last Newton step below 1e-3."""
+    found = np.zeros((7, 1, approach_m.size))
+    tilts = np.full((1, approach_m.size), tilt_rad)
+    assert write_curves(slices, approach_m[np.newaxis], tilts, solver_room(slices.face_m.size), 1e-3, found)
+    return ForceCurve(*found[:, 0])

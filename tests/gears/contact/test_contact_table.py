@@ -11,14 +11,11 @@ from scipy.interpolate import CubicHermiteSpline
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.force_curve import force_curve
-from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
 from siggen.gears.contact.pair_rest import pair_rest
 from siggen.gears.contact.table_columns import (
     CARRYING,
     FORCE,
-    NO_ENERGY,
     SLOPE,
     TYPICAL_SHARE,
     node_places_m,
@@ -34,6 +31,7 @@ from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.dynamics.pair_runs import gear_pair
 from tests.gears.contact.contact_table_error import contact_table_error
+from tests.gears.contact.faces import force_curve
 from tests.gears.damage.test_kind_without_outline import Hinge
 
 STIFFNESS = StiffnessOptions()
@@ -82,9 +80,7 @@ def from_table(found: ContactTable, row: int, place: float, approach_m: np.ndarr
 
 def solved(damage: Damage, place: float, approach_m: np.ndarray) -> np.ndarray:
     """Force of the solver itself at the same place, with edges of its own."""
-    return force_curve(
-        slices_at(damage, place), approach_m, 0.0, np.zeros(SLICES), solver_room(SLICES), NO_ENERGY
-    ).force_n
+    return force_curve(slices_at(damage, place), approach_m, 0.0).force_n
 
 
 def slices_at(damage: Damage, place: float) -> FaceSlices:

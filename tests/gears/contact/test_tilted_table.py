@@ -10,10 +10,8 @@ from siggen.dynamics.mesh.contact_spring import PairPlace, pair_spring
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.kind_row import KindRow, first_touch, kind_row, pits_of_kind
-from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.table_columns import NO_ENERGY, row_faces, table_solver
+from siggen.gears.contact.table_columns import row_faces, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.contact.tilt_rays import RAYS
 from siggen.gears.damage.outlines import rectangle
@@ -24,6 +22,7 @@ from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.contact import whole_face
 from tests.dynamics.pair_runs import RELIEF, gear_pair, law
+from tests.gears.contact.faces import force_curve
 from tests.gears.contact.test_contact_table import pitch_height, through_the_face
 from tests.gears.geometry.test_helical import helical_pair
 
@@ -70,11 +69,9 @@ def from_table(table: ContactTable, chosen: PairLaw, row: int, point: int, where
 
 
 def solved(slices: FaceSlices, touch_m: float, where: np.ndarray) -> np.ndarray:
-    count = slices.face_m.size
     found = []
     for approach, tilt in where:
-        room, guess = solver_room(count), np.zeros(count)
-        one = force_curve(slices, np.array([touch_m + approach]), tilt, guess, room, NO_ENERGY)
+        one = force_curve(slices, np.array([touch_m + approach]), tilt)
         found.append((one.force_n[0], one.moment_n_m[0]))
     return np.array(found)
 
