@@ -144,7 +144,7 @@ def at_no_rate(folder: Path) -> None:
 
 
 ALL, ONE = tuple(COMMANDS), ("table",)
-"""A mistake in samples, in files and of the folder goes to all commands, the others to one: all read alike."""
+"""A mistake in samples goes to all commands, the others to one: all read alike."""
 BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "nan": (samples(not_a_number), ("channel bearing_vertical", "not finite", "3"), ALL),
     "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ONE),
@@ -158,10 +158,10 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "too few teeth": (column("teeth_pinion", 2, ("data", "metadata")), ("received 2, 47", "from 3 on"), ONE),
     "no rate": (at_no_rate, ("fs_hz: received None", "a valid number"), ONE),
     "truncated shard": (truncated, ("data/test-00000.parquet has ", "bytes instead of", "siggen verify"), ONE),
-    "missing shard": (lambda folder: first_shard(folder).unlink(), ("test-00000.parquet is missing",), ALL),
+    "missing shard": (lambda folder: first_shard(folder).unlink(), ("test-00000.parquet is missing",), ONE),
     "no manifest": (lambda folder: (folder / "manifest.json").unlink(), ("not finished", "siggen generate"), ONE),
     "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ONE),
-    "empty folder": (emptied, ("no data set here",), ALL),
+    "empty folder": (emptied, ("no data set here",), ONE),
     "photos": (photos, ("not a siggen data set",), ONE),
     "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "models", "audit")),
     "no healthy": (

@@ -69,10 +69,6 @@ def test_another_set_is_in_the_metrics(sets: dict[str, Any], tmp_path: Path, mon
     assert "calibration error" in (tmp_path / "model_card.md").read_text()
 
 
-def healthy_only(dataset: Any) -> Any:
-    return replace(dataset, table=dataset.table.filter(pc.equal(dataset.table.column("state"), "healthy")))
-
-
 def one_training_specimen(dataset: Any) -> Any:
     column = dataset.table.column("specimen_id")
     keep = pc.or_(pc.equal(column, 0), pc.greater_equal(column, 4))
@@ -93,7 +89,6 @@ def silent_channel(dataset: Any) -> Any:
 @pytest.mark.parametrize(
     ("change", "options", "parts"),
     [
-        (healthy_only, (), ("single state ['healthy']", "Add damaged")),
         (one_training_specimen, (), ("one specimen of healthy, slight, severe", "specimens=N")),
         (silent_channel, (), ("channel bearing_vertical is constant", "--channel bearing_horizontal")),
         (lambda found: found, ("--channel", "top"), ("received top", "bearing_vertical, bearing_horizontal")),
@@ -101,7 +96,7 @@ def silent_channel(dataset: Any) -> Any:
         (lambda found: found, ("--device", "tpu"), ("received 'tpu'", "cpu, cuda")),
         (lambda found: found, ("--device", "cuda"), ("--device cuda: ", "leave --device out to train on the CPU")),
     ],
-    ids=["healthy", "one specimen", "silent", "channel", "rate", "device", "absent"],
+    ids=["one specimen", "silent", "channel", "rate", "device", "absent"],
 )
 def test_unusable_input_ends_with_2_and_a_way_out(
     sets: dict[str, Any],
