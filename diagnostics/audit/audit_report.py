@@ -37,7 +37,6 @@ from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.records.named_set import words_of
 from diagnostics.records.recording import gear_names
-from diagnostics.statistics.indicator_result import finite
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, how_to_install
 from siggen.file_writing import write_file
@@ -303,3 +302,8 @@ def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     path = folder / "audit.html"
     write_file(path, words(audit_page(audit, dataset, drawn)))
     return path
+
+
+def finite(value: float) -> float | None:
+    """Return the value, or None where it is undefined or infinite."""
+    return float(value) if math.isfinite(value) else None

@@ -107,7 +107,6 @@ def report_numbers(dataset: Dataset, found: Evaluated, sentences: Sequence[str])
         "assessment_settings": asdict(found.settings),
         "left_out": [str(problem) for problem in table.problems],
         "notes": note_counts(table),
-        "results": [result.numbers() for result in found.found],
     }
 
 

@@ -32,15 +32,6 @@ class StateResult:
     holm: float = math.nan
     false_discovery: float = math.nan
 
-    def numbers(self) -> dict[str, Any]:
-        """Return everything for JSON, undefined as null."""
-        p_values = {"p": self.p_value, "holm": self.holm, "false_discovery": self.false_discovery}
-        return {
-            "separation": self.separation.numbers(),
-            "cohens_d": self.effect.numbers(),
-            **{name: finite(value) for name, value in p_values.items()},
-        }
-
 
 @dataclass(slots=True)
 class IndicatorResult:
@@ -84,24 +75,6 @@ class IndicatorResult:
     detectable: dict[str, Interval] = field(default_factory=dict)
     smallest_size: dict[str, float] = field(default_factory=dict)
 
-    def numbers(self) -> dict[str, Any]:
-        """Return everything for JSON; undefined and unreached numbers are null."""
-        return {
-            "indicator": self.indicator,
-            "channel": self.channel,
-            "direction": self.direction,
-            "defined_share": self.defined_share,
-            "other_specimens": {state: found.numbers() for state, found in self.others.items()},
-            "same_specimen": {state: found.numbers() for state, found in self.same.items()},
-            "score_other_specimens": self.score_others.numbers(),
-            "score_same_specimen": self.score_same.numbers(),
-            "spearman_damaged_area": self.spearman_area.numbers(),
-            "spearman_mesh_stiffness_loss": self.spearman_stiffness.numbers(),
-            "monotonicity": self.monotonicity.numbers(),
-            "explained_in_healthy": {cause: finite(share) for cause, share in self.sensitivity.items()},
-            "smallest_detectable": {name: found.numbers() for name, found in self.detectable.items()},
-        }
-
     def row(self) -> dict[str, Any]:
         """Return everything as one flat row of a table."""
         row: dict[str, Any] = {"indicator": self.indicator, "channel": self.channel, "direction": self.direction}
@@ -124,8 +97,3 @@ class IndicatorResult:
         for name, limits in intervals.items():
             row |= {name: limits.value, f"{name}_low": limits.low, f"{name}_high": limits.high}
         return row | {f"explained_by_{cause}": share for cause, share in self.sensitivity.items()}
-
-
-def finite(value: float) -> float | None:
-    """Return the value, or None where it is undefined or infinite."""
-    return float(value) if math.isfinite(value) else None

@@ -141,7 +141,6 @@ def test_indicators_say_the_users_names_alone(made: Path) -> None:
     assert values == siggen.open(made / "set").labels()["state"].to_pylist()
     numbers = json.loads((made / "indicators/indicators.json").read_text())
     assert numbers["states"] == [STATE]
-    assert {one["channel"] for one in numbers["results"]} == {CHANNEL, "out_rotation"}
 
 
 @pytest.mark.slow
