@@ -17,6 +17,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import siggen
+from diagnostics.training.detectors import INDICATOR
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.config import yaml_text
@@ -29,13 +30,14 @@ from tests.config.staged import SLOW, SPALL, staged
 from tests.diagnostics.explore.unpacked import held
 
 COMMON: dict[str, Any] = {
-    "specimens": 3, "fs_hz": 12_800.0, "duration_s": 0.3, "manufacture": {"accuracy_class": 6, "flank_waves": "on"},
+    "specimens": 4, "fs_hz": 12_800.0, "duration_s": 0.3, "manufacture": {"accuracy_class": 6, "flank_waves": "on"},
 }  # fmt: skip
 
 
 STATE, SENSOR = "pinion_spalled", "pinion_end"
 CHANNEL = f"{SENSOR}_vertical"
-OF_THE_USER = re.compile(rf"{STATE.replace('_', '_(<wbr>)?')}|{SENSOR}|pinion end, vertical")
+SPELT = [name.replace("_", "_(<wbr>)?") for name in (STATE, SENSOR)]
+OF_THE_USER = re.compile("|".join([*SPELT, "pinion end, vertical"]))
 """Data that hold the program's word for a gear, as they stand in files and on pages."""
 
 
@@ -119,7 +121,7 @@ def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: 
     }  # fmt: skip
     assert {short: record[own] for short, own in names.items()} == {short: other.labels[short] for short in names}
     assert record["faulty_gear"] == "eva"
-    assert siggen.open(made / "set").damage()["gear"].to_pylist() == ["eva"] * 3
+    assert siggen.open(made / "set").damage()["gear"].to_pylist() == ["eva"] * 4
 
 
 def test_a_flank_is_asked_for_by_the_name_of_its_gear(made: Path) -> None:
@@ -151,7 +153,7 @@ def test_a_report_says_the_users_names_alone(made: Path) -> None:
     page = (made / "report/report.html").read_text()
     assert f">{STATE}<" in page.replace("<wbr>", "")
     assert "ida_spalled" not in page
-    assert STATE in json.loads((made / "report/metrics.json").read_text())["detectors"]["alone"]["indicator"]["states"]
+    assert STATE in json.loads((made / "report/metrics.json").read_text())["detectors"]["alone"][INDICATOR]["states"]
 
 
 @pytest.mark.slow
