@@ -1,4 +1,4 @@
-"""Tables of a report beside the scores: paired differences, damaged area, another set."""
+"""Tables of a report beside the scores: paired differences, another set."""
 
 from __future__ import annotations
 
@@ -44,20 +44,6 @@ def verdict(difference: Interval, specimens: int) -> str:
     if specimens < FEWEST_SPECIMENS or not math.isfinite(difference.low):
         return "too few gearboxes"
     return "yes" if difference.low > 0.0 or difference.high < 0.0 else "no"
-
-
-def severity_table(training: Training) -> str:
-    """Return how well the damaged area is told as a number."""
-    rows = [
-        [Cell(row.title), interval_cell(row.error_mm2), interval_cell(row.spearman, sign=True)]
-        for row in training.severity
-    ]
-    caption = (
-        "The damaged area as a number, on the same test specimens. The median of training does not use the signal."
-    )
-    return table(
-        ["Damaged area by", "Mean absolute error [mm²]", "Rank correlation [-]"], rows, caption=caption, sortable=True
-    )
 
 
 def other_set_table(training: Training) -> str:
@@ -120,7 +106,7 @@ def _other_row(there: Judged, here: Judged) -> list[Cell]:
 
 def score_blocks(training: Training) -> list[str]:
     """Return what the section of scores holds below its first table."""
-    blocks = [comparison_table(training), severity_table(training)]
+    blocks = [comparison_table(training)]
     if training.referenced:
         blocks += [referenced_table(training.referenced), referenced_pairs_table(training.referenced)]
     return [*blocks, other_set_table(training)] if training.other else blocks

@@ -21,7 +21,6 @@ from diagnostics.statistics.judgement import (
     CIRCULAR,
     INDICATORS,
     RMS_ALONE,
-    TITLES,
     Judged,
     judged,
     judged_metrics,
@@ -48,11 +47,6 @@ from diagnostics.training.network_training import (
 from diagnostics.training.other_set import OtherSet, classifier_predictions, judge_other, strange_states_note
 from diagnostics.training.referenced import Referenced, referenced_classifiers
 from diagnostics.training.severity import (
-    AreaScores,
-    area_predictions,
-    area_scores,
-    boosted_areas,
-    expected_area,
     mean_areas,
 )
 from diagnostics.training.splits import SpecimenSplit, specimen_split
@@ -73,8 +67,6 @@ class Training:
         Paired differences on the test specimens.
     rms_severe : Interval or None
         AUC of RMS alone for the state with the largest damage against healthy.
-    severity : tuple of AreaScores
-        Damaged area as a number.
     circular : TrainedCircularFile or None
         Network on the synchronous average; None without networks.
     referenced : Referenced or None
@@ -95,7 +87,6 @@ class Training:
     other_name: str
     comparisons: tuple[Comparison, ...]
     rms_severe: Interval | None
-    severity: tuple[AreaScores, ...]
     class_areas: np.ndarray
     circular: TrainedCircularFile | None = None
     referenced: Referenced | None = None
@@ -167,7 +158,6 @@ def train_models(
         other_name=other.dataset.path.name if other else "",
         comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
-        severity=_severity(results, matrix, split, seed),
         class_areas=mean_areas(matrix, split),
         circular=circular,
         referenced=referenced_classifiers(matrix, split, results, averages, seed, options, stage),
@@ -248,25 +238,6 @@ def _rms_severe(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSpl
     return state_auc(found, split.classes.index(split.healthy), split.classes.index(severe), seed)
 
 
-def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[AreaScores, ...]:
-    """Judge the damaged area as a number, beside the median of the training records."""
-    test, alone = matrix.rows(split.test), matrix.columns(rms_features(matrix.names))
-    by_class = mean_areas(matrix, split)
-    predicted = {
-        "ridge regression on indicators": area_predictions(matrix, split),
-        "gradient boosting on indicators": boosted_areas(matrix, split, seed),
-        "ridge regression on RMS": area_predictions(alone, split),
-        **{
-            f"{TITLES[found.name]}, by its {split.kind}s": expected_area(found.predictions, by_class)
-            for found in results
-        },
-        "median of training": np.full(
-            test.values.shape[0], float(np.median(matrix.labels["damaged_area_mm2"][split.train]))
-        ),
-    }
-    return tuple(area_scores(title, area, test, seed) for title, area in predicted.items())
-
-
 def training_metrics(training: Training) -> dict[str, Any]:
     """Return what `metrics.json` says about the classifiers."""
     return {
@@ -282,10 +253,6 @@ def training_metrics(training: Training) -> dict[str, Any]:
         "beside_a_healthy_record": _referenced_metrics(training.referenced) if training.referenced else None,
         "nested_folds": nested_metrics(training.nested) if training.nested else None,
         "rms_severe_auc": training.rms_severe.numbers() if training.rms_severe else None,
-        "damaged_area": [
-            {"title": s.title, "error_mm2": s.error_mm2.numbers(), "spearman": s.spearman.numbers()}
-            for s in training.severity
-        ],
     }
 
 

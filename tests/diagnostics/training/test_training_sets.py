@@ -98,8 +98,6 @@ def test_another_set_is_judged_by_the_classifiers_of_the_first(
     assert set(metrics["classifiers_on_other_set"]) == set(by_name)
     better = next(p for p in metrics["comparisons"] if (p["first"], p["second"]) == ("indicators", "rms"))
     assert better["macro_auroc"]["low"] > 0.0
-    errors = {row["title"]: row["error_mm2"]["value"] for row in metrics["damaged_area"]}
-    assert errors["ridge regression on indicators"] < errors["median of training"]
 
 
 @pytest.mark.parametrize(("built_for", "found"), [("12.6", "finds no CUDA device"), (None, "built without CUDA")])
