@@ -90,7 +90,9 @@ def _read(
     with stage("indicators of recordings", len(sources)) as advance:
         for path, row in sources:
             said_of = replace(facts, row=row)
-            found.append(recording_indicators(path, train[0].teeth, said_of, speed_range_hz, train))
+            one = recording_indicators(path, train[0].teeth, said_of, speed_range_hz, train)
+            echo(f"{one.name}: {one.pulses.speed_hz:.4f} Hz ({one.pulses.origin})", err=True)
+            found.append(one)
             advance()
     return found
 

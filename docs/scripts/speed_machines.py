@@ -1,4 +1,4 @@
-"""Tables of docs/start/check_a_machine.md: `python docs/scripts/speed_machines.py [FIRST LAST] [--made-up]`.
+"""Tables of docs/start/from_a_file.md: `python docs/scripts/speed_machines.py [FIRST LAST] [--made-up]`.
 
 How often `shaft_angle` gives the angle of a recording without a tacho, and whether it is right. 30 machines of
 `siggen init`: 17 to 35 teeth, ratio 1 to 5, module 1 to 6 mm, 12 to 50 Hz, 30 to 100 % of the rated torque, two of
