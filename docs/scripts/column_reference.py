@@ -43,7 +43,7 @@ ADDED = {
 }
 """With these a configuration that has every part with columns of its own."""
 PLATES = "`housing.kind: plates`"
-SENSOR_PARTS = ("pink_noise", "mains", "tones", "inverter")
+SENSOR_PARTS = ("pink_noise", "mains")
 NAMES = {
     r"theta_\w+_rad": "rotation of motor (m), pinion (1), gear (2) and load (l) about the mean rotation",
     r"[xy]_\w+_m": "horizontal (x) and vertical (y) motion of pinion (1), gear (2) and casing (c)",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from siggen.config import Config
-from siggen.config.variation import RARE
+from siggen.config.variation import RARE, SLOW_CORNER_HZ
 from siggen.keys.number import Number, bounds
 from siggen.specimen.shaft_forces import RATED_SPEED_HZ
 
@@ -25,7 +25,7 @@ def _speed(config: Config) -> Iterator[str]:
     if (speed.start_ratio, speed.end_ratio) != (1.0, 1.0):
         yield f"speed runs from {_span(speed.start_ratio)} to {_span(speed.end_ratio)} times nominal over a record"
     if _some(speed.random_rms):
-        yield f"slow random speed of {_percent(speed.random_rms)} rms up to {_span(speed.corner_hz)} Hz"
+        yield f"slow random speed of {_percent(speed.random_rms)} rms up to {SLOW_CORNER_HZ:g} Hz"
     for number, often in ((speed.ripple_once, "once"), (speed.ripple_twice, "twice")):
         if _some(number):
             yield f"speed ripple of {_percent(number)} {often} per revolution"
@@ -36,7 +36,7 @@ def _speed(config: Config) -> Iterator[str]:
 def _torque(config: Config) -> Iterator[str]:
     torque = config.variation.torque
     if _some(torque.random_rms):
-        yield f"slow random torque of {_percent(torque.random_rms)} rms up to {_span(torque.corner_hz)} Hz"
+        yield f"slow random torque of {_percent(torque.random_rms)} rms up to {SLOW_CORNER_HZ:g} Hz"
     if _some(torque.load_once):
         yield f"load torque pulsates by {_percent(torque.load_once)} once per revolution of its shaft"
     if _some(torque.line_ripple):

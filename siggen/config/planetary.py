@@ -48,9 +48,6 @@ class Planetary(Section):
     ring_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: steel, four modules thick behind the roots (assumed)"
     )
-    damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
-        default=0.03, description="of each body on its support alone"
-    )
 
 
 def pitches_per_turn(sun: int, ring: int) -> float:

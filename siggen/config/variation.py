@@ -15,7 +15,8 @@ RARE = 4.0
 RAMP = "speed at the first sample, and at the last, over that of the operating point; linear between (run-up, run-down)"
 RANDOM = "slow random part, relative; usual are 0.001 to 0.005 of speeds, 0.01 to 0.05 of torques"
 RIPPLE = "amplitude once per revolution, and twice, relative; 0.0002 to 0.001 is usual"
-SLOW_CORNER = "frequency above which the random part falls off"
+SLOW_CORNER_HZ = 0.5
+"""Above which the random part falls off."""
 
 
 class SpeedVariation(Section):
@@ -24,7 +25,6 @@ class SpeedVariation(Section):
     start_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(default=1.0, description=RAMP)
     end_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(default=1.0, description=RAMP)
     random_rms: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RANDOM)
-    corner_hz: Annotated[Number, Within(least=0.01, most=5)] = Field(default=0.5, description=SLOW_CORNER)
     ripple_once: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RIPPLE)
     ripple_twice: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RIPPLE)
     slip: Annotated[Number, Within(least=0, most=0.2)] = Field(
@@ -38,7 +38,6 @@ class TorqueVariation(Section):
     """Torque about that of the operating point; motor and load balance on the mean."""
 
     random_rms: Annotated[Number, Within(least=0, most=0.1)] = Field(default=0.0, description=RANDOM)
-    corner_hz: Annotated[Number, Within(least=0.01, most=5)] = Field(default=0.5, description=SLOW_CORNER)
     load_once: Annotated[Number, Within(least=0, most=2)] = Field(
         default=0.0, description="amplitude of the load torque once per revolution of its shaft, relative"
     )

@@ -7,10 +7,12 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from siggen.keys.number import Number, Within, at
-from siggen.keys.section import Whole
 from siggen.noise.lines import LinesPart
 from siggen.noise.source import Draws, NoisyChannel, Part, Source
 from siggen.sensing.tones import harmonic_lines
+
+HARMONICS = 5
+"""Harmonic h has 1/h of the amplitude."""
 
 
 class Mains(Source):
@@ -21,13 +23,10 @@ class Mains(Source):
     meaning: ClassVar[str] = "RMS of mains hum in"
 
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
-        description="amplitude of a line, drawn per record and axis; with `background` per gearbox"
+        description="amplitude of the first line, drawn per record and axis; with `background` per gearbox"
     )
     frequency_hz: Annotated[Number, Within(above=0)] = Field(
         default=50.0, description="frequency, drawn per gearbox for every line"
-    )
-    harmonics: Annotated[Whole, Field(ge=1, le=40)] = Field(
-        default=3, description="highest harmonic; harmonic h has 1/h of the amplitude"
     )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> Part:
@@ -35,4 +34,4 @@ class Mains(Source):
         rng = draws.record(self.key)
         amplitude = at(self.amplitude_m_s2, draws.level("mains.amplitude_m_s2", rng))
         fundamental_hz = at(self.frequency_hz, draws.specimen("mains.frequency_hz"))
-        return LinesPart(harmonic_lines(fundamental_hz, amplitude, self.harmonics, rng), channel, sensed=False)
+        return LinesPart(harmonic_lines(fundamental_hz, amplitude, HARMONICS, rng), channel)

@@ -1,7 +1,4 @@
-"""Lines that have nothing to do with the gears: mains hum, tones of other machines, inverter carriers.
-
-Carrier lines: f_c ± 2 k f_e around the switching frequency (reference: standard literature, pulse-width modulation).
-"""
+"""Lines that have nothing to do with the gears: mains hum."""
 
 from __future__ import annotations
 
@@ -9,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.arrays import ComplexArray, FloatArray
+from siggen.arrays import FloatArray
 from siggen.compiled import entry
 
 BLOCK_SAMPLES = 256
@@ -36,27 +33,13 @@ def harmonic_lines(fundamental_hz: float, amplitude: float, harmonics: int, rng:
     return Lines(fundamental_hz * order, amplitude / order, _phases(harmonics, rng))
 
 
-def carrier_lines(
-    carrier_hz: float, modulation_hz: float, amplitude: float, sidebands: int, rng: np.random.Generator
-) -> Lines:
-    """Return a carrier with sidebands ±2 k modulation_hz of amplitude 1/(1 + k), with random phases."""
-    order = np.arange(-sidebands, sidebands + 1.0)
-    frequency = carrier_hz + 2.0 * modulation_hz * order
-    return Lines(np.abs(frequency), amplitude / (1.0 + np.abs(order)), _phases(order.size, rng))
-
-
-def single_lines(frequency_hz: FloatArray, amplitude: FloatArray, rng: np.random.Generator) -> Lines:
-    """Return tones with random phases."""
-    return Lines(frequency_hz, amplitude, _phases(frequency_hz.size, rng))
-
-
-def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: int, first: int = 0) -> FloatArray:
-    """Return the lines (samples,) from sample `first` on, after a filter with `response` (lines,) at their frequencies.
+def lines_signal(lines: Lines, fs_hz: float, samples: int, first: int = 0) -> FloatArray:
+    """Return the lines (samples,) from sample `first` on.
 
     Lines from half the sampling rate on are left out, as the anti-aliasing filter of a recorder does.
     """
     signal = np.zeros(samples)
-    phasors = lines.amplitude * np.exp(1j * lines.phase_rad) * response
+    phasors = lines.amplitude * np.exp(1j * lines.phase_rad)
     for frequency, phasor in zip(lines.frequency_hz, phasors, strict=True):
         if frequency < 0.5 * fs_hz:
             step_rad = 2.0 * np.pi * frequency / fs_hz

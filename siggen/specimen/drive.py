@@ -11,6 +11,7 @@ import numpy as np
 from siggen.config import Config, SpeedVariation, Variation
 from siggen.config import TorqueVariation as TorqueSection
 from siggen.config.stages import hunting_turns
+from siggen.config.variation import SLOW_CORNER_HZ
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation
 from siggen.dynamics.drive.slow_variation import slow_variation
@@ -148,7 +149,7 @@ def _rotation(
         2.0 * pi * uniform("variation.speed.ripple_once.phase"),
         2.0 * pi * uniform("variation.speed.ripple_twice.phase"),
     )
-    slow = slow_variation(rng, constant(speed.corner_hz), -TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S)
+    slow = slow_variation(rng, SLOW_CORNER_HZ, -TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S)
     return VaryingDrive(ramp, start_angle_rad, ripple, slow, constant(speed.random_rms))
 
 
@@ -156,7 +157,7 @@ def _torque_settings(config: Config, torque: TorqueSection, record: PlannedRecor
     uniform = named_uniforms(config.seed, Stage.DRIVE, *record_owner(record))
     rng = named_generator(config.seed, Stage.DRIVE, *record_owner(record), name="variation.torque.random")
     return TorqueSettings(
-        slow_variation(rng, constant(torque.corner_hz), -TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S),
+        slow_variation(rng, SLOW_CORNER_HZ, -TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S),
         constant(torque.random_rms),
         constant(torque.load_once),
         2.0 * pi * uniform("variation.torque.load_once.phase"),

@@ -27,6 +27,8 @@ from siggen.seeding import Stage, named_generator
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.rotors import rotor_numbers
 
+DAMPING_RATIO = 0.03
+"""Of each body on its support alone (assumed)."""
 RIM_MODULES = 4.0
 """Thickness of a ring behind its roots (assumed)."""
 
@@ -78,18 +80,15 @@ def planetary_numbers(specimen: Specimen) -> PlanetaryStage:
     assert section is not None
     pair, inner = planets_in_ring(specimen)
     sun, planet = (rotor_numbers(PlainRotor(), gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
-    damping = constant(section.damping_ratio)
-    ring = _ring(section, inner, damping)
+    ring = _ring(section, inner)
     return PlanetaryStage(
         sun_angle_rad=pair.working_pressure_angle_rad,
         ring_angle_rad=inner.working_pressure_angle_rad,
         centre_distance_m=pair.working_centre_distance_m,
-        sun=_body(sun.base_radius_m, (sun.mass_kg, sun.inertia_kg_m2), section.sun_stiffness_n_per_m, damping),
-        planet=_body(
-            planet.base_radius_m, (planet.mass_kg, planet.inertia_kg_m2), section.planet_stiffness_n_per_m, damping
-        ),
+        sun=_body(sun.base_radius_m, (sun.mass_kg, sun.inertia_kg_m2), section.sun_stiffness_n_per_m),
+        planet=_body(planet.base_radius_m, (planet.mass_kg, planet.inertia_kg_m2), section.planet_stiffness_n_per_m),
         ring=ring,
-        carrier=_carrier(section, pair, damping),
+        carrier=_carrier(section, pair),
         places_turns=tuple(float(place) for place in planetary_teeth(specimen).places),
         motor_inertia_kg_m2=constant(dynamics.motor_inertia_kg_m2),
         load_inertia_kg_m2=constant(dynamics.load_inertia_kg_m2),
@@ -98,9 +97,11 @@ def planetary_numbers(specimen: Specimen) -> PlanetaryStage:
     )
 
 
-def _body(radius_m: float, inertias: tuple[float, float], stiffness: Number, ratio: float) -> PlanetaryBody:
+def _body(radius_m: float, inertias: tuple[float, float], stiffness: Number) -> PlanetaryBody:
     (mass, inertia), stiffness_n_per_m = inertias, constant(stiffness)
-    return PlanetaryBody(radius_m, mass, inertia, stiffness_n_per_m, 2.0 * ratio * sqrt(stiffness_n_per_m * mass))
+    return PlanetaryBody(
+        radius_m, mass, inertia, stiffness_n_per_m, 2.0 * DAMPING_RATIO * sqrt(stiffness_n_per_m * mass)
+    )
 
 
 def ring_outer_radius_m(specimen: Specimen) -> float:
@@ -112,21 +113,21 @@ def _outer_radius_m(inner: InternalPair) -> float:
     return inner.gear.root_radius_m + RIM_MODULES * inner.gear.module_m
 
 
-def _ring(section: Planetary, inner: InternalPair, ratio: float) -> PlanetaryBody:
+def _ring(section: Planetary, inner: InternalPair) -> PlanetaryBody:
     ring = inner.gear
     root, outer = ring.root_radius_m, _outer_radius_m(inner)
     steel_kg = STEEL_DENSITY_KG_M3 * pi * (outer**2 - root**2) * inner.face_width_m
     mass = steel_kg if section.ring_mass_kg is None else constant(section.ring_mass_kg)
     held = constant(section.ring_stiffness_n_per_m)
-    damping = 2.0 * ratio * sqrt(held * mass)
+    damping = 2.0 * DAMPING_RATIO * sqrt(held * mass)
     inertia = 0.5 * mass * (outer**2 + root**2)
     return PlanetaryBody(ring.base_radius_m, mass, inertia, held, damping, held * outer**2, damping * outer**2)
 
 
-def _carrier(section: Planetary, pair: GearPair, ratio: float) -> PlanetaryBody:
+def _carrier(section: Planetary, pair: GearPair) -> PlanetaryBody:
     radius = pair.working_centre_distance_m
     mass = STEEL_DENSITY_KG_M3 * pi * radius**2 * pair.face_width_m
-    return _body(radius, (mass, 0.5 * mass * radius**2), section.carrier_stiffness_n_per_m, ratio)
+    return _body(radius, (mass, 0.5 * mass * radius**2), section.carrier_stiffness_n_per_m)
 
 
 def _coupling(section: CouplingSection) -> Coupling:

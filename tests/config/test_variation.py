@@ -38,8 +38,7 @@ def test_labels_of_the_variation_are_there_with_it_and_only_then():
 
 @pytest.mark.parametrize(
     ("key", "value"),
-    [("start_ratio", 0.0), ("end_ratio", -1.0), ("random_rms", 0.2), ("ripple_once", 0.5), ("slip", 1.0),
-     ("corner_hz", 100.0)],
+    [("start_ratio", 0.0), ("end_ratio", -1.0), ("random_rms", 0.2), ("ripple_once", 0.5), ("slip", 1.0)],
 )  # fmt: skip
 def test_speeds_that_might_stop_or_turn_back_are_refused_by_name(key, value):
     assert paths(variation={"speed": {key: value}}) == [f"variation.speed.{key}"]
