@@ -11,6 +11,7 @@ from html import escape
 
 from diagnostics.page.live import STILL, Live
 from diagnostics.page.security_policy import HINT_SCRIPT, SORT_SCRIPT, security_policy
+from siggen.printable import printable
 
 STYLE = """
 :root{color-scheme:light;--ink:#1c2733;--soft:#566573;--line:#dde3e8;--band:#f5f7f9;--accent:#1f6f8b;
@@ -118,7 +119,6 @@ WIDE = 9
 WIDER = 14
 """Columns beyond which it also needs limits on lines of their own."""
 
-TURNS = re.compile("[\u202a-\u202e\u2066-\u2069]")
 BOLD, BOLDER = re.compile(r"\*\*(.+?)\*\*"), r"<b>\1</b>"
 PLAIN_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
 NUMBERED = (("Figure", "<figcaption>"), ("Table", '<p class="caption">'))
@@ -160,7 +160,7 @@ def page(title: str, parts: Sequence[str], live: Live = STILL) -> str:
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"{security_policy(scripts)}"
-        f"<title>{without_turns(escape(title))}</title>"
+        f"<title>{escape(printable(title, lines=True))}</title>"
         f"<style>{style_sheet(PRINTED_ROWS)}{live.style}</style></head>\n<body><main>\n"
         + numbered("\n".join(parts))
         + f"\n</main>{live.data_elements()}{''.join(f'<script>{one}</script>' for one in scripts)}</body></html>\n"
@@ -240,19 +240,14 @@ def notes(texts: Sequence[str]) -> list[str]:
     ]
 
 
-def without_turns(text: str) -> str:
-    """Return text with a visible word for every character that would turn the direction of what stands behind it."""
-    return TURNS.sub(lambda found: f"[U+{ord(found.group()):04X}]", text)
-
-
 def attribute(text: str) -> str:
     """Return text for the value of an attribute."""
-    return without_turns(escape(text, quote=True))
+    return escape(printable(text, lines=True), quote=True)
 
 
 def inline(text: str) -> str:
     """Return text for the page: `code` between backticks, long names broken between their parts."""
-    found = re.sub(r"`([^`]+)`", r"<code>\1</code>", without_turns(escape(text)))
+    found = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(printable(text, lines=True)))
     return re.sub(r"(?<=\w)_(?=[^\W_])", "_<wbr>", found)
 
 
