@@ -55,7 +55,7 @@ def test_an_indicator_that_one_recording_lacks_does_not_count() -> None:
 
 
 def test_two_references_are_too_few() -> None:
-    with pytest.raises(UsageError, match="at least 3"):
+    with pytest.raises(UsageError, match="4 are needed"):
         change_score(np.zeros((2, 4)), np.zeros(4))
 
 
