@@ -21,8 +21,10 @@ QUICK = {
     *("siggen-diagnostics check", "siggen-diagnostics score", "siggen-diagnostics bench board"),
 }
 """Sets, tables, pictures, pages: each kind of file once."""
-RUN_FILES = {"run.json"}
+RUN_FILES = {"run.json", "audit.json"}
 """They tell times, so their sizes differ from run to run."""
+DRAWN = "siggen-diagnostics bench make"
+"""It draws a secret: other gearboxes each time, in files of the same names."""
 
 
 @contextmanager
@@ -108,4 +110,5 @@ def test_a_full_disk_is_told_and_holds_nothing_half_written(
             make_room()
             code, said = said_by(place)
             assert code == line.code, said
-            assert settled_files(place) == settled_files(roomy)
+            again, once = settled_files(place), settled_files(roomy)
+            assert again.keys() == once.keys() if name == DRAWN else again == once
