@@ -13,7 +13,8 @@ DECAY_TIMES = 5.0
 """Length of the discarded transient of one mesh in decay times of the slowest mode that it excites.
 
 Turning a shaft lets its flanks carry the mean load: it starts in equilibrium. With an earlier start records of presets
-change by 4e-5 of their rms at most.
+without friction change by 4e-5 of their rms at most. Friction moves a load that is held softly, whose slow mode does
+not count: at low speed such records start unsettled.
 """
 DECAYS_OF_SEVERAL = 9.0
 """The same of several meshes, of modes that meshes show alone too, such as torsion between sun and load.

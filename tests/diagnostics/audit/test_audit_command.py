@@ -22,7 +22,7 @@ def perfect_gears() -> PlantedSet:
 
 @pytest.fixture(scope="module")
 def clean() -> PlantedSet:
-    return planted(Plant(specimens=6, points=1))
+    return planted(Plant(specimens=6))
 
 
 @pytest.fixture(autouse=True)

@@ -13,7 +13,7 @@ from diagnostics.audit.column_attackers import best_column
 from diagnostics.audit.held_out import dealt_folds
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 
-GEARBOXES, ORDERS, SETS, PERMUTATIONS = 24, 10, 400, 39
+GEARBOXES, ORDERS, SETS, PERMUTATIONS = 24, 10, 800, 39
 SPREAD = (0.1 * 0.9 * SETS) ** 0.5
 """Of the number of p-values at 0.1 or below."""
 SPECIMEN, DAMAGED = np.repeat(np.arange(GEARBOXES), 3), np.tile([False, False, True], GEARBOXES)
@@ -42,3 +42,10 @@ def test_without_any_effect_p_values_are_as_often_small_as_they_say() -> None:
     reference, block = reference_records(ALIKE), exchange_blocks(ALIKE)
     found = [p_value(seed, reference, block) for seed in range(SETS)]
     assert np.sum(np.array(found) <= 0.1) == pytest.approx(0.1 * SETS, abs=3.0 * SPREAD)
+
+
+def test_two_healthy_records_beside_each_other_would_find_damage_where_none_is() -> None:
+    # their differences are one, counted twice
+    mirrored = np.array([1, 0, 0] * GEARBOXES) + 3 * SPECIMEN
+    found = [p_value(seed, mirrored, SPECIMEN) for seed in range(SETS)]
+    assert np.sum(np.array(found) <= 0.1) > 0.1 * SETS + 5.0 * SPREAD

@@ -69,10 +69,11 @@ def test_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: 
     assert "first" in found["state_told_by_edges"].measured
 
 
-def test_a_record_that_holds_samples_of_another_is_found(
+def test_a_set_without_leaks_gives_no_finding_until_a_record_holds_samples_of_another(
     clean: PlantedSet, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     own = measured(TWICE, tmp_path_factory)
+    assert separability_findings(own) == []
     values = signals(clean.table, CHANNELS[0])
     values[7, 3000:7000] = values[2, 1237:5237]  # not at the same place
     raw = raw_columns(recordings(replace(clean, table=with_signals(clean.table, CHANNELS[0], values))))

@@ -58,7 +58,7 @@ def test_labels_of_the_damage_itself_and_of_what_follows_from_it_are_no_tie(clea
     severe, state = clean.labels["state"] == "severe", clean.labels["state_id"].astype(float)
     of_damage = {"through_face": severe, "sink_depth_um": 12.0 * severe}
     follows = {"snr_lid_x_db": state, "contact_loss_share": state, "damage_count": state}
-    assert named(relabelled(clean, **of_damage, **follows)) == []
+    assert traps(relabelled(clean, **of_damage, **follows)) == []
 
 
 @pytest.mark.parametrize(
