@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
 from collections.abc import Iterator
 
 import pytest
@@ -22,6 +23,13 @@ def one_worker() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("siggen.engines.registry.default_workers", lambda: 1)
         yield
+
+
+@pytest.fixture(autouse=True)
+def nothing_said_yet(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each test says whole what it takes of a file: a process says the same table only once."""
+    if (taken := sys.modules.get("diagnostics.recordings.taken")) is not None:
+        monkeypatch.setattr(taken, "_said", {})
 
 
 LONG = ("tests/walks/", "tests/diagnostics/", "tests/sets/", "tests/dataset/")
