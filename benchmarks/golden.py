@@ -17,7 +17,7 @@ import llvmlite.binding
 import numpy as np
 
 from benchmarks.shipped import ROOT, shipped
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.columns.versions import SIMULATION_VERSION
 from siggen.config import Config
 from siggen.planning.plan import planned_record
@@ -61,12 +61,12 @@ class Moved(NamedTuple):
         return f"moved by {self.by:.2g} of rms" if self.by is not None else f"moved: {', '.join(self.names)}"
 
 
-def records(preset: str) -> Iterator[Record]:
+def records(preset: str) -> Iterator[SimulatedRecord]:
     """Yield a short record of every state of the first gearbox of a preset, at its first operating point."""
     config = shipped(ROOT / "configs" / f"{preset}.yaml", f"duration_s={DURATION_S}")
     found = simulate_specimen(config, [_first_record(config, state) for state in range(len(config.states))])
     for record in found:
-        if not isinstance(record, Record):
+        if not isinstance(record, SimulatedRecord):
             raise RuntimeError(f"{preset}: {record.reason}")
         yield record
 

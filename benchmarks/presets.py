@@ -8,7 +8,7 @@ from pathlib import Path
 
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import ROOT, shipped
-from siggen.columns.record import Record, record_batch, record_schema
+from siggen.columns.record import SimulatedRecord, record_batch, record_schema
 from siggen.config import Config
 from siggen.dataset.shard import table_draft
 from siggen.dataset.storage import LocalFolder
@@ -51,7 +51,7 @@ def _costs(config: Config, gearbox: int) -> dict[str, float]:
     states = {planned_record(config, i).state_id for i in ids}
     with collected("rest") as times:
         results = list(simulate_specimen(config, chosen))
-        records = [result for result in results if isinstance(result, Record)]
+        records = [result for result in results if isinstance(result, SimulatedRecord)]
         with stage("writing"), tempfile.TemporaryDirectory() as folder:
             draft = table_draft(LocalFolder(Path(folder)), "data.parquet", record_schema(config), len(records))
             with draft as data:

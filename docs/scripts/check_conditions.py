@@ -26,7 +26,7 @@ from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import Mesh
 from diagnostics.signal.shaft_angle import shaft_angle
 from diagnostics.statistics.change_score import FEWEST, change_score
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.errors import UsageError
 
 DURATION_S, RANGE = 4.0, (0.95, 1.06)
@@ -69,7 +69,7 @@ def recorded(number: int, folder: Path, over: str) -> dict[str, np.ndarray]:
         changes = {"operating_points": conditions, "states": states, "specimens": 1, "duration_s": DURATION_S}
         config = siggen.load_config({**raw, **changes})
         count = len(states) * len(conditions)
-        records = [one for one in siggen.simulate(config, range(count)) if isinstance(one, Record)]
+        records = [one for one in siggen.simulate(config, range(count)) if isinstance(one, SimulatedRecord)]
         angles = [pulses(one) for one in records]
         rows = [features(one.channels, own) if own.size else None for one, own in zip(records, angles, strict=True)]
         unknown = np.full(next(row for row in rows if row is not None).size, np.nan)
@@ -83,7 +83,7 @@ def recorded(number: int, folder: Path, over: str) -> dict[str, np.ndarray]:
     return dict(np.load(kept))
 
 
-def pulses(record: Record) -> np.ndarray:
+def pulses(record: SimulatedRecord) -> np.ndarray:
     """Return the pulse times [s] of the pinion by the mesh lines, (0,) where they give no angle."""
     low, high = (factor * float(record.labels["speed_hz"]) for factor in RANGE)
     try:

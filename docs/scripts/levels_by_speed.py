@@ -15,7 +15,7 @@ import numpy as np
 from scipy.signal import welch
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.record.simulation import simulate
 
 SPEEDS_HZ = (5.0, 10.0, 20.0, 40.0)
@@ -43,14 +43,14 @@ class Levels(NamedTuple):
         return 20.0 * float(np.polyfit(np.log10(SPEEDS_HZ), np.log10(self.noise), 1)[0])
 
 
-def records(gearboxes: int, changes: list[str]) -> Iterator[tuple[float, int, Record]]:
+def records(gearboxes: int, changes: list[str]) -> Iterator[tuple[float, int, SimulatedRecord]]:
     """Yield speed, gearbox and its healthy record."""
     for speed_hz in SPEEDS_HZ:
         point = [f"operating_points.0.speed_hz={speed_hz}", f"operating_points.0.torque_nm={TORQUE_NM}"]
         config = load_config("configs/quickstart.yaml", [*point, "duration_s=1.2", *changes])
         for gearbox in range(gearboxes):
             (found,) = simulate(config, [gearbox * config.records_per_specimen])
-            assert isinstance(found, Record), found
+            assert isinstance(found, SimulatedRecord), found
             yield speed_hz, gearbox, found
 
 

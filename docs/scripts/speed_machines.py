@@ -27,7 +27,7 @@ import siggen
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_angle import AGREEMENT, shaft_angle
 from siggen.checks.face_accuracy import covering_classes
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import inherited, parse_yaml
 from siggen.errors import UsageError
 from siggen.rig.rig_answers import rig_of
@@ -90,7 +90,7 @@ def recordings(index: int) -> Iterator[Known]:
     raw, teeth = machine(index)
     config = siggen.load_config(raw)
     for number, record in enumerate(siggen.simulate(config, range(2))):
-        if isinstance(record, Record):
+        if isinstance(record, SimulatedRecord):
             channels = {name: signal.astype(np.float64) for name, signal in record.channels.items()}
             pulses = np.asarray(record.tacho_s, dtype=np.float64)
             one = Known(channels, config.fs_hz, teeth, pulses, np.arange(float(pulses.size)))

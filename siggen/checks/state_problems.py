@@ -9,7 +9,7 @@ from typing import Any
 from pydantic_core import PydanticCustomError
 
 from siggen.checks.physical_problems import physical_problems
-from siggen.config import ParsedConfig, State
+from siggen.config import ParsedConfig, StateSection
 from siggen.config.changes import Change, changed_sections
 from siggen.config.consistency import consistency_problems
 from siggen.config.states import changes_of
@@ -19,7 +19,7 @@ from siggen.keys.problems import refused_problems
 
 def state_problems(parsed: ParsedConfig) -> Iterator[Problem]:
     """Yield what is wrong with what states change, at the bounds of all numbers; of keys that are valid otherwise."""
-    states: Mapping[int, State] = parsed.sections.get("states", {})
+    states: Mapping[int, StateSection] = parsed.sections.get("states", {})
     if parsed.problems or not any(state.changes for state in states.values()):
         return
     known = {problem.path for problem in _every(parsed, parsed.sections)}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.record import ID_COLUMNS, Record, record_value, schema_metadata
+from siggen.columns.record import ID_COLUMNS, SimulatedRecord, record_value, schema_metadata
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, is_of_contact_alone
 from siggen.errors import DatasetError
 from siggen.keys.column import Column, list_of
@@ -31,7 +31,7 @@ def internals_group_rows(config: Config, quantities: Sequence[Column]) -> int:
     return 1 << (max(1, rows).bit_length() - 1)
 
 
-def internals_batch(config: Config, quantities: Sequence[Column], records: Sequence[Record]) -> pa.RecordBatch:
+def internals_batch(config: Config, quantities: Sequence[Column], records: Sequence[SimulatedRecord]) -> pa.RecordBatch:
     """Return the internals of the records that have some, as rows of `internals_schema`.
 
     Raises
@@ -57,7 +57,7 @@ def _field(config: Config, column: Column) -> pa.Field:
     return pa.field(column.name, list_of(pa.float32(), config.samples), nullable=False, metadata=facts)
 
 
-def _series(config: Config, record: Record, name: str) -> np.ndarray:
+def _series(config: Config, record: SimulatedRecord, name: str) -> np.ndarray:
     internals: Mapping[str, np.ndarray] = record.internals or {}
     where = f"record {record.planned.record_id}, internal quantity {name}"
     if name not in internals:

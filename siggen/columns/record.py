@@ -47,7 +47,7 @@ class Channel:
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class SimulatedRecord:
     """One simulated record.
 
     Attributes
@@ -128,7 +128,7 @@ def channel_label_columns(channel: str, quantity: Quantity) -> tuple[Column, ...
 
 
 def label_columns(config: Config) -> tuple[Column, ...]:
-    """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
+    """Return what `SimulatedRecord.labels` holds: labels, conditions, errors of the gears, labels of every channel."""
     named = ((name, sensor.quantity) for sensor in config.sensors for name, _ in sensor.channels)
     per_channel = (column for one in named for column in channel_label_columns(*one))
     common, behind = (
@@ -138,7 +138,7 @@ def label_columns(config: Config) -> tuple[Column, ...]:
 
 
 def label_names(config: Config) -> tuple[str, ...]:
-    """Return the keys of `Record.labels`."""
+    """Return the keys of `SimulatedRecord.labels`."""
     return ("state", *(column.name for column in label_columns(config)))
 
 
@@ -213,7 +213,7 @@ def signal_channels(schema: pa.Schema) -> tuple[Channel, ...]:
     return tuple(found)
 
 
-def record_batch(config: Config, records: Sequence[Record]) -> pa.RecordBatch:
+def record_batch(config: Config, records: Sequence[SimulatedRecord]) -> pa.RecordBatch:
     """Return records as rows of `record_schema(config)`.
 
     Raises
@@ -248,12 +248,12 @@ def _signal_array(signals: Sequence[np.ndarray], signal_type: pa.DataType) -> pa
     return pa.FixedSizeListArray.from_arrays(pa.array(values, pa.float32()), type=signal_type)
 
 
-def record_value(record: Record, name: str) -> object:
+def record_value(record: SimulatedRecord, name: str) -> object:
     """Return a label of a record, or an id from its place in the plan."""
     return record.labels[name] if name in record.labels else getattr(record.planned, name)
 
 
-def _check_record(config: Config, record: Record) -> None:
+def _check_record(config: Config, record: SimulatedRecord) -> None:
     where = f"record {record.planned.record_id}"
     _check_names(where, "labels", record.labels, label_names(config))
     _check_names(where, "channels", record.channels, [channel.name for channel in channels(config)])
@@ -268,7 +268,7 @@ def _check_record(config: Config, record: Record) -> None:
         raise DatasetError(f"{where}: {reason}; a record that could not be simulated is a RecordFailure, never a row")
 
 
-def non_finite(record: Record) -> str:
+def non_finite(record: SimulatedRecord) -> str:
     """Return what in a record is NaN or infinite, or an empty string.
 
     Allowed are an infinite signal-to-noise ratio, and NaN in what a tooth pair has only while it touches.

@@ -24,7 +24,7 @@ from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.planetary import Planetary
 from siggen.config.presets import config_file
 from siggen.config.stages import Stage
-from siggen.config.states import State
+from siggen.config.states import StateSection
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
 from siggen.config.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
@@ -64,7 +64,7 @@ __all__ = [
     "SpeedVariation",
     "Splits",
     "Stage",
-    "State",
+    "StateSection",
     "Stiffness",
     "TorqueVariation",
     "Unbalance",

@@ -23,7 +23,7 @@ from siggen.config.names import NO_NAMES, Names
 from siggen.config.planetary import Planetary
 from siggen.config.short_form import names_of, own_form
 from siggen.config.stages import Stage
-from siggen.config.states import State, changes_of, grown_from
+from siggen.config.states import StateSection, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
 from siggen.errors import Problem
@@ -111,7 +111,9 @@ class Config(Section):
     operating_points: Annotated[tuple[OperatingRange, ...], Field(min_length=1), OPERATING_POINTS] = Field(
         description="speeds and torques; ranges are drawn for each entry"
     )
-    states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(default=(), description="conditions of health")
+    states: Annotated[tuple[StateSection, ...], Field(min_length=1)] = Field(
+        default=(), description="conditions of health"
+    )
     life: Life | None = Field(
         default=None, description="null: `states`; given: gearboxes run until teeth fail, and `states` has no entry"
     )

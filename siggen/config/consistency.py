@@ -15,7 +15,7 @@ from siggen.config.planetary import RING, in_pair
 from siggen.config.planetary_problems import sets_problems
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
 from siggen.config.stages import shaft_turns
-from siggen.config.states import SEVERITIES, State
+from siggen.config.states import SEVERITIES, StateSection
 from siggen.errors import Problem
 from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.number import bounds
@@ -223,7 +223,7 @@ def _raw_name(entry: object) -> object:
 
 
 def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    states: Mapping[int, State] = sections.get("states", {})
+    states: Mapping[int, StateSection] = sections.get("states", {})
     names = _raw_names(raw, "states")
     for index, state in states.items():
         if not state.faulty or state.grows_from == "none":
@@ -244,7 +244,7 @@ def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[
 
 def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield labels that do not say what a state shows, by its own damage or by that of a state before it."""
-    states: Mapping[int, State] = sections.get("states", {})
+    states: Mapping[int, StateSection] = sections.get("states", {})
     for index, state in states.items():
         if not state.faulty or state.fault == HEALTHY:
             continue
@@ -259,7 +259,7 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
             yield Problem(f"states.{index}.fault", _shown_text(state), _words_text([*words], state.fault, kinds))
 
 
-def _shown_text(state: State) -> str:
+def _shown_text(state: StateSection) -> str:
     kinds = " and ".join(dict.fromkeys(section.kind_word() for section in state.damages))
     return f"'{state.fault}', with {f'damage of kind {kinds}' if kinds else 'changes alone'}"
 
@@ -270,7 +270,7 @@ def _words_text(words: Sequence[str], fault: str, kinds: Sequence[str]) -> str:
     return f"{known}; {needed}" if kinds else f"{known}{nearest(fault, words)}"
 
 
-def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem]:
+def _growth_problems(milder: StateSection, state: StateSection, path: str) -> Iterator[Problem]:
     if SEVERITIES.index(milder.severity) > SEVERITIES.index(state.severity):
         received = f"'{state.grows_from}', which is {milder.name} ({milder.severity}), for a {state.severity} state"
         yield Problem(f"{path}.grows_from", received, "allowed: a state that is not more severe, or none")

@@ -35,7 +35,7 @@ def _labels_are_optional(schema: dict[str, Any]) -> None:
     schema["required"] = [key for key in schema["required"] if key not in ("fault", "severity")]
 
 
-class State(Section):
+class StateSection(Section):
     """One condition: its label, its damage, and the milder state it has grown from."""
 
     model_config = ConfigDict(json_schema_extra=_labels_are_optional)
@@ -77,7 +77,7 @@ class State(Section):
             return ()
         return self.damage if isinstance(self.damage, tuple) else (self.damage,)
 
-    def with_damages(self, sections: tuple[Fault, ...]) -> State:
+    def with_damages(self, sections: tuple[Fault, ...]) -> StateSection:
         """Return the state with other sections in place of its own, as many."""
         if not sections:
             return self
@@ -125,7 +125,7 @@ class State(Section):
         return {**labels, **value}
 
     @model_validator(mode="after")
-    def _labels_agree(self) -> State:
+    def _labels_agree(self) -> StateSection:
         problems = [*self._name_problems(), *self._label_problems()]
         if problems:
             raise refusal(problems)
@@ -167,7 +167,7 @@ class State(Section):
                 yield Problem(key, received, "allowed: healthy, since nothing is removed; or sham: false")
 
 
-def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
+def grown_from(states: tuple[StateSection, ...], state_id: int) -> int | None:
     """Return the index of the state whose damage and changes a state contains, or None if it begins anew.
 
     Changes alone grow from nothing that is not named.
@@ -180,7 +180,7 @@ def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
     return next((i for i in reversed(range(state_id)) if states[i].damaged), None)
 
 
-def changes_of(states: tuple[State, ...], state_id: int) -> tuple[tuple[int, Change], ...]:
+def changes_of(states: tuple[StateSection, ...], state_id: int) -> tuple[tuple[int, Change], ...]:
     """Return what a state changes, each with the state that says so: its own and, of other keys, its milder state's."""
     found: dict[str, tuple[int, Change]] = {}
     index: int | None = state_id

@@ -10,7 +10,7 @@ from siggen.columns.record import channels
 from siggen.errors import counted
 
 if TYPE_CHECKING:
-    from siggen.config import Config, State
+    from siggen.config import Config, StateSection
 
 WIDTH = 118
 STIFFNESS_DAMAGE = "remove material from the tooth's sections and shorten the contact line: the mesh loses stiffness."
@@ -72,7 +72,7 @@ def _states_text(config: Config) -> str:
     )
 
 
-def _state_text(state: State) -> str:
+def _state_text(state: StateSection) -> str:
     return "; ".join([f"* `{state.name}`: fault {state.fault}, severity {state.severity}", *state.remarks])
 
 

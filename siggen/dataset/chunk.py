@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 
 from siggen.columns.internals import internals_batch
-from siggen.columns.record import Record, RecordFailure, non_finite, record_batch
+from siggen.columns.record import RecordFailure, SimulatedRecord, non_finite, record_batch
 from siggen.errors import EngineError
 from siggen.keys.column import Column
 from siggen.record.stage_times import collected, stage
@@ -21,10 +21,10 @@ from siggen.record.stage_times import collected, stage
 if TYPE_CHECKING:
     from siggen.config import Config
 
-Simulate = Callable[["Config", Sequence[int]], Iterable[Record | RecordFailure]]
+Simulate = Callable[["Config", Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
 """(config, ids of one specimen's records) -> results in the same order, as `simulate_specimen` of siggen.record."""
 
-_PAUSED: dict[Any, Iterator[Record | RecordFailure]] = {}
+_PAUSED: dict[Any, Iterator[SimulatedRecord | RecordFailure]] = {}
 """The simulation of this process whose rest is to come, with the tables of its specimen; one at most."""
 
 
@@ -114,8 +114,8 @@ class ChunkSimulation:
                 )
         return ChunkResult(done, rows, tuple(failures), internals, times.seconds, f"{platform.node()} {os.getpid()}")
 
-    def _simulated(self, chunk: Chunk, until_s: float) -> tuple[Chunk, list[Record], list[RecordFailure]]:
-        records: list[Record] = []
+    def _simulated(self, chunk: Chunk, until_s: float) -> tuple[Chunk, list[SimulatedRecord], list[RecordFailure]]:
+        records: list[SimulatedRecord] = []
         failures: list[RecordFailure] = []
         results = self._begun(chunk)
         for record_id in chunk.records:
@@ -133,7 +133,7 @@ class ChunkSimulation:
             _PAUSED[self._key(rest)] = results
         return done, records, failures
 
-    def _begun(self, chunk: Chunk) -> Iterator[Record | RecordFailure]:
+    def _begun(self, chunk: Chunk) -> Iterator[SimulatedRecord | RecordFailure]:
         """Go on with a simulation that was paused here, or begin one."""
         paused = _PAUSED.pop(self._key(chunk), None)
         _PAUSED.clear()
@@ -142,10 +142,10 @@ class ChunkSimulation:
     def _key(self, chunk: Chunk) -> tuple[object, ...]:
         return self.config.identity, self.simulate, chunk.records
 
-    def _results(self, ids: range) -> Iterator[Record | RecordFailure]:
+    def _results(self, ids: range) -> Iterator[SimulatedRecord | RecordFailure]:
         yield from self.simulate(self.config, ids)
 
-    def _next(self, results: Iterator[Record | RecordFailure], ids: range) -> Record | RecordFailure:
+    def _next(self, results: Iterator[SimulatedRecord | RecordFailure], ids: range) -> SimulatedRecord | RecordFailure:
         """Return the result of the first of the records that are left."""
         try:
             result = next(results, None)

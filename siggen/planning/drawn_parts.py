@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
-from siggen.config import Config, State
+from siggen.config import Config, StateSection
 from siggen.config.oil import oils_of
 from siggen.faults.fault import Fault
 from siggen.keys.distributions import Choice
@@ -34,7 +34,7 @@ def has_drawn_parts(config: Config) -> bool:
     )
 
 
-def possible_states(states: Mapping[int, State]) -> Iterator[dict[int, State]]:
+def possible_states(states: Mapping[int, StateSection]) -> Iterator[dict[int, StateSection]]:
     """Yield the states with each gear that may be damaged, at most of its teeth: what checks look at."""
     either = any(_gear(one) == "either" for state in states.values() for one in state.damages)
     for gear in ("pinion", "gear") if either else ("pinion",):
@@ -67,7 +67,7 @@ def _with_damage(config: Config, hit: Hit) -> Config:
     return config.model_copy(update={"states": tuple(_state_hit(state, hit) for state in config.states)})
 
 
-def _state_hit(state: State, hit: Hit) -> State:
+def _state_hit(state: StateSection, hit: Hit) -> StateSection:
     hits = (one if _gear(one) is None else one.model_copy(update=hit(one)) for one in state.damages)
     return state.with_damages(tuple(hits))
 

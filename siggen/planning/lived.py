@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from siggen.config import Config, Gears, State
+from siggen.config import Config, Gears, StateSection
 from siggen.config.life import FUNCTIONAL_SHARE, JITTER, Life
 from siggen.faults.registry import HEALTHY
 from siggen.keys.drawing import draw
@@ -67,17 +67,17 @@ class Lived:
         return counted_mg(self.course.removed_m3(self.clock.time(age_h)), age_h, self.named)
 
 
-def lived_states(life: Life, found: Lived) -> tuple[State, ...]:
+def lived_states(life: Life, found: Lived) -> tuple[StateSection, ...]:
     """Return the inspections of a gearbox as states."""
     return tuple(_state(life, found, number) for number in range(len(found.ages_h)))
 
 
-def _state(life: Life, found: Lived, number: int) -> State:
+def _state(life: Life, found: Lived, number: int) -> StateSection:
     time = found.clock.time(found.ages_h[number])
     damage = found.course.damage(time)
     severity = SEVERITIES[PHASES.index(found.phase(time))] if damage is not None else "healthy"
     fault = HEALTHY if damage is None else damage.words[0]
-    return State(name=life.name_of(number), fault=fault, severity=severity, grows_from="none", damage=damage)
+    return StateSection(name=life.name_of(number), fault=fault, severity=severity, grows_from="none", damage=damage)
 
 
 def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:

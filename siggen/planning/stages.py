@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from siggen.config import Config, Gears, OperatingRange, Pair, PlainRotor, Rotor, Stage, State
+from siggen.config import Config, Gears, OperatingRange, Pair, PlainRotor, Rotor, Stage, StateSection
 from siggen.config.machine import Machine
 from siggen.config.planetary import RING, in_pair
 from siggen.config.short_form import mesh_alone
@@ -97,7 +97,7 @@ def ring_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _sections_on(sections: Mapping[str, Any], name: str) -> dict[str, Any]:
-    states: Mapping[int, State] = sections.get("states", {})
+    states: Mapping[int, StateSection] = sections.get("states", {})
     own = {index: state.model_copy(update={"damage": _own(state, name)}) for index, state in states.items()}
     return {**sections, "states": own, "stages": ()}
 
@@ -129,19 +129,19 @@ def _machine(config: Config, number: int) -> Machine | None:
     return None if config.machine is None else mesh_alone(config.machine, number)
 
 
-def _states_on(config: Config, name: str) -> tuple[State, ...]:
+def _states_on(config: Config, name: str) -> tuple[StateSection, ...]:
     """Return the states with their damage on the gears of one mesh alone, which are called pinion and gear there."""
     return tuple(_on(config, state_id, name) for state_id in range(len(config.states)))
 
 
-def _on(config: Config, state_id: int, name: str) -> State:
+def _on(config: Config, state_id: int, name: str) -> StateSection:
     """Return a state with the damage of one mesh; what it grows from stays, though it may add nothing here."""
     state, older = config.states[state_id], config.grown_from(state_id)
     milder = "none" if older is None else config.states[older].name
     return state.model_copy(update={"damage": _own(state, name), "grows_from": milder})
 
 
-def _own(state: State, name: str) -> tuple[Fault, ...] | Fault | None:
+def _own(state: StateSection, name: str) -> tuple[Fault, ...] | Fault | None:
     """Return the damage of a state on one mesh as a section or a list, as the state has it."""
     own = tuple(_alone(one) for one in state.damages if stage_of(one) == name)
     return (own if isinstance(state.damage, tuple) else own[0]) if own else None

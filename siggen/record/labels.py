@@ -12,7 +12,7 @@ from siggen.columns.state_columns import (
     has_sham,
     shown_words,
 )
-from siggen.config import Config, State
+from siggen.config import Config, StateSection
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.part import Parts, teeth_of
 from siggen.gears.geometry.gear_pair import GearPair
@@ -36,7 +36,7 @@ def _faulty_gear(parts: Parts) -> str:
 
 
 def damage_labels(
-    state: State, pair: GearPair, parts: Parts, options: StiffnessOptions, sink_depth_m: float = 0.0
+    state: StateSection, pair: GearPair, parts: Parts, options: StiffnessOptions, sink_depth_m: float = 0.0
 ) -> dict[str, object]:
     """Return the labels that follow from the damage alone: fault, severity, teeth, areas, lengths and losses.
 

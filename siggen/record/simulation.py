@@ -10,7 +10,7 @@ import numpy as np
 
 from siggen.checks.quantity_names import acceleration_name
 from siggen.columns.own_columns import own_labels
-from siggen.columns.record import Record, RecordFailure
+from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
@@ -126,7 +126,7 @@ def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: Pl
 
 def simulated(
     config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
-) -> Record:
+) -> SimulatedRecord:
     """Return one record of a specimen in a state; `config` is that of its gearbox.
 
     Raises
@@ -168,7 +168,7 @@ def simulated(
     if isinstance(response, StreamedInternals):
         internals = {config.names.column(name): values for name, values in response.quantities().items()}
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
-    return Record(planned, labels, channels, tacho_s, internals)
+    return SimulatedRecord(planned, labels, channels, tacho_s, internals)
 
 
 class _RefusedPieces:
@@ -193,7 +193,7 @@ class _RefusedPieces:
             yield piece
 
 
-def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
+def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[SimulatedRecord | RecordFailure]:
     machine_of = machines(whole, records[0].specimen_id)
     state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(machine_of(state_id), state_id))
     loaded = lru_cache(maxsize=2)(lambda state_id, point_id: machine_of(state_id).at_point(point_id))
@@ -214,7 +214,7 @@ def _staged_state(machine: Machine, state_id: int) -> SpecimenState:
         return specimen_state(machine.config, machine.specimen, state_id, machine.gears)
 
 
-def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[Record | RecordFailure]:
+def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[SimulatedRecord | RecordFailure]:
     """Simulate records of one specimen, each when it is asked for; stiffness tables are built once per state.
 
     Parameters
@@ -224,7 +224,7 @@ def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[Rec
 
     Returns
     -------
-    iterator of Record or RecordFailure, in the order of `record_ids`
+    iterator of SimulatedRecord or RecordFailure, in the order of `record_ids`
 
     Raises
     ------
@@ -240,7 +240,7 @@ def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[Rec
     return _results(config, records)
 
 
-def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Simulate any records; a record is a pure function of (config, record_id), so order and grouping do not matter."""
     by_specimen: dict[int, list[int]] = {}
     for record_id in record_ids:

@@ -16,7 +16,7 @@ from siggen.planning.plan import record_ids_of
 from siggen.sets import physics as contents
 
 if TYPE_CHECKING:
-    from siggen.columns.record import Record
+    from siggen.columns.record import SimulatedRecord
     from siggen.config import Config
 
 GEARBOXES, RECORDS = 10, 50
@@ -68,7 +68,7 @@ def trial(config: Config, gearboxes: int, progress: Callable[[int, int], None] |
         Called with (records done, records of the trial).
     """
     short, tried = shortened(config), min(gearboxes, config.specimens)
-    found: dict[str, list[Record | RecordFailure]] = {name: [] for name in config.state_names}
+    found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in config.state_names}
     total = tried * len(found)
     for specimen in range(tried):
         if progress is not None:
@@ -98,12 +98,12 @@ def _record_ids(config: Config, specimen: int) -> Sequence[int]:
     return record_ids_of(config, specimen)[point * config.repeats :: each]
 
 
-def _state_trial(name: str, results: Sequence[Record | RecordFailure]) -> StateTrial:
+def _state_trial(name: str, results: Sequence[SimulatedRecord | RecordFailure]) -> StateTrial:
     reasons = [reason for result in results if (reason := _lost(result))]
     return StateTrial(name, len(results), len(reasons), reasons[0] if reasons else "")
 
 
-def _lost(result: Record | RecordFailure) -> str:
+def _lost(result: SimulatedRecord | RecordFailure) -> str:
     if isinstance(result, RecordFailure):
         return f"{result.status} ({result.reason})"
     return non_finite(result) or ""

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, label_names
+from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.record.simulation import simulate
@@ -44,8 +44,8 @@ def test_a_sensor_shows_the_density_of_its_table(tmp_path: Path) -> None:
     noisy = load_config(minimal(sensors=[{**PLAIN, "noise_spectrum": {**table, "factor": 2.0}}], **raw))
     clean = load_config(minimal(sensors=[PLAIN], **raw))
     found, without = simulate(noisy, [0])[0], simulate(clean, [0])[0]
-    assert isinstance(found, Record)
-    assert isinstance(without, Record)
+    assert isinstance(found, SimulatedRecord)
+    assert isinstance(without, SimulatedRecord)
     assert set(found.labels) == set(label_names(noisy))
     added = found.channels["bearing_vertical"].astype(float) - without.channels["bearing_vertical"]
     assert found.labels["noise_spectrum_bearing_vertical_m_s2"] == pytest.approx(added.std(), rel=1e-4)

@@ -12,7 +12,7 @@ import yaml
 from siggen.checks.loading import load_config
 from siggen.checks.shaft_notes import shaft_notes
 from siggen.checks.tilt_problems import MEMBERS, NEEDED, flank_tilts, static_tilts_rad
-from siggen.columns.record import Record, RecordFailure
+from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import simulate
@@ -127,7 +127,7 @@ def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
     assert 0.0 < np.median(rooms) < 1.0
 
 
-def in_motion(**pinion: float) -> Record | RecordFailure:
+def in_motion(**pinion: float) -> SimulatedRecord | RecordFailure:
     askew = {"accuracy_class": 6, "lead_misalignment_um": 30.0}
     config = load_config(with_shafts(**pinion) | {"fs_hz": 25600.0, "duration_s": 0.05, "manufacture": askew})
     return simulate(config, [0])[0]
@@ -142,7 +142,7 @@ def test_shafts_that_are_too_soft_end_a_record_with_a_reason() -> None:
 
 
 def test_a_face_pushed_askew_until_it_rests_on_one_end_is_no_reason_to_lose_a_record() -> None:
-    assert isinstance(in_motion(diameter_mm=14.0), Record)
+    assert isinstance(in_motion(diameter_mm=14.0), SimulatedRecord)
 
 
 def test_a_tilt_in_motion_at_which_an_end_of_the_face_meets_the_other_flank_is_refused() -> None:

@@ -15,7 +15,7 @@ from unittest.mock import patch
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.record import Column, Record, RecordFailure
+from siggen.columns.record import Column, RecordFailure, SimulatedRecord
 from siggen.config import Config, parse
 from siggen.planning import plan
 from siggen.planning.plan import PlannedRecord, planned_record
@@ -61,7 +61,7 @@ def fake_config(**changes: Any) -> Config:
     return parsed.config
 
 
-def fake_record(config: Config, planned: PlannedRecord) -> Record:
+def fake_record(config: Config, planned: PlannedRecord) -> SimulatedRecord:
     """Noise on the converter's grid, and labels that follow from the state."""
     rng = np.random.default_rng([config.seed, planned.record_id])
     state = config.states[planned.state_id]
@@ -101,7 +101,7 @@ def fake_record(config: Config, planned: PlannedRecord) -> Record:
         accel = 20.0 * np.sin(2 * np.pi * 540.0 * t_s) + rng.normal(scale=0.5, size=config.samples)
         signals[name] = (np.round(accel / STEP_M_S2) * STEP_M_S2).astype(np.float32)
         labels |= {f"noise_floor_{name}_m_s2": 0.5, f"snr_{name}_db": 29.0, f"clipped_share_{name}": 0.0}
-    return Record(planned, labels, signals, np.arange(3) / 30.0, fake_internals(config, planned))
+    return SimulatedRecord(planned, labels, signals, np.arange(3) / 30.0, fake_internals(config, planned))
 
 
 QUANTITIES = (
@@ -127,40 +127,40 @@ def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarr
     return {"mesh_force_n": force, "pair_1_force_n": -force, "pair_1_film_ratio": film}
 
 
-def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for `siggen.record.simulation.simulate_specimen`."""
     return [fake_record(config, planned_record(config, i)) for i in record_ids]
 
 
-def simulate_with_thicker_films(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_with_thicker_films(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Change the last film of every record by 1 %."""
     results = simulate(config, record_ids)
     for result in results:
-        if isinstance(result, Record) and "pair_1_film_ratio" in (result.internals or {}):
+        if isinstance(result, SimulatedRecord) and "pair_1_film_ratio" in (result.internals or {}):
             result.internals["pair_1_film_ratio"][config.samples // 2 - 1] *= 1.01
     return results
 
 
-def simulate_with_longer_contact(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_with_longer_contact(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Give every film one sample more."""
     results = simulate(config, record_ids)
     for result in results:
-        if isinstance(result, Record) and "pair_1_film_ratio" in (result.internals or {}):
+        if isinstance(result, SimulatedRecord) and "pair_1_film_ratio" in (result.internals or {}):
             result.internals["pair_1_film_ratio"][config.samples // 2] = 2.0
     return results
 
 
-def simulate_slowly(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_slowly(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Give a test the time to kill something."""
     time.sleep(0.05 * len(record_ids))
     return simulate(config, record_ids)
 
 
-def simulate_with_failures(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_with_failures(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Fail at records 3 and 8, and give one signal a NaN (record 10)."""
-    results: list[Record | RecordFailure] = []
+    results: list[SimulatedRecord | RecordFailure] = []
     for result in simulate(config, record_ids):
-        assert isinstance(result, Record)
+        assert isinstance(result, SimulatedRecord)
         record_id = result.planned.record_id
         if record_id == 10:
             result.channels["bearing_vertical"][5] = np.nan
@@ -169,19 +169,19 @@ def simulate_with_failures(config: Config, record_ids: Sequence[int]) -> list[Re
     return results
 
 
-def simulate_none(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_none(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Fail at every record."""
     return [RecordFailure(i, "diverged", "always") for i in record_ids]
 
 
-def simulate_with_a_bug(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_with_a_bug(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Raise at record 8, as only a fault of the program does."""
     if 8 in record_ids:
         raise ZeroDivisionError("a bug")
     return simulate(config, record_ids)
 
 
-def simulate_and_die_once(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_and_die_once(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Kill the worker at record 8, the first time only."""
     marker = Path(os.environ["SIGGEN_TEST_MARKER"])
     if 8 in record_ids and not marker.exists():
@@ -190,7 +190,7 @@ def simulate_and_die_once(config: Config, record_ids: Sequence[int]) -> list[Rec
     return simulate(config, record_ids)
 
 
-def simulate_and_die(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_and_die(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Kill the worker at record 8, every time."""
     if 8 in record_ids:
         os.kill(os.getpid(), signal.SIGKILL)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.quantity_names import available_quantities
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gears.damage.chip import Chip
@@ -30,10 +30,10 @@ def quick(*damages: dict[str, Any], torque_nm: float = 60.0, speed_hz: float = 3
     return config.model_copy(update={"fs_hz": 27000.0, "duration_s": 0.3, "operating_points": points})
 
 
-def records(config: Config, ids: list[int]) -> list[Record]:
+def records(config: Config, ids: list[int]) -> list[SimulatedRecord]:
     found = simulate(config, ids)
-    assert all(isinstance(one, Record) for one in found), found
-    return [one for one in found if isinstance(one, Record)]
+    assert all(isinstance(one, SimulatedRecord) for one in found), found
+    return [one for one in found if isinstance(one, SimulatedRecord)]
 
 
 def test_a_missing_tooth_is_simulated_and_strikes_once_per_turn() -> None:

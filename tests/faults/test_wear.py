@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diagnostics.indicators.record import record_values
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.errors import ConfigError
 from siggen.gears.damage.wear import LABEL_POINTS, Wear
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
@@ -67,8 +67,8 @@ def test_worn_gears_that_are_perfect_otherwise_stay_on_mesh_lines() -> None:
     dynamics = config.dynamics.model_copy(update={"friction": friction})
     config = config.model_copy(update={"fs_hz": 27000.0, "duration_s": 0.6, "dynamics": dynamics})
     healthy, worn = simulate(config, [0, 1])
-    assert isinstance(healthy, Record)
-    assert isinstance(worn, Record)
+    assert isinstance(healthy, SimulatedRecord)
+    assert isinstance(worn, SimulatedRecord)
     assert (healthy.labels["fault"], worn.labels["fault"]) == ("healthy", "wear")
     assert (worn.labels["faulty_gear"], worn.labels["faulty_teeth_pinion"]) == ("both", [])
     lines = []
@@ -111,7 +111,7 @@ def test_fm4_of_worn_gears_is_that_of_healthy_ones_in_the_same_noise() -> None:
     noise = np.random.default_rng(3).standard_normal(config.samples)
     found = []
     for record in simulate(config, [0, 1]):
-        assert isinstance(record, Record)
+        assert isinstance(record, SimulatedRecord)
         signal = record.channels["bearing_vertical"].astype(float) + noise
         values = record_values({"a": signal}, record.tacho_s, config.fs_hz, (18, 47)).values
         found.append((values["fm4_pinion__a"], values["mesh_amplitude_h1__a"]))

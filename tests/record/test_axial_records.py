@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.record.simulation import simulate
@@ -37,7 +37,7 @@ def helical(helix_deg: float = HELIX_DEG, **changes: Any) -> Config:
 def test_the_thrust_is_that_of_the_torque_and_swings_with_the_mesh() -> None:
     """By hand: torque over pitch radius times tan β."""
     (found,) = simulate(helical(), [0])
-    assert isinstance(found, Record)
+    assert isinstance(found, SimulatedRecord)
     channels = {name: np.asarray(values, dtype=np.float64) for name, values in found.channels.items()}
     radius_m = 0.5 * 18 * 3e-3 / cos(radians(HELIX_DEG))
     expected_n = 60.0 / radius_m * tan(radians(HELIX_DEG))

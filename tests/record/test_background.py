@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, label_names
+from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config, RigidHousing
 from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
@@ -58,9 +58,9 @@ def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     return load_config(minimal(sensors=list(sensors or (ON_LID, PLAIN)), **changes))
 
 
-def record(config: Config, record_id: int = 0) -> Record:
+def record(config: Config, record_id: int = 0) -> SimulatedRecord:
     result = simulate(config, [record_id])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 
@@ -182,7 +182,7 @@ def test_a_second_stage_turns_the_housing_and_pushes_it_nowhere() -> None:
 def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
     config = loaded(background=ALL)
     for record_id, found in zip([0, 1], simulate_specimen(config, [0, 1]), strict=True):
-        assert isinstance(found, Record)
+        assert isinstance(found, SimulatedRecord)
         for name, signal in record(config, record_id).channels.items():
             assert signal.tobytes() == found.channels[name].tobytes()
 

@@ -11,7 +11,7 @@ from scipy.signal import fftconvolve
 import siggen.record.simulation as simulation
 import siggen.sensing.block_filter as block_filter
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
@@ -45,9 +45,9 @@ def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     return load_config(minimal(sensors=list(sensors or (LID, PLAIN)), **changes))
 
 
-def record(config: Config, record_id: int = 0) -> Record:
+def record(config: Config, record_id: int = 0) -> SimulatedRecord:
     result = simulate(config, [record_id])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 
@@ -102,7 +102,7 @@ def test_a_record_in_blocks_depends_on_itself_alone() -> None:
     together = simulate(config, [0, 1])
     with_internals = record(loaded(background=ALL, duration_s=0.2, internals={"quantities": ["all"]}))
     for found in (record(config), with_internals):
-        assert isinstance(together[0], Record)
+        assert isinstance(together[0], SimulatedRecord)
         for name, values in together[0].channels.items():
             assert found.channels[name].tobytes() == values.tobytes()
         assert {n: found.labels[n] for n in together[0].labels} == together[0].labels

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
@@ -30,13 +30,13 @@ def changed(changes: dict[str, Any], **more: Any) -> dict[str, Any]:
     return {**HOT, "changes": changes, **more}
 
 
-def record(chosen: Config, record_id: int) -> Record:
+def record(chosen: Config, record_id: int) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 
-def signals(found: Record) -> dict[str, bytes]:
+def signals(found: SimulatedRecord) -> dict[str, bytes]:
     return {name: signal.tobytes() for name, signal in found.channels.items()}
 
 

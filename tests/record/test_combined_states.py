@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, record_schema
+from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.record.simulation import damage_rows, simulate
@@ -33,9 +33,9 @@ def state(*damage: dict[str, Any], **more: Any) -> dict[str, Any]:
     return {"name": "severe", "damage": [*damage], **more}
 
 
-def record(chosen: Config, record_id: int = 1) -> Record:
+def record(chosen: Config, record_id: int = 1) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 

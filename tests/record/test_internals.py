@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import parse, parse_yaml
 from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.errors import ConfigError
@@ -31,7 +31,7 @@ def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None
     names = {column.name for column in stored_quantities(config)}
     last = config.records_per_specimen * 2 - 1
     for record in simulate(config, [0, last]):
-        assert isinstance(record, Record)
+        assert isinstance(record, SimulatedRecord)
         assert set(record.internals) == names
         assert all(values.dtype == np.float32 and len(values) == config.samples for values in record.internals.values())
 

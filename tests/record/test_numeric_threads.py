@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response, simulate
@@ -71,6 +71,6 @@ def _motion(config, record_id: int) -> dict[str, bytes]:
 
 def _stored(config, record_id: int) -> tuple[dict[str, bytes], str]:
     (record,) = simulate(config, [record_id])
-    assert isinstance(record, Record)
+    assert isinstance(record, SimulatedRecord)
     series = {**record.channels, **(record.internals or {})}
     return {name: values.tobytes() for name, values in series.items()}, repr(sorted(record.labels.items()))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.record.simulation import simulate
 
 OWN = "{speed_hz: 32, torque_nm: {kind: uniform, low: 50, high: 60}}"
@@ -16,15 +16,15 @@ HEAVIER = "{speed_hz: 64, torque_nm: 180}"
 SHORT = ["specimens=1", "duration_s=0.1", "background=null", "mesh_harmonics=5"]
 
 
-def records_of_the_first_point(folder: Path, points: str, states: tuple[int, ...]) -> dict[int, Record]:
+def records_of_the_first_point(folder: Path, points: str, states: tuple[int, ...]) -> dict[int, SimulatedRecord]:
     """Return a record of some states at the first operating point, of a file that a user could have written."""
     file = folder / f"{len(points)}.yaml"
     file.write_text(f"extends: quickstart\nname: same\noperating_points: [{points}]\n", encoding="utf-8")
     config = load_config(file, SHORT)
     per_state = len(config.operating_points) * config.repeats
     found = simulate(config, [state * per_state for state in states])
-    assert all(isinstance(record, Record) for record in found), found
-    return {record.planned.state_id: record for record in found if isinstance(record, Record)}
+    assert all(isinstance(record, SimulatedRecord) for record in found), found
+    return {record.planned.state_id: record for record in found if isinstance(record, SimulatedRecord)}
 
 
 @pytest.mark.parametrize("state", [0, 3], ids=["healthy", "severe"])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, label_names
+from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
@@ -35,9 +35,9 @@ def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     return load_config(raw(*sensors, **changes))
 
 
-def record(config: Config, record_id: int = 0) -> Record:
+def record(config: Config, record_id: int = 0) -> SimulatedRecord:
     result = simulate(config, [record_id])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 

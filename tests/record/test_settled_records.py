@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.record import simulation
 from tests.config.planets import planets
@@ -32,7 +32,7 @@ def planetary() -> dict[str, Any]:
 
 def signals(config: Config) -> dict[str, Any]:
     (record,) = simulation.simulate(config, [0])
-    assert isinstance(record, Record)
+    assert isinstance(record, SimulatedRecord)
     return dict(record.channels)
 
 

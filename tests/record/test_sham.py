@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, record_schema
+from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.faults.registry import BY_WORD
@@ -41,18 +41,18 @@ def sham_of(kind: str) -> dict[str, Any]:
     return {"name": "sham", "sham": True, "damage": {"kind": kind, **EXAMPLES[kind]}}
 
 
-def record(chosen: Config, record_id: int) -> Record:
+def record(chosen: Config, record_id: int) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 
 @pytest.fixture(scope="module")
-def healthy() -> Record:
+def healthy() -> SimulatedRecord:
     return record(config({"name": "again"}), 1)
 
 
-def assert_same(sham: Record, healthy: Record) -> None:
+def assert_same(sham: SimulatedRecord, healthy: SimulatedRecord) -> None:
     """Signals, pulses and labels byte for byte: step counts and solved numbers are among the labels."""
     for name, signal in healthy.channels.items():
         assert sham.channels[name].tobytes() == signal.tobytes(), name
@@ -62,7 +62,7 @@ def assert_same(sham: Record, healthy: Record) -> None:
 
 
 @pytest.mark.parametrize("kind", BY_WORD)
-def test_every_kind_without_its_loss_gives_the_record_of_healthy_teeth(kind: str, healthy: Record) -> None:
+def test_every_kind_without_its_loss_gives_the_record_of_healthy_teeth(kind: str, healthy: SimulatedRecord) -> None:
     sham = config(sham_of(kind))
     found = record(sham, 1)
     assert_same(found, healthy)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, RecordFailure
+from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.planning.gearbox import pair_config, pair_of
 from siggen.record.damage_rows import damage_rows
@@ -22,28 +22,30 @@ def config() -> Config:
 
 
 @pytest.fixture(scope="module")
-def specimen(config: Config) -> list[Record]:
+def specimen(config: Config) -> list[SimulatedRecord]:
     results = list(simulate_specimen(config, range(config.records_per_specimen)))
-    assert all(isinstance(r, Record) for r in results)
+    assert all(isinstance(r, SimulatedRecord) for r in results)
     return results  # type: ignore[return-value]
 
 
-def same(a: Record, b: Record) -> bool:
+def same(a: SimulatedRecord, b: SimulatedRecord) -> bool:
     signals = all(np.array_equal(a.channels[c], b.channels[c]) for c in a.channels)
     return signals and a.labels == b.labels and np.array_equal(a.tacho_s, b.tacho_s) and a.planned == b.planned
 
 
-def test_a_record_is_a_function_of_configuration_and_index_alone(config: Config, specimen: list[Record]) -> None:
+def test_a_record_is_a_function_of_configuration_and_index_alone(
+    config: Config, specimen: list[SimulatedRecord]
+) -> None:
     for index in (5, 0, 3):
         alone = next(simulate_specimen(config, [index]))
-        assert isinstance(alone, Record)
+        assert isinstance(alone, SimulatedRecord)
         assert same(alone, specimen[index])
 
 
 def test_records_of_several_specimens_come_back_in_the_order_asked_for(config: Config) -> None:
     per_specimen = config.records_per_specimen
     ids = [per_specimen, 0, per_specimen + 1]
-    assert [r.planned.record_id for r in simulate(config, ids) if isinstance(r, Record)] == ids
+    assert [r.planned.record_id for r in simulate(config, ids) if isinstance(r, SimulatedRecord)] == ids
 
 
 def test_simulating_two_specimens_as_one_is_refused(config: Config) -> None:
@@ -51,20 +53,20 @@ def test_simulating_two_specimens_as_one_is_refused(config: Config) -> None:
         simulate_specimen(config, [0, config.records_per_specimen])
 
 
-def test_states_of_a_specimen_share_speed_and_torque_but_not_noise_or_phase(specimen: list[Record]) -> None:
+def test_states_of_a_specimen_share_speed_and_torque_but_not_noise_or_phase(specimen: list[SimulatedRecord]) -> None:
     same_point = [r for r in specimen if r.planned.operating_point_id == 0]
     assert len({(r.labels["speed_hz"], r.labels["torque_nm"]) for r in same_point}) == 1
     assert len({r.labels["start_angle_rad"] for r in same_point}) == len(same_point)
 
 
-def test_force_over_approach_of_the_linear_law_loses_what_the_tables_lose(specimen: list[Record]) -> None:
+def test_force_over_approach_of_the_linear_law_loses_what_the_tables_lose(specimen: list[SimulatedRecord]) -> None:
     """Two computations: the pairs of the tables at rest, and the stiffness model searched for its largest loss."""
     for labels in (r.labels for r in specimen):
         # Interpolation between 2049 points, and a scan of 257 angles that is refined around its highest one.
         assert labels["mesh_stiffness_loss_as_simulated"] == pytest.approx(labels["mesh_stiffness_loss"], abs=1e-5)
 
 
-def test_frequencies_are_those_of_the_teeth(specimen: list[Record]) -> None:
+def test_frequencies_are_those_of_the_teeth(specimen: list[SimulatedRecord]) -> None:
     for labels in (r.labels for r in specimen):
         # The mean speed is that of the angle's ends; rounding of an angle of up to 300 rad over 0.1 s leaves 1e-13.
         assert labels["pinion_shaft_hz"] == pytest.approx(labels["speed_hz"], rel=1e-10)
@@ -79,7 +81,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
         [*SMALL, "states.3.damage.semi_axis_face_mm=6.0"],
     )
     results = list(simulate_specimen(config, range(config.records_per_specimen)))
-    assert [type(r) for r in results[:6]] == [Record] * 6
+    assert [type(r) for r in results[:6]] == [SimulatedRecord] * 6
     for failure in results[6:]:
         assert isinstance(failure, RecordFailure)
         assert failure.status == "impossible_damage"
@@ -116,8 +118,8 @@ def test_gearboxes_of_a_set_of_pairs_are_those_of_sets_of_one_pair_with_labels_t
         assert index is not None
         record_id = specimen_id * config.records_per_specimen + last
         found, alone = (simulate(one, [record_id])[0] for one in (config, pair_config(config, index)))
-        assert isinstance(found, Record)
-        assert isinstance(alone, Record)
+        assert isinstance(found, SimulatedRecord)
+        assert isinstance(alone, SimulatedRecord)
         assert all(np.array_equal(found.channels[c], alone.channels[c]) for c in alone.channels)
         told = {key: value for key, value in found.labels.items() if key not in alone.labels}
         assert found.labels == {**alone.labels, **told}

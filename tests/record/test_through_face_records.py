@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.record.simulation import simulate
@@ -29,9 +29,9 @@ def config(damage: dict[str, Any] | None = None, *overrides: str) -> Config:
     return load_config(raw, overrides)
 
 
-def record(chosen: Config, record_id: int) -> Record:
+def record(chosen: Config, record_id: int) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.record.simulation import simulate
@@ -22,10 +22,10 @@ def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     return load_config(minimal(sensors=list(sensors), **{**plain, **changes}))
 
 
-def record(config: Config, record_id: int = 0) -> Record:
+def record(config: Config, record_id: int = 0) -> SimulatedRecord:
     """Return a record that was simulated."""
     (result,) = simulate(config, [record_id])
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result
 
 

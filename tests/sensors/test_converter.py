@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, record_schema
+from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.planning.state_config import state_config
 from siggen.record.simulation import simulate
@@ -69,8 +69,11 @@ def test_its_step_adds_a_300th_of_the_noise_power() -> None:
 def test_every_record_of_a_set_has_one_step_whatever_its_state_does_to_the_noise() -> None:
     own = config(gain={"kind": "uniform", "low": 0.5, "high": 2.0})
     records = simulate(own, range(4))
-    assert {step_of(one.channels["bearing_vertical"]) for one in records if isinstance(one, Record)} == {STEP}
-    assert len({one.labels["noise_floor_bearing_vertical_m_s2"] for one in records if isinstance(one, Record)}) == 3
+    assert {step_of(one.channels["bearing_vertical"]) for one in records if isinstance(one, SimulatedRecord)} == {STEP}
+    assert (
+        len({one.labels["noise_floor_bearing_vertical_m_s2"] for one in records if isinstance(one, SimulatedRecord)})
+        == 3
+    )
     assert {state_config(own, 1, state).sensors[0].converter_step for state in (0, 1)} == {STEP}
     assert float(record_schema(own).field("accel_bearing_vertical_m_s2").metadata[b"converter_step"]) == STEP
 
@@ -78,5 +81,5 @@ def test_every_record_of_a_set_has_one_step_whatever_its_state_does_to_the_noise
 def test_the_step_is_part_of_the_identity() -> None:
     assert len({config(**own).identity for own in ({}, {"bits": 21}, {"noise": {"floor_m_s2": 0.02}})}) == 3
     signals = [simulate(config(**own), [0])[0] for own in ({}, {"bits": 21})]
-    first, second = (one.channels["bearing_vertical"].tobytes() for one in signals if isinstance(one, Record))
+    first, second = (one.channels["bearing_vertical"].tobytes() for one in signals if isinstance(one, SimulatedRecord))
     assert first == second

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, channels
+from siggen.columns.record import SimulatedRecord, channels
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
@@ -46,7 +46,7 @@ def refused(*sensors: dict[str, Any], **changes: Any) -> dict[str, str]:
 def signals(config: Config) -> dict[str, np.ndarray]:
     """Return the channels of the first record, which has no noise."""
     (record,) = simulate(config, [0])
-    assert isinstance(record, Record), record
+    assert isinstance(record, SimulatedRecord), record
     return {name: values.astype(float) for name, values in record.channels.items()}
 
 

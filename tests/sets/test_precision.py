@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 import siggen.record.simulation
 from siggen.cli.app import app
-from siggen.columns.record import Record, RecordFailure
+from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.dataset.manifest import PHYSICS, read_manifest
 from siggen.dataset.seal import sealed, unsealed
@@ -25,36 +25,36 @@ from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, file_bytes, simulate, write_fake_set
 
 
-def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[Record | RecordFailure]:
+def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for the physics: the reference differs from everything else by a share of the signal."""
     results = simulate(config, record_ids)
     if config.dynamics.method == "runge_kutta":
         for result in results:
-            assert isinstance(result, Record)
+            assert isinstance(result, SimulatedRecord)
             name = next(iter(result.channels))
             result.channels[name] = (result.channels[name] / (1.0 + error)).astype(np.float32)
     return results
 
 
-def simulate_converging(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_converging(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for a reference whose error falls with its steps alone, and slowly."""
     steps = config.dynamics.steps_per_sample
     return simulate_off_by(config, record_ids, 1e-3 * FIRST_STEPS / steps)
 
 
-def simulate_astray(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_astray(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for a reference that finer steps lead away."""
     return simulate_off_by(config, record_ids, 1e-5 * config.dynamics.steps_per_sample)
 
 
-def simulate_told(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_told(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for records that are off, with a label that says so."""
     results = simulate_off_by(config, record_ids, 2e-3)
     told = {"integration_error": 2.5e-3} if config.dynamics.method == "exponential" else {}
-    return [replace(one, labels={**one.labels, **told}) for one in results if isinstance(one, Record)]
+    return [replace(one, labels={**one.labels, **told}) for one in results if isinstance(one, SimulatedRecord)]
 
 
-def simulate_rounded(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+def simulate_rounded(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for a converter that makes a difference of 1e-4 one of 1e-2."""
     rounds = any(sensor.bits is not None for sensor in config.sensors)
     return simulate_off_by(config, record_ids, 1e-2 if rounds else 1e-4)

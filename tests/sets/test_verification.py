@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import siggen.sets.verification
 from siggen.cli.app import app
-from siggen.columns.record import Record, RecordFailure
+from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.dataset.environment import environment
 from siggen.errors import EXIT_MISMATCH, DatasetError
@@ -97,10 +97,10 @@ def test_a_folder_that_is_no_finished_set_is_no_mismatch_but_an_error(tmp_path: 
         verify(tmp_path / "nothing")
 
 
-def shifted(config: Config, ids: Sequence[int], by_m_s2: float) -> list[Record | RecordFailure]:
+def shifted(config: Config, ids: Sequence[int], by_m_s2: float) -> list[SimulatedRecord | RecordFailure]:
     results = []
     for record in simulate(config, ids):
-        assert isinstance(record, Record)
+        assert isinstance(record, SimulatedRecord)
         signal = record.channels["bearing_horizontal"].copy()
         signal[100] += np.float32(by_m_s2)
         results.append(replace(record, channels={**record.channels, "bearing_horizontal": signal}))
@@ -141,7 +141,7 @@ def test_elsewhere_one_step_of_the_converter_is_allowed_and_two_are_not(
 def test_labels_are_compared_too(
     reference: Path, monkeypatch: pytest.MonkeyPatch, label: str, value: object, allowed_elsewhere: bool
 ) -> None:
-    def changed(config: Config, ids: Sequence[int]) -> list[Record | RecordFailure]:
+    def changed(config: Config, ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
         return [replace(record, labels={**record.labels, label: value}) for record in simulate(config, ids)]
 
     assert len(verify_fake_set(reference, 2, simulation=changed).mismatches) == 2
@@ -150,7 +150,7 @@ def test_labels_are_compared_too(
 
 
 def test_a_record_that_now_fails_is_a_mismatch(reference: Path) -> None:
-    def fails(config: Config, ids: Sequence[int]) -> list[Record | RecordFailure]:
+    def fails(config: Config, ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
         return [RecordFailure(i, "diverged", "why not") for i in ids]
 
     found = verify_fake_set(reference, 1, simulation=fails)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.record.internals import internals_table
 from siggen.record.simulation import simulate
 from siggen.views.natural_modes import specimen_modes
@@ -15,7 +15,7 @@ from tests.config.minimal import minimal
 def test_the_default_gearbox_shakes_its_casing_without_losing_contact() -> None:
     config = load_config(minimal(duration_s=0.2))
     (record,) = simulate(config, [0])
-    assert isinstance(record, Record)
+    assert isinstance(record, SimulatedRecord)
     signal = record.channels["bearing_vertical"]
     # Gear and casing move together on bolts: about 1 m/s² at 60 N m, a hundredth of a gear on bearings to the ground.
     assert 0.1 < signal.std() < 20.0

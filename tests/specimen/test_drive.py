@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -42,20 +42,22 @@ def varying() -> Config:
 
 
 @pytest.fixture(scope="module")
-def record(varying: Config) -> Record:
+def record(varying: Config) -> SimulatedRecord:
     (found,) = simulate(varying, [2])
-    assert isinstance(found, Record)
+    assert isinstance(found, SimulatedRecord)
     return found
 
 
-def test_a_varying_record_is_a_function_of_configuration_and_index_alone(varying: Config, record: Record) -> None:
+def test_a_varying_record_is_a_function_of_configuration_and_index_alone(
+    varying: Config, record: SimulatedRecord
+) -> None:
     again = list(simulate_specimen(varying, [0, 2]))[1]
-    assert isinstance(again, Record)
+    assert isinstance(again, SimulatedRecord)
     assert again.labels == record.labels
     assert all(np.array_equal(again.channels[name], record.channels[name]) for name in record.channels)
 
 
-def test_labels_say_what_speed_and_torque_did(varying: Config, record: Record) -> None:
+def test_labels_say_what_speed_and_torque_did(varying: Config, record: SimulatedRecord) -> None:
     labels = record.labels
     slipping = 1.0 - 0.03 * labels["torque_nm"] / 60.0
     # The slow part of 0.3 % and the ripple move the mean of 0.2 s.
@@ -70,7 +72,7 @@ def test_labels_say_what_speed_and_torque_did(varying: Config, record: Record) -
     assert 0.0 < labels["torque_std_nm"] < 0.2 * expected
 
 
-def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: Config, record: Record) -> None:
+def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: Config, record: SimulatedRecord) -> None:
     rotation = drive_of(varying, 2, record.labels["start_angle_rad"]).rotation
     turns = rotation.angle_rad(record.tacho_s) / (2.0 * math.pi)
     assert np.abs(turns - np.round(turns)).max() < 1e-9

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, label_names
+from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
@@ -93,9 +93,9 @@ def test_misalignment_by_the_standard_stays_within_the_helix_slopes_of_both_gear
     assert ratio.std() == pytest.approx(1.0 / np.sqrt(6.0), rel=0.21)
 
 
-def records(config: Config, ids: list[int]) -> list[Record]:
+def records(config: Config, ids: list[int]) -> list[SimulatedRecord]:
     found = simulate(config, ids)
-    assert all(isinstance(one, Record) for one in found), found
+    assert all(isinstance(one, SimulatedRecord) for one in found), found
     return found  # type: ignore[return-value]
 
 

@@ -11,7 +11,7 @@ from hypothesis import Phase, event, given, settings
 from hypothesis import strategies as st
 
 import siggen
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, by_reference
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -128,5 +128,5 @@ def channel_error(config: Config, record_id: int) -> float:
 def delivered_channels(config: Config, record_id: int) -> dict[str, np.ndarray]:
     """Return what reaches the converters in a record, by column."""
     (record,) = simulate(config, [record_id])
-    assert isinstance(record, Record)
+    assert isinstance(record, SimulatedRecord)
     return {f"accel_{name}_m_s2": samples for name, samples in record.channels.items()}

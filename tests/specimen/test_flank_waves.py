@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record, label_names
+from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import simulate
@@ -34,9 +34,9 @@ def made(waves: str = "on", *overrides: str) -> Config:
     return load_config("tests/configs/casing.yaml", [*SHORT, section, *overrides])
 
 
-def record(config: Config) -> Record:
+def record(config: Config) -> SimulatedRecord:
     found = simulate(config, [0])[0]
-    assert isinstance(found, Record), found
+    assert isinstance(found, SimulatedRecord), found
     return found
 
 
@@ -88,7 +88,7 @@ def test_a_ghost_is_a_line_of_the_record_at_its_order(monkeypatch: pytest.Monkey
     channel = next(iter(loud.channels))
     turn = 2.0 * np.pi * 30.0 * np.arange(25600) / 51200.0
 
-    def line(found: Record, order: float) -> float:
+    def line(found: SimulatedRecord, order: float) -> float:
         return float(2.0 * np.abs((found.channels[channel] * np.exp(-1j * order * turn)).mean()))
 
     for order in orders:

@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import eigvalsh
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.dynamics.structure.body import bolt_elements
 from siggen.dynamics.structure.structure import assemble
 from siggen.record.simulation import simulate
@@ -60,7 +60,7 @@ def changed(kind: str, share: float | None) -> np.ndarray:
     states = [{"name": "healthy"}, {"name": "second", **changes}]
     config = load_config(minimal(**small, sensors=sensors, housing={"kind": kind}, states=states))
     (record,) = simulate(config, [1])
-    assert isinstance(record, Record), record
+    assert isinstance(record, SimulatedRecord), record
     assert record.labels["state"] == "second"
     return next(iter(record.channels.values()))
 

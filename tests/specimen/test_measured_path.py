@@ -13,7 +13,7 @@ import pyarrow.parquet
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, parse, parse_yaml, yaml_text
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
@@ -77,7 +77,7 @@ def save(values: dict[str, np.ndarray], file: Path) -> None:
 
 def signal(config: Config) -> np.ndarray:
     result = simulate(config, [0])[0]
-    assert isinstance(result, Record), result
+    assert isinstance(result, SimulatedRecord), result
     return result.channels["lid_vertical"]
 
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import quantities
 from siggen.cli.app import app
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, parse_yaml, yaml_text
 from siggen.dataset.card_making import making
 from siggen.errors import ConfigError
@@ -47,9 +47,9 @@ def written(folder: Path, text: str, **changes: Any) -> Path:
     return source
 
 
-def record(config: Config) -> Record:
+def record(config: Config) -> SimulatedRecord:
     (found,) = simulate(config, [0])
-    assert isinstance(found, Record), found
+    assert isinstance(found, SimulatedRecord), found
     return found
 
 

@@ -19,7 +19,7 @@ import pytest
 import siggen
 from diagnostics.training.detectors import INDICATOR
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
+from siggen.columns.record import SimulatedRecord
 from siggen.config import yaml_text
 from siggen.errors import UsageError
 from siggen.record.simulation import simulate
@@ -109,7 +109,7 @@ def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: 
     stage = {**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}
     short = siggen.load_config(staged(**COMMON, stages=[stage], sensors=sensors, states=states("slow.pinion")))
     (other,) = simulate(short, [1])
-    assert isinstance(other, Record)
+    assert isinstance(other, SimulatedRecord)
     record = siggen.open(made / "set").record(1)
     for name, signal in other.channels.items():
         column = {CHANNEL: f"accel_{CHANNEL}_m_s2", "out_rotation": "speed_out_rotation_rad_s"}[name]
