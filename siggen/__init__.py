@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from siggen.checks.loading import load_config
     from siggen.dataset.reading import open
     from siggen.dataset.spreadsheet import write_csv
+    from siggen.library.gearbox import Gearbox, Point, State, draw
+    from siggen.library.makers import single_stage
+    from siggen.library.record import LineOrders, Record, Spectrum
+    from siggen.library.running import Case, run, runs
     from siggen.planning.plan import plan
     from siggen.publication.publish import publish
     from siggen.record.simulation import simulate
@@ -22,6 +26,14 @@ if TYPE_CHECKING:
     from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
 __all__ = [
+    "Case",
+    "Gearbox",
+    "LineOrders",
+    "Point",
+    "Record",
+    "Spectrum",
+    "State",
+    "draw",
     "extend",
     "generate",
     "generate_part",
@@ -32,26 +44,52 @@ __all__ = [
     "open",
     "plan",
     "publish",
+    "run",
+    "runs",
     "simulate",
+    "single_stage",
     "write_csv",
     "write_recorded_set",
 ]
 
-_HOMES = {
-    "generate_part": "siggen.sets.parts",
-    "merge": "siggen.sets.parts",
-    "extend": "siggen.sets.extension",
-    "generate": "siggen.sets.generation",
-    "load_config": "siggen.checks.loading",
-    "mesh_stiffness_curves": "siggen.views.stiffness_curves",
-    "mesh_stiffness_meaning": "siggen.views.stiffness_curves",
-    "open": "siggen.dataset.reading",
-    "plan": "siggen.planning.plan",
-    "publish": "siggen.publication.publish",
-    "simulate": "siggen.record.simulation",
-    "write_csv": "siggen.dataset.spreadsheet",
-    "write_recorded_set": "siggen.sets.recorded_set",
+_NAMES = {
+    "siggen.checks.loading": ("load_config",),
+    "siggen.dataset.reading": ("open",),
+    "siggen.dataset.spreadsheet": ("write_csv",),
+    "siggen.library.gearbox": (
+        "Gearbox",
+        "Point",
+        "State",
+        "draw",
+    ),
+    "siggen.library.makers": ("single_stage",),
+    "siggen.library.record": (
+        "LineOrders",
+        "Record",
+        "Spectrum",
+    ),
+    "siggen.library.running": (
+        "Case",
+        "run",
+        "runs",
+    ),
+    "siggen.planning.plan": ("plan",),
+    "siggen.publication.publish": ("publish",),
+    "siggen.record.simulation": ("simulate",),
+    "siggen.sets.extension": ("extend",),
+    "siggen.sets.generation": ("generate",),
+    "siggen.sets.parts": (
+        "generate_part",
+        "merge",
+    ),
+    "siggen.sets.recorded_set": ("write_recorded_set",),
+    "siggen.views.stiffness_curves": (
+        "mesh_stiffness_curves",
+        "mesh_stiffness_meaning",
+    ),
 }
+"""Module -> public names that it defines."""
+_HOMES = {name: module for module, names in _NAMES.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:

@@ -13,8 +13,9 @@ from math import cos, pi, radians, sin, sqrt
 FACE_OVER_MODULE = 8.0
 """Usual are 8 to 16 modules (Norton, Machine Design); the least, since plain flanks bear a narrow face best."""
 LOAD_FACTOR = 2.0
-FLANK_PA = 1500e6 / 1.2 / sqrt(LOAD_FACTOR)
-ROOT_PA = 860e6 / 1.5 / LOAD_FACTOR
+LARGEST_FLANK_PA, LARGEST_ROOT_PA = 1500e6, 860e6
+FLANK_PA = LARGEST_FLANK_PA / 1.2 / sqrt(LOAD_FACTOR)
+ROOT_PA = LARGEST_ROOT_PA / 1.5 / LOAD_FACTOR
 ROOT_FACTOR = 4.3
 EFFECTIVE_MODULUS_PA = 206e9 / (2.0 * (1.0 - 0.3**2))
 RULE = (
@@ -31,13 +32,31 @@ def proposed_face_width_mm(module_mm: float) -> float:
 def rated_torque_nm(
     teeth: tuple[int, int], module_mm: float, face_width_mm: float, pressure_angle_deg: float = 20.0
 ) -> float:
-    """Return the largest torque on the pinion that stresses neither flank nor root of a steel pair too far [N m].
+    """Return the largest torque on the pinion that stresses neither flank nor root of a steel pair too far [N m]."""
+    return _torque_nm(teeth, module_mm, face_width_mm, pressure_angle_deg, (FLANK_PA, ROOT_PA))
+
+
+def bearable_torque_nm(
+    teeth: tuple[int, int], module_mm: float, face_width_mm: float, pressure_angle_deg: float = 20.0
+) -> float:
+    """Return the same without load factor and safeties: beyond it flanks or roots of the best steel fail [N m]."""
+    return _torque_nm(teeth, module_mm, face_width_mm, pressure_angle_deg, (LARGEST_FLANK_PA, LARGEST_ROOT_PA))
+
+
+def _torque_nm(
+    teeth: tuple[int, int],
+    module_mm: float,
+    face_width_mm: float,
+    pressure_angle_deg: float,
+    stresses_pa: tuple[float, float],
+) -> float:
+    """Return the torque at which the first of two stresses is reached, of the flank and of the root [Pa].
 
     Flank: p = sqrt(F E*/(π b R)) at the pitch point, F = T/r_b. Root: σ = F_t Y/(b m), F_t = T/r.
     """
     pinion_m, gear_m = (0.5e-3 * module_mm * z for z in teeth)
     width_m, angle = 1e-3 * face_width_mm, radians(pressure_angle_deg)
     curvature_m = pinion_m * gear_m / (pinion_m + gear_m) * sin(angle)
-    flank_n = FLANK_PA**2 * pi * width_m * curvature_m / EFFECTIVE_MODULUS_PA
-    root_n = ROOT_PA * width_m * 1e-3 * module_mm / ROOT_FACTOR
+    flank_n = stresses_pa[0] ** 2 * pi * width_m * curvature_m / EFFECTIVE_MODULUS_PA
+    root_n = stresses_pa[1] * width_m * 1e-3 * module_mm / ROOT_FACTOR
     return min(flank_n * cos(angle), root_n) * pinion_m

@@ -20,7 +20,7 @@ SIGGEN_ROOMS = (
     "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.bearings", "dynamics.friction",
     "dynamics.mesh", "dynamics.time",
     "sensing", "faults", "noise", "sensors", "life", "config", "rig", "planning", "specimen", "checks", "columns",
-    "record", "dataset", "engines", "sets", "views", "publication", "cli",
+    "record", "dataset", "engines", "sets", "views", "publication", "library", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",
