@@ -42,6 +42,7 @@ def gear_pair() -> GearPair:
             addendum_coefficient=1.0,
             clearance_coefficient=0.25,
             bore_radius_m=bore_m,
+            body_ratio=1.0,  # rings held in their bores, as in the independent computations
         )
 
     return GearPair(wheel(18, 0.01), wheel(47, 0.015), 0.02, 206e9, 0.3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import radians
 
 from siggen.gears.damage.pit import Pit
@@ -17,6 +18,11 @@ def pair_18_47(module_m=3.5e-3, bores_m=(12.5e-3, 20e-3), shifts=(0.0, 0.0), **o
     gear = spur_gear(47, module_m, bores_m[1], shifts[1])
     numbers = {"face_width_m": 20e-3, "youngs_modulus_pa": 206e9, "poisson_ratio": 0.3} | other
     return GearPair(pinion, gear, **numbers)
+
+
+def bare(pair):
+    """The pair as rings held in their bores: the gears of published tables and of finite elements."""
+    return replace(pair, pinion=replace(pair.pinion, body_ratio=1.0), gear=replace(pair.gear, body_ratio=1.0))
 
 
 def pit(height_mm=1.9, face_mm=10.0, a_mm=0.3, b_mm=0.2, depth_mm=0.4, floor="flat", gear="pinion", tooth=0):

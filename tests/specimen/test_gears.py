@@ -57,6 +57,5 @@ def test_notes_look_at_both_ends_of_a_distribution():
     assert model_notes(config()) == ()
     (thick,) = model_notes(config(gears__pinion__bore_radius_mm=small))
     assert "is 7.75" in thick
-    (thin,) = model_notes(config(gears__pinion__bore_radius_mm=large))
-    # 18 teeth of module 3 have a root radius of 23.25 mm.
-    assert "is 1.329" in thin
+    # Above a third of the root radius it is the shaft inside that gives way: a solid body, which the fit knows.
+    assert model_notes(config(gears__pinion__bore_radius_mm=large)) == ()

@@ -16,6 +16,9 @@ from numpy.typing import ArrayLike
 from siggen.arrays import FloatArray
 from siggen.gears.geometry import involute, trochoid
 
+SOLID_BODY_RATIO = 3.0
+"""Root radius over the radius at which a solid body counts as held (judgement)."""
+
 
 @dataclass(frozen=True, slots=True)
 class SpurGear:
@@ -34,7 +37,9 @@ class SpurGear:
     addendum_coefficient, clearance_coefficient : float
         Tip height and tip clearance in modules (ha and c).
     bore_radius_m : float
-        Radius of the bore, where the gear body is held [m].
+        Radius of the bore [m].
+    body_ratio : float
+        Least ratio of the root radius to the radius at which the body is held; 1 of a ring that is held in its bore.
     """
 
     teeth: int
@@ -44,6 +49,7 @@ class SpurGear:
     addendum_coefficient: float
     clearance_coefficient: float
     bore_radius_m: float
+    body_ratio: float = SOLID_BODY_RATIO
 
     @property
     def pitch_radius_m(self) -> float:
@@ -80,6 +86,14 @@ class SpurGear:
         """Root radius R_f = r - (ha + c - X) m [m]."""
         dedendum = self.addendum_coefficient + self.clearance_coefficient - self.profile_shift
         return self.pitch_radius_m - dedendum * self.module_m
+
+    @property
+    def held_radius_m(self) -> float:
+        """Radius inside which the body counts as rigid, min(bore, root/3) [m].
+
+        Derived: a gear and its shaft are one body. Held in its bore, a thin rim would be stiffer than a solid gear.
+        """
+        return min(self.bore_radius_m, self.root_radius_m / self.body_ratio)
 
     @property
     def base_half_angle_rad(self) -> float:

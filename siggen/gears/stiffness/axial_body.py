@@ -1,6 +1,6 @@
 r"""Axial compliance of a gear body: the force of helical teeth along the axis bends it as an annular plate.
 
-Derived: Mindlin plate theory (Mindlin 1951, shear factor 5/6), of the thickness of the face, held in the bore and free
+Derived: Mindlin plate theory (Mindlin 1951, shear factor 5/6), of the thickness of the face, held at the hub and free
 at the root circle. Beside the shear force Q the plate has the rotations ψ = -∇w + Q/S, S = 5 G b/6. Equilibrium leaves
 ψ = ∇φ + curl χ, w = (D/S) ∇²φ - φ with ∇⁴φ = 0 and ∇²χ = λ² χ, λ² = 10/b². Around the rim all is a sum of cos mθ, so
 that every m has four powers of the radius and two Bessel functions, and three conditions at either edge.
@@ -59,7 +59,7 @@ def axial_compliance(
     """
     if isinstance(gear, RingGear):
         return np.zeros(np.shape(roll_rad))
-    rim, bore = gear.root_radius_m, gear.bore_radius_m / gear.root_radius_m
+    rim, bore = gear.root_radius_m, gear.held_radius_m / gear.root_radius_m
     between = 2.0 * pi * apart / gear.teeth
     answer = wave_sum(bore, face_width_m / rim, poisson_ratio, half_angle_rad, between)
     one = gear.radius_m(roll_rad) / rim - 1.0

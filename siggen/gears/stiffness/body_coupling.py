@@ -1,12 +1,12 @@
 """Deflection at one tooth by the load on a neighbour of the same gear, along the line of action.
 
-Derived. The ring between bore and root circle twists under the moment F R_b and carries all its teeth along, which is
+Derived. The ring between hub and root circle twists under the moment F R_b and carries all its teeth along, which is
 exact (R_b^2 (1/r_int^2 - 1/R_f^2)/(4 pi G L)). The rest is local. A tooth without load moves as a rigid body, and a
 loaded one acts on the body by its resultants at the root (Saint-Venant). Let p = (cos a, sin a, u) of each tooth: a the
 slant of the force against the tooth's normal, u = R_b - R_f cos a its lever about the root circle in modules. Then the
 rest times E L is bilinear, p_lower' B p_upper. Mirroring the two teeth and reciprocity leave six entries of B free; one
 of their products is sin(a_upper - a_lower), the same all along the line of action, and is left to the others. The other
-five are Chebyshev polynomials of 1/z and ln h_f (root over bore radius), fitted to finite elements
+five are Chebyshev polynomials of 1/z and ln h_f (root over held radius), fitted to finite elements
 (`siggen.gears.stiffness.coupling_table`); two teeth apart have a table of their own, farther ones keep the ring's twist
 only.
 
@@ -110,7 +110,7 @@ def neighbour_compliance(gear: SpurGear, lower_roll: FloatArray, apart: int, poi
     terms = load_terms(gear, np.clip(lower_roll, 0.0, tip), upper)
     u, v, _ = unit_coordinates(
         float(np.clip(gear.teeth, *TEETH_RANGE)),
-        float(np.clip(gear.root_radius_m / gear.bore_radius_m, *RADIUS_RATIO_RANGE)),
+        float(np.clip(gear.root_radius_m / gear.held_radius_m, *RADIUS_RATIO_RANGE)),
         np.zeros(1),
     )
     entries = chebyshev.chebval(v, chebyshev.chebval(u, np.moveaxis(COUPLING_COEFFICIENTS[apart - 1], 0, -1)))
@@ -118,21 +118,21 @@ def neighbour_compliance(gear: SpurGear, lower_roll: FloatArray, apart: int, poi
 
 
 def ring_torsion(gear: SpurGear, poisson_ratio: float) -> float:
-    """Return R_b^2 (1/r_int^2 - 1/R_f^2)/(4 pi G) times E: the twist of the ring between bore and root circle.
+    """Return R_b^2 (1/r_int^2 - 1/R_f^2)/(4 pi G) times E: the twist of the ring between held radius and root circle.
 
-    Derived: the shear stress of a moment M is M/(2 pi r^2 L), and the rotation of the rim against the bore its strain
+    Derived: the shear stress of a moment M is M/(2 pi r^2 L), and the rotation of the rim against the hub its strain
     over r, integrated over the radius. Times E L, dimensionless, for a unit force on the line of action.
     """
     if isinstance(gear, RingGear):
         return 0.0  # held all round
-    squares = gear.bore_radius_m**-2 - gear.root_radius_m**-2
+    squares = gear.held_radius_m**-2 - gear.root_radius_m**-2
     return float(gear.base_radius_m**2 * squares * (1.0 + poisson_ratio) / (2.0 * pi))
 
 
 def outside_coupling(gear: SpurGear) -> tuple[str, ...]:
     """Return what lies outside the range of the fitted local rest, as sentences; empty inside it."""
-    ratio = gear.root_radius_m / gear.bore_radius_m
-    checks = (("teeth", gear.teeth, TEETH_RANGE), ("h_f = root radius / bore radius", ratio, RADIUS_RATIO_RANGE))
+    ratio = gear.root_radius_m / gear.held_radius_m
+    checks = (("teeth", gear.teeth, TEETH_RANGE), ("h_f = root radius / held radius", ratio, RADIUS_RATIO_RANGE))
     return tuple(
         f"coupling: {name} is {value:.4g}; fitted range {low:g} to {high:g}"
         for name, value, (low, high) in checks

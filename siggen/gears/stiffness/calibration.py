@@ -2,7 +2,7 @@
 
 Derived: ratio of a plane-stress finite-element tooth on its ring to the sum of bending, shear, axial and fillet-
 foundation compliance (Ma 2014 beam, Sainsot 2004 foundation with the rack's root angle), as a smooth function of
-the number of teeth z, the ratio h_f of root to bore radius and the place t on the flank (0 at the involute start, 1
+the number of teeth z, the ratio h_f of root to held radius and the place t on the flank (0 at the involute start, 1
 at the tip, linear in the roll angle), with corrections for profile shift X and pressure angle alpha_0:
 
     factor = F(1/z, ln h_f, t) [1 + X G1 + X^2 G2 + a G3]        a = (alpha_0 - 20 deg)/(5 deg)
@@ -56,7 +56,7 @@ def calibration_factor(gear: SpurGear, roll: ArrayLike) -> FloatArray:
     Source: derived (finite elements, plane stress, one tooth on its ring with the bore clamped).
     """
     teeth = np.clip(gear.teeth, *TEETH_RANGE)
-    ratio = np.clip(gear.root_radius_m / gear.bore_radius_m, *RADIUS_RATIO_RANGE)
+    ratio = np.clip(gear.root_radius_m / gear.held_radius_m, *RADIUS_RATIO_RANGE)
     start, tip = gear.involute_start_roll_rad, gear.tip_roll_rad
     place = np.clip((np.asarray(roll, dtype=np.float64) - start) / (tip - start), 0.0, 1.0)
     shift = np.clip(gear.profile_shift, *PROFILE_SHIFT_RANGE)
@@ -108,7 +108,7 @@ def outside_calibration(gear: SpurGear) -> tuple[str, ...]:
     """
     checks = (
         ("teeth", gear.teeth, TEETH_RANGE),
-        ("h_f = root radius / bore radius", gear.root_radius_m / gear.bore_radius_m, RADIUS_RATIO_RANGE),
+        ("h_f = root radius / held radius", gear.root_radius_m / gear.held_radius_m, RADIUS_RATIO_RANGE),
         ("profile shift", gear.profile_shift, PROFILE_SHIFT_RANGE),
         ("pressure angle [rad]", gear.pressure_angle_rad, PRESSURE_ANGLE_RANGE_RAD),
         ("addendum coefficient", gear.addendum_coefficient, ADDENDUM_RANGE),

@@ -47,7 +47,7 @@ def foundation_compliance(
         [Pa], [m].
     """
     angle = root_half_angle(gear, reading)
-    ratio = gear.root_radius_m / gear.bore_radius_m
+    ratio = gear.root_radius_m / gear.held_radius_m
     terms = np.array([angle**-2, ratio**2, ratio / angle, 1.0 / angle, ratio, 1.0])
     big_l, big_m, big_p, big_q = SAINSOT @ terms
     slant = roll - gear.base_half_angle_rad
@@ -65,7 +65,7 @@ def outside_foundation_fit(gear: SpurGear, reading: str) -> tuple[str, ...]:
     """
     found = []
     for name, value, (low, high) in (
-        ("h_f = root radius / bore radius", gear.root_radius_m / gear.bore_radius_m, FIT_RADIUS_RATIO),
+        ("h_f = root radius / held radius", gear.root_radius_m / gear.held_radius_m, FIT_RADIUS_RATIO),
         ("theta_f [rad]", root_half_angle(gear, reading), FIT_ROOT_ANGLE_RAD),
     ):
         if not low <= value <= high:

@@ -13,6 +13,7 @@ from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.compliance import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
 from tests.dynamics.linear_runs import simulate_response
+from tests.gears.builders import bare
 
 SPEEDS = (30.0, 15.0, 37.3)
 
@@ -36,6 +37,7 @@ def tables() -> dict[str, MeshTables]:
         SpurGear(18, 3.5e-3, angle, 0.0, 1.0, 0.25, 12.5e-3), SpurGear(47, 3.5e-3, angle, 0.0, 1.0, 0.25, 20e-3),
         20e-3, 206e9, 0.3, None,
     )  # fmt: skip
+    pair = bare(pair)  # as in the independent codes
     return {name: mesh_tables(pair, damage, StiffnessOptions("base_circle")) for name, damage in DAMAGES.items()}
 
 

@@ -23,7 +23,7 @@ from siggen.gears.stiffness.mesh_tables import (
 )
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from tests.gears.builders import layers, pair_18_47, pit
+from tests.gears.builders import bare, layers, pair_18_47, pit
 
 PAIR = pair_18_47()
 PLAIN = StiffnessOptions()
@@ -39,12 +39,12 @@ def tall_pair():
 
 def gears(teeth, ratio):
     root = 0.5 * teeth - 1.25
-    return SpurGear(teeth, 1.0, radians(20.0), 0.0, 1.0, 0.25, root / ratio)
+    return SpurGear(teeth, 1.0, radians(20.0), 0.0, 1.0, 0.25, root / ratio, body_ratio=1.0)
 
 
 def test_ring_torsion_is_the_integrated_shear_of_a_ring():
     gear = PAIR.pinion
-    r = np.linspace(gear.bore_radius_m, gear.root_radius_m, 200_001)
+    r = np.linspace(gear.held_radius_m, gear.root_radius_m, 200_001)
     # Moment R_b on a unit width: stress R_b/(2 pi r^2), strain 2 (1 + nu) of it for E = 1, rotation strain/r, way R_b.
     rate = gear.base_radius_m**2 * 2.6 / (2 * pi * r**3)
     slow = np.sum(0.5 * (rate[1:] + rate[:-1]) * np.diff(r))
@@ -151,8 +151,8 @@ def test_coupling_needs_the_body_that_it_goes_through():
 
 
 def test_gears_outside_the_fit_are_named():
-    thin = pair_18_47(bores_m=(25.0e-3, 20e-3))
+    thin = bare(pair_18_47(bores_m=(25.0e-3, 20e-3)))
     options = StiffnessOptions("rack_trochoid", foundation_angle="profile", coupling="body")
     notes = stiffness_notes(thin, options)
-    assert any("coupling: h_f = root radius / bore radius is 1.085; fitted range 1.4 to 7" in note for note in notes)
+    assert any("coupling: h_f = root radius / held radius is 1.085; fitted range 1.4 to 7" in note for note in notes)
     assert not any("coupling" in note for note in stiffness_notes(PAIR, options))

@@ -33,7 +33,7 @@ SPOTS = {
 
 def gear_of(teeth, radius_ratio, shift=0.0, angle_deg=20.0, module_m=3e-3):
     root = (teeth / 2 - 1.25 + shift) * module_m
-    return SpurGear(teeth, module_m, radians(angle_deg), shift, 1.0, 0.25, root / radius_ratio)
+    return SpurGear(teeth, module_m, radians(angle_deg), shift, 1.0, 0.25, root / radius_ratio, body_ratio=1.0)
 
 
 def rolls(gear, places):

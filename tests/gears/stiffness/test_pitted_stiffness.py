@@ -14,13 +14,13 @@ from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
 from siggen.gears.stiffness.sections import contact_length_loss
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from tests.gears.builders import layers, pair_18_47, pit
+from tests.gears.builders import bare, layers, pair_18_47, pit
 from tests.gears.stiffness.slow_quadrature import beam_compliances
 
 BASE = StiffnessOptions("base_circle")
 BASE_FREE = StiffnessOptions("base_circle", "none")
 TROCHOID = StiffnessOptions("rack_trochoid")
-PAIR = pair_18_47()
+PAIR = bare(pair_18_47())
 ENTRY = PAIR.contact_start_m / PAIR.pinion.base_radius_m
 LAST = (PAIR.contact_end_m - PAIR.contact_start_m) / PAIR.pinion.base_radius_m
 

@@ -56,6 +56,7 @@ class ToothShape:
             addendum_coefficient=1.0,
             clearance_coefficient=self.clearance,
             bore_radius_m=root / self.radius_ratio,
+            body_ratio=1.0,
         )
 
     def usable(self) -> bool:

@@ -20,7 +20,9 @@ SIZES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
 def paper_a_pair() -> GearPair:
     """Return the 18/47 pair of the paper_a preset: module 3.5 mm, bores 12.5 and 20 mm (assumed there)."""
-    gears = [SpurGear(z, 3.5e-3, radians(20.0), 0.0, 1.0, 0.25, b) for z, b in ((18, 12.5e-3), (47, 20.0e-3))]
+    gears = [
+        SpurGear(z, 3.5e-3, radians(20.0), 0.0, 1.0, 0.25, b, body_ratio=1.0) for z, b in ((18, 12.5e-3), (47, 20.0e-3))
+    ]
     return GearPair(gears[0], gears[1], face_width_m=0.02, youngs_modulus_pa=206e9, poisson_ratio=0.3)
 
 

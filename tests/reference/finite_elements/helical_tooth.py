@@ -47,7 +47,7 @@ class HelicalCase(NamedTuple):
         """Return the pair."""
         gears = [
             transverse_gear(
-                SpurGear(z, 3e-3, radians(20.0), 0.0, 1.0, 0.25, (0.5 * z - 1.25) * 3e-3 / ratio),
+                SpurGear(z, 3e-3, radians(20.0), 0.0, 1.0, 0.25, (0.5 * z - 1.25) * 3e-3 / ratio, body_ratio=1.0),
                 radians(self.helix_deg),
             )
             for z, ratio in zip(self.teeth, self.root_over_bore, strict=True)

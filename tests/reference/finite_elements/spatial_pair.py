@@ -29,7 +29,7 @@ class SpatialPair:
 
 def bench_pair() -> GearPair:
     """Return the 18/47 pair of bench without errors."""
-    gears = [SpurGear(z, 3e-3, radians(20.0), 0.0, 1.0, 0.25, b) for z, b in ((18, 10e-3), (47, 15e-3))]
+    gears = [SpurGear(z, 3e-3, radians(20.0), 0.0, 1.0, 0.25, b, body_ratio=1.0) for z, b in ((18, 10e-3), (47, 15e-3))]
     return GearPair(gears[0], gears[1], face_width_m=0.02, youngs_modulus_pa=206e9, poisson_ratio=0.3)
 
 
