@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from diagnostics.scoring.benchmark import open_benchmark
     from diagnostics.scoring.benchmark_scores import score_benchmark
     from diagnostics.scoring.score import score
+    from diagnostics.training.average_rows import averages
     from diagnostics.training.estimators import BoostingBaseline, LogisticBaseline
 
 __all__ = [
     "BoostingBaseline",
     "LogisticBaseline",
+    "averages",
     "open_benchmark",
     "score",
     "score_benchmark",
@@ -31,6 +33,7 @@ _HOMES = {
     "score_benchmark": "diagnostics.scoring.benchmark_scores",
     "score": "diagnostics.scoring.score",
     "table": "diagnostics.indicators.classifier_table",
+    "averages": "diagnostics.training.average_rows",
     "windows": "diagnostics.loader.window_arrays",
     "LogisticBaseline": "diagnostics.training.estimators",
     "BoostingBaseline": "diagnostics.training.estimators",

@@ -4,7 +4,7 @@ All of them start from the lines of the pinion's averaged revolution in the one 
 orders; alone behind the inverse of their path (`innovations`). Nothing of a record's level is used alone, but by the
 network, which is that of `report`; with a reference the change is measured against the reference's size.
 
-The attacker that learns its own features: the circular network of `report`, on the averages of the audit.
+The attacker that learns its own features: the 1-D network of `report`, on the averages of the audit.
 
 One network per fold learns from all damaged states of the gearboxes to learn from, and is asked about each state of the
 others. It is trained on a fixed number of records in all, some passes over a small set, few over a large one, so that
@@ -49,7 +49,7 @@ STEPS = 1024
 CALIBRATING = 64
 """Records, evenly spread over the set, whose answers set the levels."""
 
-NETWORK = "circular network"
+NETWORK = "1-D network"
 PREPARED = 4
 """Steps of preparing them, where records have references."""
 
@@ -90,13 +90,13 @@ def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | N
 
 def _scores(records: AveragedRecords, train: np.ndarray, damaged: np.ndarray, seed: int) -> np.ndarray:
     """Return the probability of damage of every record from a network that learnt from some."""
-    from diagnostics.training.circular_network import CircularSettings, circular_probability, train_circular
+    from diagnostics.training.cnn import NetworkSettings, network_probability, train_network
 
     nobody = np.zeros_like(train)
     split = SpecimenSplit(train, nobody, nobody, ("healthy", "damaged"))
-    settings = CircularSettings(most_epochs=max(FEWEST_EPOCHS, round(SHOWN / max(int(train.sum()), 1))))
-    trained = train_circular(records, damaged.astype(np.int64), split, seed, settings)
-    return circular_probability(trained.network, records)[:, 1]
+    settings = NetworkSettings(most_epochs=max(FEWEST_EPOCHS, round(SHOWN / max(int(train.sum()), 1))))
+    trained = train_network(records, damaged.astype(np.int64), split, seed, settings)
+    return network_probability(trained.network, records)[:, 1]
 
 
 def revolution(lines: np.ndarray, steps: int = STEPS) -> np.ndarray:

@@ -12,7 +12,6 @@ class Purpose(IntEnum):
 
     BOOTSTRAP = 1
     PERMUTATION = 2
-    WINDOWS = 3
     HALVES = 4
     LOADER = 5
     AUGMENTATION = 6

@@ -36,7 +36,7 @@ FOLDS, LEFT_OUT = 4, 5
 CHANCE_OWNER = 4242
 """Owner of the generator of the baseline without knowledge: permutations have others."""
 CHANCE, RMS, KURTOGRAM, SIX, BAND = "chance", "RMS alone", "kurtogram", "six columns", "best band"
-BOOSTING, CONVOLUTIONS, NETWORK, STACK = "gradient boosting", "random convolutions", "circular network", "stack"
+BOOSTING, CONVOLUTIONS, NETWORK, STACK = "gradient boosting", "random convolutions", "1-D network", "stack"
 STACKED = (KURTOGRAM, BAND, BOOSTING, CONVOLUTIONS, NETWORK)
 
 Detector = Callable[[SeenRecords, np.ndarray], np.ndarray]
@@ -91,8 +91,8 @@ def _ridge(seen: SeenRecords, used: np.ndarray) -> np.ndarray:
 
 
 def _network(seen: SeenRecords, used: np.ndarray, seed: int) -> np.ndarray:
-    """Train the circular network; every fifth gearbox says when to stop. The score is the logarithm of the odds."""
-    from diagnostics.training.circular_network import circular_probability, train_circular
+    """Train the 1-D network; every fifth gearbox says when to stop. The score is the logarithm of the odds."""
+    from diagnostics.training.cnn import network_probability, train_network
 
     _, gearbox = np.unique(seen.gearbox, return_inverse=True)
     known, stops, nobody = (np.zeros(len(seen.kurtogram), dtype=bool) for _ in range(3))
@@ -100,8 +100,8 @@ def _network(seen: SeenRecords, used: np.ndarray, seed: int) -> np.ndarray:
     target = np.zeros(known.size, dtype=np.int64)
     target[: seen.learn] = seen.damaged
     split = SpecimenSplit(known & ~stops, stops, nobody, ("healthy", "damaged"))
-    trained = train_circular(seen.averages, target, split, seed)
-    probability = np.clip(circular_probability(trained.network, seen.averages)[:, 1], 1e-12, 1.0 - 1e-12)
+    trained = train_network(seen.averages, target, split, seed)
+    probability = np.clip(network_probability(trained.network, seen.averages)[:, 1], 1e-12, 1.0 - 1e-12)
     return np.asarray(np.log(probability) - np.log1p(-probability))
 
 

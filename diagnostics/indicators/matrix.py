@@ -6,7 +6,7 @@ the loss of mesh stiffness does, would give the answer away.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -35,6 +35,10 @@ class FeatureMatrix:
     names: tuple[str, ...]
     labels: dict[str, np.ndarray]
     label_roles: Mapping[str, Role] = field(default_factory=dict)
+
+    def __iter__(self) -> Iterator[np.ndarray]:
+        """Yield values, target and groups: `X, y, groups = diagnostics.table(dataset)`; of lives y is `rul_h`."""
+        yield from (self.values, self.labels[CLASS if CLASS in self.labels else "rul_h"], self.groups)
 
     @property
     def groups(self) -> np.ndarray:

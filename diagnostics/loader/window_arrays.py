@@ -1,4 +1,4 @@
-"""All windows of a split as arrays, for whoever fits on arrays, and answers to windows as predictions of records."""
+"""Windows or averages of a split as arrays, for whoever fits on arrays, and answers as predictions of records."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """Windows of one split.
+    """Windows or averages of one split.
 
     Attributes
     ----------
-    values : (n, channels, samples) float32
-        In the units of the channels.
+    values : (n, channels or rows, samples) float32
+        Of windows in the units of the channels.
     labels : dict of str to (n, ...)
         `record_id`, `specimen_id`, `state_id`, `class_id`, `damaged_area_mm2`, and those that were asked for.
     classes : tuple of str
@@ -34,9 +34,17 @@ class Windows:
     labels: dict[str, np.ndarray]
     classes: tuple[str, ...]
 
+    def __len__(self) -> int:
+        """Return the rows, for `torch.utils.data.DataLoader`, which takes this as a dataset."""
+        return len(self.values)
+
+    def __getitem__(self, number: int) -> tuple[np.ndarray, int]:
+        """Return one row's values (channels or rows, samples) and its class number."""
+        return self.values[number], int(self.labels["class_id"][number])
+
     @property
     def groups(self) -> np.ndarray:
-        """(n,) int: the gearbox of each window; one gearbox belongs to one side of any split or fold."""
+        """(n,) int: the gearbox of each row; one gearbox belongs to one side of any split or fold."""
         return self.labels["specimen_id"]
 
     def predictions(self, probability: np.ndarray) -> dict[str, np.ndarray]:
@@ -45,7 +53,7 @@ class Windows:
         Parameters
         ----------
         probability : (n, classes)
-            Of the classes, for every window.
+            Of the classes, for every row of `values`.
         """
         record_id, place = np.unique(self.labels["record_id"], return_inverse=True)
         total = np.zeros((record_id.size, len(self.classes)))

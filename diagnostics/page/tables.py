@@ -129,11 +129,7 @@ def calibration_table(training: Training) -> str:
 def _details(name: str, details: dict[str, Any]) -> str:
     if "strength" in details:
         return f"{counted(details['features'], 'feature')}, {strength_text(name, details['strength'])}"
-    seen = "averaged revolutions of the pinion"
-    if "revolutions_per_window" in details:
-        windows, samples = details["revolutions_per_window"], details["samples_per_revolution"]
-        seen = f"windows of {windows} pinion revolutions × {samples} samples"
-    return f"{seen}, epoch {details['best_epoch']} of {details['epochs']}"
+    return f"averaged revolutions of the pinion, epoch {details['best_epoch']} of {details['epochs']}"
 
 
 def strength_text(name: str, strength: float) -> str:

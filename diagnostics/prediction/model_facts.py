@@ -27,7 +27,7 @@ from siggen.file_writing import write_file
 
 FACTS_FILE = "model.json"
 MODEL_FILES = (
-    *("classifier.skops", "feature_names.json", "cnn.safetensors", "circular.safetensors", "model_card.md"),
+    *("classifier.skops", "feature_names.json", "cnn.safetensors", "model_card.md"),
     *("referenced_classifier.skops", "referenced_feature_names.json"),
 )
 """All files of a model beside `model.json`, those that not every training writes among them."""

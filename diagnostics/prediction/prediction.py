@@ -30,7 +30,7 @@ NO_REFERENCE = (
     "a state of a measured recording is named only beside healthy recordings of the same machine; give them with "
     "--reference. Without them there are the distance and the indicators"
 )
-INDICATORS, REFERENCED, NETWORK, CIRCULAR = "indicators", "healthy_referenced", "network", "circular"
+INDICATORS, REFERENCED, NETWORK = "indicators", "healthy_referenced", "network"
 
 Reference = tuple[MeasuredRecording, ShaftPulses, RecordPieces]
 """A recording in healthy state as it came, its pulses, and its pieces at the rate of the model."""
@@ -44,9 +44,9 @@ class Vote:
     ----------
     classifier : str
     probability : (states,) float64
-        Mean over pieces or windows.
+        Mean over pieces.
     agreement : float or None
-        Share of the pieces or windows that name the same state; None where there is a single one.
+        Share of the pieces that name the same state; None where there is a single one.
     accuracy : Interval or None
         Share of the model's test records that the classifier named rightly; None where the model does not say.
     """
@@ -55,11 +55,6 @@ class Vote:
     probability: np.ndarray
     agreement: float | None
     accuracy: Interval | None = None
-
-    @property
-    def parts(self) -> str:
-        """What `agreement` counts: the network takes windows of few revolutions, of which a piece holds many."""
-        return "windows" if self.classifier == NETWORK else "pieces"
 
     @property
     def named(self) -> int:
@@ -185,9 +180,8 @@ def predict_recording(
         answer, nearness = _referenced_vote(model, pieces, healthy, pulses.speed_hz)
     else:
         answer, nearness = _indicator_vote(model, pieces), plain
-    network, notes = _network_vote(model, recording, pulses, teeth)
-    circular, circular_notes = _circular_vote(model, pieces, teeth)
-    every = (answer, *network, *circular)
+    network, notes = _network_vote(model, pieces, teeth)
+    every = (answer, *network)
     votes = tuple(replace(vote, accuracy=model.accuracy.get(vote.classifier)) for vote in every)
     unreferenced = not (recording.simulated or healthy)
     own = own_state(pieces, [found for _, _, found in healthy]) if healthy else None
@@ -207,9 +201,7 @@ def predict_recording(
             *known_reasons(facts, source, pulses, teeth, pieces),
             *(text for found in healthy for text in reference_reasons(facts, *found, pulses.speed_hz)),
         ),
-        notes=tuple(
-            note for note in (*pieces.notes, model.note, *notes, *circular_notes, _undefined_note(undefined)) if note
-        ),
+        notes=tuple(note for note in (*pieces.notes, model.note, *notes, _undefined_note(undefined)) if note),
         pieces=pieces,
         own_state=own,
         class_kind=facts.class_kind,
@@ -298,36 +290,17 @@ def _nearness(distance: TrainingDistance, logs: np.ndarray, speed_hz: float) -> 
 
 
 def _network_vote(
-    model: ReleasedModel, recording: MeasuredRecording, pulses: ShaftPulses, teeth: tuple[int, int]
+    model: ReleasedModel, pieces: RecordPieces, teeth: tuple[int, int]
 ) -> tuple[tuple[Vote, ...], tuple[str, ...]]:
-    """Return the network's vote where it can take the recording, else why not."""
+    """Return the vote of the network where the pieces have them, else why not."""
     if model.network is None:
         return (), ()
     from diagnostics.prediction.network_votes import network_probabilities
 
-    facts = model.network[1]
-    trained = {facts.windows.teeth, *(pinion for pinion, _ in model.facts.teeth)}
-    if teeth[0] not in trained:
-        known = ", ".join(str(count) for count in sorted(trained))
-        return (), (f"the network takes pinions with {known} teeth only: left out",)
-    if pulses.times_s.size <= facts.windows.revolutions:
-        return (), (f"the network takes windows of {facts.windows.revolutions} revolutions: left out",)
-    found = network_probabilities(*model.network, recording, pulses)
-    return (_vote(NETWORK, found, facts.temperature),), ()
-
-
-def _circular_vote(
-    model: ReleasedModel, pieces: RecordPieces, teeth: tuple[int, int]
-) -> tuple[tuple[Vote, ...], tuple[str, ...]]:
-    """Return the vote of the network on averages where the pieces have them, else why not."""
-    if model.circular is None:
-        return (), ()
-    from diagnostics.prediction.network_votes import circular_probabilities
-
-    network, facts = model.circular
+    network, facts = model.network
     if not all(pieces.waveforms):
-        return (), ("the circular network takes averages of two pinion revolutions or more: left out",)
-    return (_vote(CIRCULAR, circular_probabilities(network, facts, pieces.waveforms, teeth[0]), facts.temperature),), ()
+        return (), ("the 1-D network takes averages of two pinion revolutions or more: left out",)
+    return (_vote(NETWORK, network_probabilities(network, facts, pieces.waveforms, teeth[0]), facts.temperature),), ()
 
 
 def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:

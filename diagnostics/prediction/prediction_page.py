@@ -43,8 +43,7 @@ MEANING = (
 
 TITLES = {
     "healthy_referenced": "differences from the healthy reference",
-    "network": "the network",
-    "circular": "the circular network",
+    "network": "the 1-D network",
 }
 
 HARMONICS_SHOWN = 4
@@ -151,7 +150,7 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
 
 def _vote_text(found: Prediction, vote: Vote) -> str:
     shares = ", ".join(f"{state} {share:.2f}" for state, share in zip(found.classes, vote.probability, strict=True))
-    agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of {vote.parts} agree"
+    agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of pieces agree"
     right = "" if vote.accuracy is None else f"; right in {vote.accuracy.value:.0%} of its test records"
     return f"{shares}{agree}{right}{' (do not use)' if found.reasons else ''}"
 
@@ -187,7 +186,7 @@ def prediction_summary(found: Prediction) -> list[str]:
 
 def _weight(vote: Vote) -> str:
     """Return how sure a vote is, how far its pieces agree, and how often its classifier was right."""
-    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the {vote.parts} agree"]
+    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the pieces agree"]
     right = [] if vote.accuracy is None else [f"right in {percent(vote.accuracy.value)} of its test records"]
     return "; ".join([percent(float(vote.probability.max())), *agree, *right])
 

@@ -30,7 +30,7 @@ from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.records.planetary_members import MEMBERS
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import CIRCULAR, NETWORK
+from diagnostics.statistics.judgement import NETWORK
 from diagnostics.training.baselines import FeatureClassifier
 from diagnostics.training.classifier_file import (
     CLASSIFIER_FILE,
@@ -42,13 +42,11 @@ from diagnostics.training.classifier_file import (
 from siggen.errors import UsageError, how_to_install
 
 if TYPE_CHECKING:
-    from diagnostics.training.circular_files import CircularFacts
-    from diagnostics.training.circular_network import CircularNetwork
-    from diagnostics.training.cnn import WideKernelNetwork
-    from diagnostics.training.cnn_files import NetworkFile
+    from diagnostics.training.cnn import CircularNetwork
+    from diagnostics.training.cnn_files import NetworkFacts
 
-NETWORK_FILE, CIRCULAR_FILE = "cnn.safetensors", "circular.safetensors"
-LOADED_ONCE = ("skops.io", "diagnostics.training.cnn_files", "diagnostics.training.circular_files")
+NETWORK_FILE = "cnn.safetensors"
+LOADED_ONCE = ("skops.io", "diagnostics.training.cnn_files")
 """What the process that tries models loads before it has limits, as far as it is installed."""
 
 
@@ -134,8 +132,6 @@ class ReleasedModel:
         On features minus the machine's own healthy ones; None where the set did not allow the variant.
     network : tuple or None
         Network and what its file says; None where it was not trained or torch is missing.
-    circular : tuple or None
-        The same of the network on averages.
     accuracy : mapping of str to Interval
         Accuracy on the test specimens by classifier.
     note : str
@@ -151,11 +147,10 @@ class ReleasedModel:
     distance: TrainingDistance
     referenced_classifier: FeatureClassifier | None
     referenced_distance: TrainingDistance | None
-    network: tuple[WideKernelNetwork, NetworkFile] | None
+    network: tuple[CircularNetwork, NetworkFacts] | None
     accuracy: Mapping[str, Interval]
     note: str
     own: tuple[OwnIndicator, ...] = ()
-    circular: tuple[CircularNetwork, CircularFacts] | None = None
 
 
 def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
@@ -204,11 +199,10 @@ def _loaded(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedModel:
     check_files(folder, read_hashes(folder))
     facts, distance, referenced = read_facts(folder)
     accuracy = read_accuracy(folder)
-    loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in accuracy, CIRCULAR_FILE: CIRCULAR in accuracy})
+    loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in accuracy})
     network = _network(folder) if NETWORK_FILE in loadable else None
-    circular = _circular(folder) if CIRCULAR_FILE in loadable else None
     classifiers = {prefix: load_classifier(folder, prefix) for prefix in ("", *([REFERENCED] if referenced else []))}
-    _check_folder(folder, facts, classifiers, network, circular)
+    _check_folder(folder, facts, classifiers, network)
     return ReleasedModel(
         folder=folder,
         facts=facts,
@@ -221,7 +215,6 @@ def _loaded(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedModel:
         accuracy=accuracy,
         note=note,
         own=() if own is None else _own_of(folder, classifiers, own),
-        circular=circular,
     )
 
 
@@ -267,8 +260,7 @@ def _check_folder(
     folder: Path,
     facts: ModelFacts,
     classifiers: Mapping[str, FeatureClassifier],
-    network: tuple[WideKernelNetwork, NetworkFile] | None,
-    circular: tuple[CircularNetwork, CircularFacts] | None,
+    network: tuple[CircularNetwork, NetworkFacts] | None,
 ) -> None:
     parts = []
     for prefix, classifier in classifiers.items():
@@ -277,8 +269,6 @@ def _check_folder(
         parts.append(classifier_part(f"{prefix}{NAMES_FILE}", identity, classifier))
     if network:
         parts.append(ModelPart(NETWORK_FILE, network[1].identity, network[1].classes, network[1].channels))
-    if circular:
-        parts.append(ModelPart(CIRCULAR_FILE, circular[1].identity, circular[1].classes, circular[1].channels))
     check_parts(folder, facts, parts)
 
 
@@ -292,13 +282,7 @@ def _loadable(folder: Path, scored: Mapping[str, bool]) -> tuple[tuple[str, ...]
     return present, note if lost else ""
 
 
-def _network(folder: Path) -> tuple[WideKernelNetwork, NetworkFile]:
+def _network(folder: Path) -> tuple[CircularNetwork, NetworkFacts]:
     from diagnostics.training.cnn_files import load_network
 
     return load_network(folder / NETWORK_FILE)
-
-
-def _circular(folder: Path) -> tuple[CircularNetwork, CircularFacts]:
-    from diagnostics.training.circular_files import load_circular
-
-    return load_circular(folder / CIRCULAR_FILE)

@@ -49,7 +49,7 @@ def model_card(training: Training, dataset: Dataset) -> str:
         "## Data",
         _data(training, dataset),
         "## Files",
-        _files(training, dataset),
+        _files(training),
         "## Scores on test specimens",
         _scores(training),
         _probabilities(training),
@@ -95,7 +95,7 @@ def _faults_text(dataset: Dataset) -> str:
     return f"faults: {held or 'none'}"
 
 
-def _files(training: Training, dataset: Dataset) -> str:
+def _files(training: Training) -> str:
     lines = [
         f"* `classifier.skops`: logistic regression with ridge penalty on {len(training.classifier.features)} columns. "
         f"{len(training.classifier.logarithms)} columns are logarithms. Undefined values are replaced by medians, then "
@@ -104,26 +104,15 @@ def _files(training: Training, dataset: Dataset) -> str:
         f"definitions. Columns: {markdown(columns_text(training.classifier.features))}",
     ]
     if training.network:
-        facts = training.network.facts
-        windows = facts.windows
-        units = {channel.name: channel.unit for channel in dataset.channels}
-        listed = ", ".join(dict.fromkeys(units[name] for name in facts.channels))
+        count = len(training.network.channels)
         lines += [
-            f"* `cnn.safetensors`: 1-D network with a wide first layer. A window has {windows.revolutions} pinion "
-            f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles. The input is "
-            f"(batch, {len(facts.channels)}, {windows.samples}) in {listed}. The network normalises it. "
-            f"Average the probabilities over the windows of a record, {windows.hop_revolutions} revolutions apart.",
-        ]
-    if training.circular:
-        count = len(training.circular.channels)
-        lines += [
-            "* `circular.safetensors`: convolutional network round the pinion's synchronous average. The input is "
+            "* `cnn.safetensors`: convolutional 1-D network round the pinion's synchronous average. The input is "
             f"(batch, {3 * count}, 1024): one averaged revolution of every channel, then their residuals (without "
             "shaft orders 0 to 2 and mesh harmonics), then these whitened, all with orders up to 511. The function "
             "`diagnostics.training.average_rows.average_rows` makes it. `predict` uses the network.",
         ]
     if training.referenced and len(training.referenced.judged) > 2:
-        lines.append("* The circular network beside a healthy record is judged in `metrics.json`; it is not saved.")
+        lines.append("* The 1-D network beside a healthy record is judged in `metrics.json`; it is not saved.")
     return "\n".join(lines)
 
 
@@ -235,11 +224,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     if training.network:
         from diagnostics.training.cnn_files import save_network
 
-        save_network(training.network.trained.network, training.network.facts, folder / "cnn.safetensors")
-    if training.circular:
-        from diagnostics.training.circular_files import save_circular
-
-        save_circular(training.circular, folder / "circular.safetensors")
+        save_network(training.network, folder / "cnn.safetensors")
     write_predictions(_predicted(training, table), identity, folder, training.split.kind)
     released = release(training, table, dataset)
     notes += [released.note] if released.note else []

@@ -14,15 +14,14 @@ from diagnostics.statistics.evaluation import UNKNOWN, Predictions, macro_auroc
 from diagnostics.statistics.scores import Scores, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK = "indicators", "boosting", "rms", "network"
-CIRCULAR, CIRCULAR_REFERENCED, REFERENCED = "circular", "circular_referenced", "healthy_referenced"
+NETWORK_REFERENCED, REFERENCED = "network_referenced", "healthy_referenced"
 TITLES = {
     INDICATORS: "logistic regression on indicators",
     BOOSTING: "gradient boosting on indicators",
     RMS_ALONE: "RMS alone",
-    NETWORK: "1-D network",
-    CIRCULAR: "circular network on the average",
+    NETWORK: "1-D network on the average",
     REFERENCED: "logistic regression beside a healthy record",
-    CIRCULAR_REFERENCED: "circular network beside a healthy record",
+    NETWORK_REFERENCED: "1-D network beside a healthy record",
 }
 
 VALIDATION_AUROC = "validation_macro_auroc"

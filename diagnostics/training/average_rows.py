@@ -12,8 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.indicators.classifier_table import table_settings
+from diagnostics.indicators.classifier_table import table, table_settings
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.loader.window_arrays import Windows
+from diagnostics.records.record_classes import STATE, set_classes
+from diagnostics.records.state_classes import CLASS
 from diagnostics.signal.shaft_signals import SHAFT_ORDERS
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
@@ -150,7 +153,7 @@ def moved(records: AveragedRecords, rng: np.random.Generator, gain_db: float, te
     """Return the records as seen from another tooth and through another smooth path, for training only.
 
     Record and reference are turned together and pass one path per channel: a gearbox has one. Source: derived
-    (domain randomisation, as of `diagnostics.loader.augmentation`).
+    (domain randomisation).
 
     Parameters
     ----------
@@ -174,6 +177,41 @@ def moved(records: AveragedRecords, rng: np.random.Generator, gain_db: float, te
     return replace(records, lines=records.lines * factor, healthy=healthy)
 
 
-def table_averages(dataset: Dataset, table: pa.Table) -> AveragedRecords:
+def table_averages(dataset: Dataset, classifiers: pa.Table) -> AveragedRecords:
     """Return the averages of the records of a feature table, from the table of indicators that it was made of."""
-    return averaged_records(record_table(dataset, table_settings(table)))
+    return averaged_records(record_table(dataset, table_settings(classifiers)))
+
+
+def averages(dataset: Dataset, split: str, *, classes: str = STATE) -> Windows:
+    """Return one row block per record of a split: what the shipped 1-D network takes.
+
+    The averages are kept beside the set with its indicators, so that only the first call of any split computes them.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    split : str
+        train, validation or test.
+    classes : str
+        What `class_id` counts: the `state` of a record, or its primary `fault`; healthy ones are one class.
+
+    Returns
+    -------
+    Windows
+        `values` (records, 3 * channels, 1024) float32: the synchronous average of one pinion revolution of every
+        channel, then their residuals (without shaft orders 0 to 2 and mesh harmonics), then these whitened.
+
+    Raises
+    ------
+    DatasetError
+        If records cannot be used, or hold fewer than two pinion revolutions.
+    UsageError
+        If the classes are of an unknown kind.
+    """
+    matrix, names = table(dataset, classes=classes), set_classes(dataset, classes).names
+    chosen = np.flatnonzero(matrix.labels["split"] == split)
+    values = average_rows(averaged_records(record_table(dataset)).chosen(chosen))
+    labels = {name: matrix.labels[name][chosen] for name in ("record_id", "specimen_id", "state_id")}
+    labels["class_id"] = np.array([names.index(name) for name in matrix.labels[CLASS][chosen].tolist()], dtype=np.int64)
+    return Windows(values, labels, names)

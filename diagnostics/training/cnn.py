@@ -1,18 +1,15 @@
-"""A small 1-D network with a wide first layer on windows of several revolutions, after WDCNN (Zhang et al. 2017).
+"""A small network on synchronous averages: convolutions round the shaft, which has neither beginning nor end.
 
-Differences from the source: order-resampled windows of whole revolutions instead of 2048 raw samples; mean and spread
-of the last layer over the window instead of a dense layer on positions, since a window may start at any angle and
-modulation shows as spread; every channel enters twice, as it is and without its mean over the mesh periods of the
-window, which would hide anything a hundred times smaller; the levels of both are divided out and handed to the last
-layer as numbers of their own.
+An average is periodic, so every convolution is padded with the other end of the revolution, and mean, spread and
+largest value over the angle pool it: which tooth is damaged does not matter. Every row is divided by its level, and the
+levels go to the last layer as logarithms. Source: derived; convolutional networks are standard literature.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
@@ -20,21 +17,20 @@ import torch
 from torch import nn
 
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.loader.augmentation import Augmentation, augmented
-from diagnostics.loader.windows import OrderRecords, drawn_windows, record_windows
 from diagnostics.statistics.calibration import calibrated
 from diagnostics.statistics.evaluation import Predictions
+from diagnostics.training.average_rows import AveragedRecords, average_rows, moved
 from diagnostics.training.splits import SpecimenSplit
 
-FIRST_KERNEL, FIRST_STRIDE = 64, 8
-WIDTHS = (16, 32, 64, 64)
-JUDGING_BATCH = 256
-SMALLEST_VARIANCE = 1e-6
-"""Keeps the slope of a square root finite; relative to signals of unit variance."""
+LAYERS = ((16, 31, 4), (24, 7, 1), (32, 5, 1))
+"""Width, kernel and stride of the convolutions; all but the last are followed by a maximum over two steps."""
+
+SMALLEST_LEVEL = 1e-12
+"""Keeps the logarithm finite where a row is empty [m/s²]."""
 
 
 @dataclass(frozen=True, slots=True)
-class TrainingSettings:
+class NetworkSettings:
     """How the network is trained.
 
     Attributes
@@ -43,25 +39,22 @@ class TrainingSettings:
         Epochs at most; exactly as many where there are no validation specimens.
     patience : int
         Epochs without a lower validation loss before training stops.
-    windows_per_epoch : int
-        Windows drawn in an epoch, rounded up to the same number, three or more, from every training record.
     batch : int
-        Windows per step.
+        Records per step.
     learning_rate, weight_decay : float
         Of AdamW.
-    augmentation : Augmentation or None
-        Random paths and noise on training windows; None shows them as they are.
+    gain_db : float
+        How far paths are changed for training, see `moved`; 0 leaves them.
     device : str
         `cpu` or `cuda`.
     """
 
-    most_epochs: int = 100
-    patience: int = 25
-    windows_per_epoch: int = 512
+    most_epochs: int = 80
+    patience: int = 20
     batch: int = 32
     learning_rate: float = 2e-3
     weight_decay: float = 0.1
-    augmentation: Augmentation | None = field(default_factory=Augmentation)
+    gain_db: float = 2.0
     device: str = "cpu"
 
 
@@ -71,7 +64,7 @@ class TrainedNetwork:
 
     Attributes
     ----------
-    network : WideKernelNetwork
+    network : CircularNetwork
         In evaluation mode.
     classes : tuple of str
         States in the order of the outputs.
@@ -82,10 +75,10 @@ class TrainedNetwork:
     note : str
         What was not as it should be, or empty.
     temperature : float
-        Applied to the mean probabilities of a record; 1 leaves them.
+        Applied to the probabilities of a record; 1 leaves them.
     """
 
-    network: WideKernelNetwork
+    network: CircularNetwork
     classes: tuple[str, ...]
     best_epoch: int
     epochs: int
@@ -94,71 +87,77 @@ class TrainedNetwork:
     temperature: float = 1.0
 
 
-class WideKernelNetwork(nn.Module):  # type: ignore[misc]  # the type checker does not read torch
-    """Windows (batch, channels, samples) in m/s^2, `samples_per_tooth` to a mesh period, to logits (batch, classes)."""
+class CircularConvolution(nn.Module):  # type: ignore[misc]  # the type checker does not read torch
+    """A convolution, normalised and rectified, over a signal whose ends meet."""
 
-    def __init__(self, channels: int, classes: int, samples_per_tooth: int) -> None:
+    def __init__(self, before: int, after: int, kernel: int, stride: int) -> None:
         super().__init__()
-        self.samples_per_tooth = samples_per_tooth
-        self.register_buffer("mean", torch.zeros(channels, 1))
-        self.register_buffer("scale", torch.ones(channels, 1))
-        padding = (FIRST_KERNEL - FIRST_STRIDE) // 2
-        layers: list[nn.Module] = _block(2 * channels, WIDTHS[0], FIRST_KERNEL, FIRST_STRIDE, padding)
-        for before, after in itertools.pairwise(WIDTHS):
-            layers += _block(before, after, kernel=3, stride=1, padding=1)
-        self.body = nn.Sequential(*layers)
-        self.dropout = nn.Dropout(0.2)
-        self.head = nn.Linear(2 * WIDTHS[-1] + 2 * channels, classes)
+        self.beside = (kernel - 1) // 2
+        self.convolution = nn.Conv1d(before, after, kernel, stride=stride, bias=False)
+        self.normal = nn.BatchNorm1d(after)
 
-    def forward(self, windows: torch.Tensor) -> torch.Tensor:
+    def forward(self, signal: torch.Tensor) -> torch.Tensor:
+        """Return the mapped signal, shorter by the stride."""
+        closed = torch.cat([signal[:, :, -self.beside :], signal, signal[:, :, : self.beside]], dim=2)
+        return nn.functional.relu(self.normal(self.convolution(closed)))
+
+
+class CircularNetwork(nn.Module):  # type: ignore[misc]
+    """Rows (batch, rows, steps) of one revolution, see `average_rows`, to logits (batch, classes)."""
+
+    def __init__(self, rows: int, classes: int) -> None:
+        super().__init__()
+        self.register_buffer("level_mean", torch.zeros(rows))
+        self.register_buffer("level_scale", torch.ones(rows))
+        layers: list[nn.Module] = []
+        before = rows
+        for width, kernel, stride in LAYERS:
+            layers += [CircularConvolution(before, width, kernel, stride), nn.MaxPool1d(2)]
+            before = width
+        self.body = nn.Sequential(*layers[:-1])
+        self.dropout = nn.Dropout(0.3)
+        self.head = nn.Linear(3 * before + rows, classes)
+
+    def forward(self, rows: torch.Tensor) -> torch.Tensor:
         """Return logits."""
-        scaled = (windows - self.mean) / self.scale
-        periods = scaled.unflatten(2, (-1, self.samples_per_tooth))
-        varying = (periods - periods.mean(dim=2, keepdim=True)).flatten(2)
-        both = torch.cat([scaled, varying], dim=1)
-        level = torch.sqrt((both * both).mean(dim=2, keepdim=True) + SMALLEST_VARIANCE)
-        mapped = self.body(both / level)
-        mean = mapped.mean(dim=2, keepdim=True)
-        spread = torch.sqrt(((mapped - mean) ** 2).mean(dim=2) + SMALLEST_VARIANCE)
-        pooled = self.dropout(torch.cat([mean.squeeze(2), spread], dim=1))
-        return self.head(torch.cat([pooled, torch.log(level.squeeze(2))], dim=1))
-
-
-def _block(before: int, after: int, kernel: int, stride: int, padding: int) -> list[nn.Module]:
-    convolution = nn.Conv1d(before, after, kernel, stride=stride, padding=padding, bias=False)
-    return [convolution, nn.BatchNorm1d(after), nn.ReLU(), nn.MaxPool1d(2)]
+        level = torch.sqrt((rows * rows).mean(dim=2)) + SMALLEST_LEVEL
+        mapped = self.body(rows / level.unsqueeze(2))
+        mean = mapped.mean(dim=2)
+        spread = torch.sqrt(((mapped - mean.unsqueeze(2)) ** 2).mean(dim=2) + 1e-6)
+        pooled = self.dropout(torch.cat([mean, spread, mapped.amax(dim=2)], dim=1))
+        return self.head(torch.cat([pooled, (torch.log(level) - self.level_mean) / self.level_scale], dim=1))
 
 
 def train_network(
-    records: OrderRecords,
+    records: AveragedRecords,
     target: np.ndarray,
     split: SpecimenSplit,
     seed: int,
-    settings: TrainingSettings | None = None,
+    settings: NetworkSettings | None = None,
     advance: Callable[[], None] | None = None,
 ) -> TrainedNetwork:
     """Train on training specimens, stop on validation specimens; the same seed gives the same weights on one machine.
 
     Parameters
     ----------
-    records : OrderRecords
-        All records of the set.
+    records : AveragedRecords
+        All records of the set, alone or beside their references.
     target : (records,) int
-        State of every record; the permutation control passes permuted ones.
+        Class of every record; the permutation control passes permuted ones.
     split : SpecimenSplit
         Whose specimens are which.
     seed : int
-        Seeds weights, order and window starts.
-    settings : TrainingSettings, optional
-        Default: `TrainingSettings()`.
+        Seeds weights, order and changed paths.
+    settings : NetworkSettings, optional
+        Default: `NetworkSettings()`.
     advance : callable, optional
         Called after every epoch.
     """
-    chosen = settings or TrainingSettings()
+    chosen = settings or NetworkSettings()
     with torch.random.fork_rng(devices=seeded_devices(chosen.device)), one_thread():
         torch.manual_seed(seed)
-        network = WideKernelNetwork(len(records.channels), len(split.classes), records.settings.samples_per_tooth)
-        _normalise(network, records, np.flatnonzero(split.train))
+        network = CircularNetwork(records.rows, len(split.classes))
+        _set_levels(network, records.chosen(np.flatnonzero(split.train)))
         network.to(chosen.device)
         return _fit(network, records, target, split, seed, chosen, advance)
 
@@ -179,62 +178,46 @@ def one_thread() -> Iterator[None]:
         torch.set_num_threads(before)
 
 
-def _normalise(network: WideKernelNetwork, records: OrderRecords, train: np.ndarray) -> None:
-    """Set mean and scale of every channel from training records alone."""
-    joined = np.concatenate([records.signals[position] for position in train], axis=1).astype(np.float64)
-    network.mean.copy_(torch.from_numpy(joined.mean(axis=1, keepdims=True)))
-    spread = joined.std(axis=1, keepdims=True)
-    network.scale.copy_(torch.from_numpy(np.where(spread > 0.0, spread, 1.0)))
+def _set_levels(network: CircularNetwork, train: AveragedRecords) -> None:
+    """Set mean and spread of the log levels from training records alone."""
+    levels = np.log(np.sqrt(np.square(average_rows(train), dtype=np.float64).mean(axis=2)) + SMALLEST_LEVEL)
+    network.level_mean.copy_(torch.from_numpy(levels.mean(axis=0)))
+    network.level_scale.copy_(torch.from_numpy(np.maximum(levels.std(axis=0), 1e-3)))
 
 
 def _fit(
-    network: WideKernelNetwork,
-    records: OrderRecords,
+    network: CircularNetwork,
+    records: AveragedRecords,
     target: np.ndarray,
     split: SpecimenSplit,
     seed: int,
-    settings: TrainingSettings,
+    settings: NetworkSettings,
     advance: Callable[[], None] | None,
 ) -> TrainedNetwork:
     optimiser = torch.optim.AdamW(network.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay)
     train, validation = np.flatnonzero(split.train), np.flatnonzero(split.validation)
-    judged = _judged_windows(records, target, validation) if validation.size else None
+    judged = torch.from_numpy(average_rows(records.chosen(validation))) if validation.size else None
     losses: list[float] = []
     best_epoch, best_weights = 0, _weights(network)
     for epoch in range(1, settings.most_epochs + 1):
-        _run_epoch(network, optimiser, records, target, train, generator(seed, Purpose.WINDOWS, epoch), settings)
+        _run_epoch(network, optimiser, records, target, train, generator(seed, Purpose.AVERAGES, epoch), settings)
         if advance:
             advance()
-        if judged is None:
-            best_epoch, best_weights = epoch, _weights(network)
-            continue
-        losses.append(_loss(network, *judged))
-        if losses[-1] <= min(losses):
+        if judged is not None:
+            truth = torch.from_numpy(target[validation])
+            losses.append(float(nn.functional.cross_entropy(_logits(network, judged), truth)))
+        if judged is None or losses[-1] <= min(losses):
             best_epoch, best_weights = epoch, _weights(network)
         elif epoch - best_epoch >= settings.patience:
             break
     network.load_state_dict(best_weights)
-    network.to("cpu").eval()  # judged and saved there, whatever it was trained on
-    note = training_note("1-D network", losses, epoch, target[train], judged[1].numpy() if judged else None)
+    network.to("cpu").eval()
+    note = _training_note(losses, epoch, target[train], target[validation] if validation.size else None)
     return TrainedNetwork(network, split.classes, best_epoch, epoch, tuple(losses), note)
 
 
-def training_note(
-    name: str, losses: Sequence[float], epochs: int, train: np.ndarray, validation: np.ndarray | None
-) -> str:
-    """Return what was not as it should be, or nothing: no specimens to stop by, or a network that has not learned.
-
-    Parameters
-    ----------
-    name : str
-        Of the network.
-    losses : sequence of float
-        Cross entropy on validation specimens by epoch.
-    epochs : int
-        Epochs run.
-    train, validation : (k,) int
-        Classes of what was trained on and of what `losses` are means over; None without validation specimens.
-    """
+def _training_note(losses: Sequence[float], epochs: int, train: np.ndarray, validation: np.ndarray | None) -> str:
+    """Return what was not as it should be, or nothing: no specimens to stop by, or a network that has not learned."""
     if validation is None:
         return f"no validation specimens: trained for {epochs} epochs without stopping"
     shares = np.bincount(train, minlength=int(validation.max()) + 1) / train.size
@@ -243,80 +226,66 @@ def training_note(
     if best < guess:
         return ""
     return (
-        f"the {name} has not learned: its best validation loss is {best:.3g}, and guessing by how often each class "
-        f"occurs gives {guess:.3g}; its scores mean nothing"
+        f"the 1-D network has not learned: its best validation loss is {best:.3g}, and guessing by how often each "
+        f"class occurs gives {guess:.3g}; its scores mean nothing"
     )
 
 
 def _run_epoch(
-    network: WideKernelNetwork,
+    network: CircularNetwork,
     optimiser: torch.optim.Optimizer,
-    records: OrderRecords,
+    records: AveragedRecords,
     target: np.ndarray,
     train: np.ndarray,
     rng: np.random.Generator,
-    settings: TrainingSettings,
+    settings: NetworkSettings,
 ) -> None:
     network.train()
-    per_record = max(3, -(-settings.windows_per_epoch // train.size))
-    windows = drawn_windows(records, train, per_record, rng)
-    if settings.augmentation:
-        windows = augmented(windows, settings.augmentation, rng)
-    labels = np.repeat(target[train], per_record)
-    order = rng.permutation(labels.size)
-    for start in range(0, labels.size, settings.batch):
+    order = rng.permutation(train)
+    for start in range(0, order.size, settings.batch):
         batch = order[start : start + settings.batch]
-        if batch.size < 2 and labels.size > 1:  # batch normalisation is undefined on a single window
+        if batch.size < 2 and order.size > 1:  # batch normalisation is undefined on a single record
             continue
+        rows = average_rows(moved(records.chosen(batch), rng, settings.gain_db))
         optimiser.zero_grad()
-        logits = network(torch.from_numpy(windows[batch]).to(settings.device))
-        truth = torch.from_numpy(labels[batch]).to(settings.device)
-        nn.functional.cross_entropy(logits, truth).backward()
+        logits = network(torch.from_numpy(rows).to(settings.device))
+        nn.functional.cross_entropy(logits, torch.from_numpy(target[batch]).to(settings.device)).backward()
         optimiser.step()
 
 
-def _weights(network: WideKernelNetwork) -> dict[str, torch.Tensor]:
+def _weights(network: CircularNetwork) -> dict[str, torch.Tensor]:
     return {name: value.detach().clone() for name, value in network.state_dict().items()}
 
 
-def _judged_windows(records: OrderRecords, target: np.ndarray, chosen: np.ndarray) -> tuple[torch.Tensor, torch.Tensor]:
-    windows = [record_windows(records, position) for position in chosen]
-    labels = np.concatenate(
-        [np.full(len(found), target[position]) for found, position in zip(windows, chosen, strict=True)]
-    )
-    return torch.from_numpy(np.concatenate(windows)), torch.from_numpy(labels)
-
-
-def _loss(network: WideKernelNetwork, windows: torch.Tensor, labels: torch.Tensor) -> float:
-    return float(nn.functional.cross_entropy(_logits(network, windows), labels))
-
-
-def _logits(network: WideKernelNetwork, windows: torch.Tensor) -> torch.Tensor:
+def _logits(network: CircularNetwork, rows: torch.Tensor) -> torch.Tensor:
     network.eval()
     with torch.no_grad():
-        device = network.mean.device
-        return torch.cat([network(part.to(device)).cpu() for part in windows.split(JUDGING_BATCH)])
+        return network(rows.to(network.level_mean.device)).float().cpu()
+
+
+def network_probability(network: CircularNetwork, records: AveragedRecords) -> np.ndarray:
+    """Return the uncalibrated probability of every class, (records, classes) float64."""
+    if not records.teeth.size:
+        return np.empty((0, network.head.out_features))
+    rows = torch.from_numpy(average_rows(records))
+    return np.asarray(torch.softmax(_logits(network, rows).double(), dim=1).numpy())
 
 
 def network_predictions(
-    trained: TrainedNetwork, records: OrderRecords, chosen: np.ndarray, target: np.ndarray, specimen: np.ndarray
+    trained: TrainedNetwork, records: AveragedRecords, chosen: np.ndarray, target: np.ndarray, specimen: np.ndarray
 ) -> Predictions:
-    """Return one vote per record: the mean of its windows' class probabilities, at the network's temperature.
+    """Return the probabilities of some records at the network's temperature.
 
     Parameters
     ----------
     trained : TrainedNetwork
         The network to judge.
-    records : OrderRecords
+    records : AveragedRecords
         All records of the set.
     chosen : (k,) int
         Positions of the records to predict.
     target, specimen : (records,) int
         True state and specimen of every record of the set.
     """
-    votes = []
-    for position in chosen:
-        logits = _logits(trained.network, torch.from_numpy(record_windows(records, position)))
-        votes.append(torch.softmax(logits.double(), dim=1).mean(dim=0).numpy())
-    probability = np.stack(votes) if votes else np.empty((0, len(trained.classes)))
+    probability = network_probability(trained.network, records.chosen(chosen))
     return calibrated(Predictions(trained.classes, target[chosen], probability, specimen[chosen]), trained.temperature)

@@ -1,4 +1,7 @@
-"""The network on disk: safetensors with everything needed to use it."""
+"""The network on averages on disk: as safetensors, which cannot execute anything.
+
+The safetensors file carries classes, channels, identity of the set and temperature in its metadata.
+"""
 
 from __future__ import annotations
 
@@ -11,58 +14,44 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import load_file, save
 
-from diagnostics.loader.windows import WindowSettings
-from diagnostics.training.cnn import TrainedNetwork, WideKernelNetwork
+from diagnostics.training.average_rows import ROWS
+from diagnostics.training.cnn import CircularNetwork
+from diagnostics.training.network_training import TrainedNetworkFile
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
-FORMAT = "siggen-diagnostics wide-kernel network 1"
+FORMAT = "siggen-diagnostics network on averages 1"
 
 
 @dataclass(frozen=True, slots=True)
-class NetworkFile:
-    """What a file of a network says about it.
+class NetworkFacts:
+    """What a file of a network on averages says about it.
 
     Attributes
     ----------
     classes, channels : tuple of str
-        States in the order of the outputs, channels in the order of the inputs.
-    windows : WindowSettings
-        Revolutions per window and samples per revolution.
-    mean_m_s2, scale_m_s2 : tuple of float
-        Normalisation per channel, already inside the network.
+        States in the order of the outputs; channels in the order of the rows, see `average_rows`.
     identity : str
         Identity of the set it was trained on.
     temperature : float
-        Applied to the mean probabilities of a record's windows, see `diagnostics.statistics.calibration`; not in the
-        network.
+        Applied to the mean probabilities of a recording's pieces; not in the network.
     """
 
     classes: tuple[str, ...]
     channels: tuple[str, ...]
-    windows: WindowSettings
-    mean_m_s2: tuple[float, ...]
-    scale_m_s2: tuple[float, ...]
     identity: str
     temperature: float = 1.0
 
 
-def describe_network(
-    trained: TrainedNetwork, channels: tuple[str, ...], windows: WindowSettings, identity: str
-) -> NetworkFile:
-    """Return what the file of a trained network says about it."""
-    network = trained.network
-    mean, scale = (tuple(float(x) for x in buffer.flatten()) for buffer in (network.mean, network.scale))
-    return NetworkFile(trained.classes, channels, windows, mean, scale, identity, trained.temperature)
-
-
-def save_network(network: WideKernelNetwork, facts: NetworkFile, path: Path) -> None:
+def save_network(found: TrainedNetworkFile, path: Path) -> None:
     """Write weights and facts as safetensors; the facts are JSON under the metadata key `facts`."""
-    weights = {name: value.contiguous() for name, value in network.state_dict().items()}
+    trained = found.trained
+    facts = NetworkFacts(trained.classes, found.channels, found.identity, trained.temperature)
+    weights = {name: value.contiguous() for name, value in trained.network.state_dict().items()}
     write_file(path, save(weights, metadata={"format": FORMAT, "facts": json.dumps(asdict(facts))}))
 
 
-def load_network(path: Path) -> tuple[WideKernelNetwork, NetworkFile]:
+def load_network(path: Path) -> tuple[CircularNetwork, NetworkFacts]:
     """Read a network written by `save_network`; nothing in the file is executed.
 
     Raises
@@ -78,34 +67,23 @@ def load_network(path: Path) -> tuple[WideKernelNetwork, NetworkFile]:
     if metadata.get("format") != FORMAT:
         raise UsageError(f"{path}: received format {metadata.get('format')!r}; allowed is {FORMAT!r}")
     try:
-        facts = _facts(json.loads(metadata["facts"]))
-        network = WideKernelNetwork(len(facts.channels), len(facts.classes), facts.windows.samples_per_tooth)
+        found = json.loads(metadata["facts"])
+        facts = NetworkFacts(
+            tuple(found["classes"]), tuple(found["channels"]), str(found["identity"]), float(found["temperature"])
+        )
+        network = CircularNetwork(ROWS * len(facts.channels), len(facts.classes))
         network.load_state_dict(load_file(path))
     except (KeyError, TypeError, ValueError, RuntimeError, SafetensorError) as error:
         text = str(error).splitlines()[0]
         raise UsageError(f"{path}: received facts or weights of another schema ({text}); train again") from error
-    check_finite(path, network, facts.temperature)
+    _check_finite(path, network, facts.temperature)
     network.eval()
     return network, facts
 
 
-def check_finite(path: Path, network: torch.nn.Module, temperature: float) -> None:
-    """Check the values of a network that was read.
-
-    Raises
-    ------
-    UsageError
-        If a weight is not finite, or the temperature is not finite and above 0.
-    """
+def _check_finite(path: Path, network: torch.nn.Module, temperature: float) -> None:
     infinite = [name for name, value in network.state_dict().items() if not bool(torch.isfinite(value).all())]
     if infinite:
         raise UsageError(f"{path}: received {infinite[0]} that is not finite; the file is damaged: train again")
     if not (math.isfinite(temperature) and temperature > 0.0):
         raise UsageError(f"{path}: received temperature {temperature}; allowed: finite and above 0; train again")
-
-
-def _facts(found: dict[str, object]) -> NetworkFile:
-    tuples = {name: tuple(value) for name, value in found.items() if isinstance(value, list)}
-    windows = WindowSettings(**found["windows"])  # type: ignore[arg-type]
-    temperature = float(str(found.get("temperature", 1.0)))
-    return NetworkFile(windows=windows, identity=str(found["identity"]), temperature=temperature, **tuples)

@@ -31,7 +31,7 @@ from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.detection import damage_score
 from diagnostics.statistics.detector import Detector, judged_detector
 from diagnostics.statistics.evaluation import column_auc
-from diagnostics.statistics.judgement import CIRCULAR, CIRCULAR_REFERENCED, NETWORK, TITLES, VALIDATION_AUROC, Judged
+from diagnostics.statistics.judgement import NETWORK, NETWORK_REFERENCED, TITLES, Judged
 from diagnostics.training.baselines import FeatureClassifier, fitted_classifier
 from diagnostics.training.boosting import fitted_boosting
 from diagnostics.training.referenced import healthy_referenced
@@ -173,24 +173,22 @@ def judged_detectors(matrix: FeatureMatrix, training: Training | None, seed: int
     referenced = _cross_fitted(differences, seed, referenced=True)
     if training is not None:
         test = training.split.test
-        alone |= _network(training.judged, (NETWORK, CIRCULAR), matrix.rows(test), training, seed)
+        alone |= _network(training.judged, NETWORK, matrix.rows(test), training, seed)
         if training.referenced:
             rows = matrix.rows(test & training.referenced.kept)
-            referenced |= _network(training.referenced.judged, (CIRCULAR_REFERENCED,), rows, training, seed)
+            referenced |= _network(training.referenced.judged, NETWORK_REFERENCED, rows, training, seed)
     return Detectors(alone, referenced if kept.any() else {})
 
 
 def _network(
-    judged: tuple[Judged, ...], names: tuple[str, ...], rows: FeatureMatrix, training: Training, seed: int
+    judged: tuple[Judged, ...], name: str, rows: FeatureMatrix, training: Training, seed: int
 ) -> dict[str, Detector]:
-    """Return the network that validation gearboxes choose, on its test records; empty without any."""
-    found = [entry for entry in judged if entry.name in names]
-    if not found or training.split.healthy is None:
+    """Return the network of this name on its test records; empty without it."""
+    network = next((entry for entry in judged if entry.name == name), None)
+    if network is None or training.split.healthy is None:
         return {}
-    best = max(found, key=lambda entry: entry.details.get(VALIDATION_AUROC, 0.0))
-    score = damage_score(best.predictions, training.split.healthy)
-    referenced = best.name == CIRCULAR_REFERENCED
-    detector = judged_detector(TITLES[best.name], score, rows.labels, seed, referenced=referenced)
+    score = damage_score(network.predictions, training.split.healthy)
+    detector = judged_detector(TITLES[name], score, rows.labels, seed, referenced=name == NETWORK_REFERENCED)
     return {NETWORKS: detector} if detector else {}
 
 

@@ -17,8 +17,7 @@ from torch import nn
 
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.statistics.life_scores import QUANTILES
-from diagnostics.training.circular_network import SMALLEST_LEVEL, CircularConvolution
-from diagnostics.training.cnn import one_thread
+from diagnostics.training.cnn import SMALLEST_LEVEL, CircularConvolution, one_thread
 
 CONVOLUTIONS = ((4, 31, 4), (8, 7, 2))
 """Width, kernel and stride, each followed by a maximum over two steps."""

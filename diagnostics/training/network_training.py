@@ -12,16 +12,14 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.record_classes import STATE, check_kind
 from diagnostics.statistics.calibration import calibrated, fitted_temperature
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
-from diagnostics.statistics.judgement import NETWORK, Judged, judged, validation_score
+from diagnostics.statistics.judgement import TITLES, Judged, judged, validation_score
 from diagnostics.training.baselines import permuted_target, state_index
 from diagnostics.training.splits import SpecimenSplit
-from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
-    from diagnostics.loader.windows import OrderRecords
-    from diagnostics.training.cnn import TrainedNetwork, TrainingSettings
-    from diagnostics.training.cnn_files import NetworkFile
+    from diagnostics.training.average_rows import AveragedRecords
+    from diagnostics.training.cnn import NetworkSettings, TrainedNetwork
 
 PERMUTED_EPOCHS = 15
 DEVICES = ("cpu", "cuda")
@@ -29,10 +27,11 @@ DEVICES = ("cpu", "cuda")
 
 @dataclass(frozen=True, slots=True)
 class TrainedNetworkFile:
-    """A trained network and what its file says."""
+    """A trained network on averages, the channels it takes, and the identity of the set it was trained on."""
 
     trained: TrainedNetwork
-    facts: NetworkFile
+    channels: tuple[str, ...]
+    identity: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +45,7 @@ class NetworkOptions:
     device : str
         `cpu` or `cuda`.
     augment : bool
-        Whether training windows pass random paths.
+        Whether training averages pass random paths.
     classes : str
         What every classifier tells apart: `state`, or primary `fault`; healthy ones are one class.
 
@@ -86,95 +85,96 @@ def check_device(device: str) -> None:
             )
 
 
-def network_records(dataset: Dataset, stage: Stage) -> OrderRecords:
-    """Return what the network takes of a set.
-
-    Raises
-    ------
-    DatasetError
-        If records are too short for a window.
-    """
-    from diagnostics.loader.windows import order_records
-
-    with stage("order-resampled windows", dataset.labels(columns=["record_id"]).num_rows) as advance:
-        return order_records(dataset, advance=advance)
-
-
-def judge_networks(
-    identity: str,
-    records: OrderRecords,
+def judge_network(
+    name: str,
+    records: AveragedRecords,
     matrix: FeatureMatrix,
     split: SpecimenSplit,
     seed: int,
     options: NetworkOptions,
     stage: Stage,
-) -> tuple[list[Judged], TrainedNetworkFile]:
-    """Train and judge the network."""
-    from diagnostics.loader.augmentation import Augmentation
-    from diagnostics.training.cnn import TrainingSettings
-    from diagnostics.training.cnn_files import describe_network
-
-    settings = TrainingSettings(augmentation=Augmentation() if options.augment else None, device=options.device)
-    trained, first = _judge(NETWORK, records, matrix, split, seed, settings, stage)
-    results = [replace(first, permuted_auroc=_control(records, matrix, split, seed, settings, stage))]
-    facts = describe_network(trained, records.channels, records.settings, identity)
-    return results, TrainedNetworkFile(trained, facts)
-
-
-def _judge(
-    name: str,
-    records: OrderRecords,
-    matrix: FeatureMatrix,
-    split: SpecimenSplit,
-    seed: int,
-    settings: TrainingSettings,
-    stage: Stage,
 ) -> tuple[TrainedNetwork, Judged]:
-    from diagnostics.training.cnn import train_network
+    """Train a network on averages and judge it on the test specimens.
 
+    Parameters
+    ----------
+    name : str
+        `network`, or `network_referenced` for averages beside a healthy reference.
+    records : AveragedRecords
+        All records of the matrix, in its order.
+    matrix : FeatureMatrix
+        Labels of the records.
+    split : SpecimenSplit
+        Whose specimens are which.
+    seed : int
+        Seeds weights, paths and bootstrap.
+    options : NetworkOptions
+        Device, and whether training averages pass random paths.
+    stage : Stage
+        Told of every epoch.
+    """
+    from diagnostics.training.cnn import NetworkSettings
+
+    plain = NetworkSettings(device=options.device)
+    settings = plain if options.augment else replace(plain, gain_db=0.0)
     truth = state_index(matrix, split.classes)
-    with stage(name.replace("_", " "), settings.most_epochs) as advance:
-        trained = train_network(records, truth, split, seed, settings, advance)
-    validation = _votes(trained, records, matrix, split.validation, split.classes)
+    trained = _trained(TITLES[name], records, truth, split, seed, settings, stage)
+    validation = _votes(trained, records, matrix, split.validation)
     temperature = fitted_temperature(validation)
-    found = _votes(trained, records, matrix, split.test, split.classes)
     details = {
         "best_epoch": trained.best_epoch,
         "epochs": trained.epochs,
-        "revolutions_per_window": records.settings.revolutions,
-        "samples_per_revolution": records.settings.samples_per_revolution,
-        "augmented": settings.augmentation is not None,
-        "device": settings.device,
+        "augmented": options.augment,
+        "device": options.device,
         "note": trained.note,
         **validation_score(validation),
     }
-    result = judged(name, found, temperature, np.empty(0), details, seed, split.healthy)
+    found = _votes(trained, records, matrix, split.test)
+    control = _control(name, records, matrix, split, seed, settings, stage)
+    result = judged(name, found, temperature, control, details, seed, split.healthy)
     return replace(trained, temperature=temperature), replace(result, validation=calibrated(validation, temperature))
 
 
-def _votes(
-    trained: TrainedNetwork, records: OrderRecords, matrix: FeatureMatrix, mask: np.ndarray, classes: tuple[str, ...]
-) -> Predictions:
+def _trained(
+    title: str,
+    records: AveragedRecords,
+    target: np.ndarray,
+    split: SpecimenSplit,
+    seed: int,
+    settings: NetworkSettings,
+    stage: Stage,
+) -> TrainedNetwork:
+    from diagnostics.training.cnn import train_network
+
+    with stage(title, settings.most_epochs) as advance:
+        return train_network(records, target, split, seed, settings, advance)
+
+
+def _votes(trained: TrainedNetwork, records: AveragedRecords, matrix: FeatureMatrix, mask: np.ndarray) -> Predictions:
     from diagnostics.training.cnn import network_predictions
 
-    specimen = matrix.labels["specimen_id"]
-    return network_predictions(trained, records, np.flatnonzero(mask), state_index(matrix, classes), specimen)
+    truth = state_index(matrix, trained.classes)
+    return network_predictions(trained, records, np.flatnonzero(mask), truth, matrix.labels["specimen_id"])
 
 
 def _control(
-    records: OrderRecords,
+    name: str,
+    records: AveragedRecords,
     matrix: FeatureMatrix,
     split: SpecimenSplit,
     seed: int,
-    settings: TrainingSettings,
+    settings: NetworkSettings,
     stage: Stage,
 ) -> np.ndarray:
     """Return the macro-AUROC, (1,), after a short training on permuted labels."""
-    from diagnostics.training.cnn import train_network
-
     short = replace(settings, most_epochs=PERMUTED_EPOCHS, patience=PERMUTED_EPOCHS)
     target = permuted_target(state_index(matrix, split.classes), split, seed, 0)
-    with stage("network on permuted labels", PERMUTED_EPOCHS) as advance:
-        control = train_network(records, target, split, seed, short, advance)
-    found = _votes(control, records, matrix, split.test, split.classes)
-    return macro_auroc(found, np.ones((1, found.truth.size)))
+    found = _trained(f"permuted labels, {TITLES[name]}", records, target, split, seed, short, stage)
+    votes = _votes(found, records, matrix, split.test)
+    return macro_auroc(votes, np.ones((1, votes.truth.size)))
+
+
+def network_predictions_of(network: TrainedNetworkFile, records: AveragedRecords, matrix: FeatureMatrix) -> Predictions:
+    """Return uncalibrated predictions of all records of another set."""
+    every = np.ones(len(records.teeth), dtype=bool)
+    return _votes(replace(network.trained, temperature=1.0), records, matrix, every)

@@ -7,18 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.base.progress import Stage
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.record_classes import STATE, set_classes
 from diagnostics.records.recording import gear_names
 from diagnostics.records.state_classes import CLASS, HEALTHY
 from diagnostics.statistics.evaluation import UNKNOWN, Predictions
-from diagnostics.statistics.judgement import CIRCULAR, NETWORK, Judged, judged
+from diagnostics.statistics.judgement import NETWORK, Judged, judged
 from diagnostics.training.average_rows import table_averages
 from diagnostics.training.baselines import FeatureClassifier, state_index
-from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of
-from diagnostics.training.network_training import TrainedNetworkFile
+from diagnostics.training.network_training import TrainedNetworkFile, network_predictions_of
 from diagnostics.training.splits import SpecimenSplit
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
@@ -88,44 +86,25 @@ def classifier_predictions(model: FeatureClassifier, matrix: FeatureMatrix) -> P
     return replace(model, temperature=1.0).predict(matrix)
 
 
-def network_predictions_of(network: TrainedNetworkFile, other: Dataset, matrix: FeatureMatrix) -> Predictions:
-    """Return uncalibrated predictions of the other set by the network; its pinions may have other teeth."""
-    from diagnostics.loader.windows import order_records
-    from diagnostics.training.cnn import network_predictions
-
-    records = order_records(other)
-    trained = replace(network.trained, temperature=1.0)
-    every = np.arange(len(records.signals))
-    return network_predictions(
-        trained, records, every, state_index(matrix, trained.classes), matrix.labels["specimen_id"]
-    )
-
-
 def _matrix(other: OtherSet, split: SpecimenSplit) -> FeatureMatrix:
     return feature_matrix(other.table, set_classes(other.dataset, split.kind, split.healthy))
 
 
 def judge_other(
     models: dict[str, FeatureClassifier],
-    networks: tuple[TrainedNetworkFile | None, TrainedCircularFile | None],
+    network: TrainedNetworkFile | None,
     results: list[Judged],
     other: OtherSet,
     split: SpecimenSplit,
     seed: int,
-    stage: Stage,
 ) -> tuple[Judged, ...]:
     """Judge every classifier on all records of the other set, none of whose gearboxes was trained on."""
-    matrix, (network, circular) = _matrix(other, split), networks
+    matrix = _matrix(other, split)
     found: dict[str, tuple[Predictions, float]] = {
         name: (classifier_predictions(model, matrix), model.temperature) for name, model in models.items()
     }
     if network:
-        with stage("network on the other set", 1) as advance:
-            votes = network_predictions_of(network, other.dataset, matrix)
-            advance()
+        votes = network_predictions_of(network, table_averages(other.dataset, other.table), matrix)
         found[NETWORK] = (votes, network.trained.temperature)
-    if circular:
-        votes = circular_predictions_of(circular, table_averages(other.dataset, other.table), matrix)
-        found[CIRCULAR] = (votes, circular.trained.temperature)
     details = {result.name: result.details for result in results}
     return tuple(judged(name, *votes, np.empty(0), details[name], seed, split.healthy) for name, votes in found.items())

@@ -22,10 +22,9 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import CLASS, HEALTHY
 from diagnostics.statistics.comparison import Comparison, comparison
 from diagnostics.statistics.evaluation import Predictions
-from diagnostics.statistics.judgement import CIRCULAR, CIRCULAR_REFERENCED, INDICATORS, REFERENCED, Judged, judged
+from diagnostics.statistics.judgement import INDICATORS, NETWORK, NETWORK_REFERENCED, REFERENCED, Judged, judged
 from diagnostics.training.baselines import FeatureClassifier, calibrated_classifier, train_classifier
-from diagnostics.training.circular_training import judge_circular
-from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.network_training import NetworkOptions, judge_network
 from diagnostics.training.splits import SpecimenSplit
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
 PLACE = ("specimen_id", "operating_point_id", "repeat")
 """Where a damaged record has its healthy twin."""
 
-PAIRS = ((REFERENCED, INDICATORS), (CIRCULAR_REFERENCED, CIRCULAR), (CIRCULAR_REFERENCED, REFERENCED))
+PAIRS = ((REFERENCED, INDICATORS), (NETWORK_REFERENCED, NETWORK), (NETWORK_REFERENCED, REFERENCED))
 """Differences that are told: what the reference is worth, and which classifier uses it better."""
 
 
@@ -160,7 +159,7 @@ def referenced_classifiers(
     alone : list of Judged
         Classifiers without a reference, judged on all test records.
     averages : AveragedRecords, optional
-        For the circular network; None leaves it out.
+        For the 1-D network; None leaves it out.
     seed : int
         Seeds networks and bootstrap.
     options : NetworkOptions
@@ -174,7 +173,7 @@ def referenced_classifiers(
         return None
     classifier = calibrated_classifier(train_classifier(differences, part, take_logarithms=False), differences, part)
     shown = kept[split.test]
-    results = [_of_kept(found, shown, seed, split.healthy) for found in alone if found.name in (INDICATORS, CIRCULAR)]
+    results = [_of_kept(found, shown, seed, split.healthy) for found in alone if found.name in (INDICATORS, NETWORK)]
     results.append(_judged_linear(classifier, differences, part, seed))
     if averages is not None:
         from diagnostics.training.average_rows import with_references
@@ -182,7 +181,7 @@ def referenced_classifiers(
         places = np.flatnonzero(kept)
         rows = healthy_references(matrix.labels)
         beside = with_references(averages, places, [rows[place] for place in places])
-        results.append(judge_circular(CIRCULAR_REFERENCED, beside, differences, part, seed, options, stage)[1])
+        results.append(judge_network(NETWORK_REFERENCED, beside, differences, part, seed, options, stage)[1])
     return Referenced(classifier, kept, part, tuple(results), _comparisons(results, split.healthy, seed))
 
 

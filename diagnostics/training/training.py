@@ -18,8 +18,8 @@ from diagnostics.statistics.comparison import Comparison, comparison, state_auc
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import (
     BOOSTING,
-    CIRCULAR,
     INDICATORS,
+    NETWORK,
     RMS_ALONE,
     Judged,
     judged,
@@ -36,14 +36,8 @@ from diagnostics.training.baselines import (
     train_classifier,
 )
 from diagnostics.training.boosting import train_boosting
-from diagnostics.training.circular_training import TrainedCircularFile, judge_circular
 from diagnostics.training.nested_folds import Nested, nested_folds, nested_metrics, strange_classes
-from diagnostics.training.network_training import (
-    NetworkOptions,
-    TrainedNetworkFile,
-    judge_networks,
-    network_records,
-)
+from diagnostics.training.network_training import NetworkOptions, TrainedNetworkFile, judge_network
 from diagnostics.training.other_set import OtherSet, classifier_predictions, judge_other, strange_states_note
 from diagnostics.training.referenced import Referenced, referenced_classifiers
 from diagnostics.training.severity import (
@@ -67,7 +61,7 @@ class Training:
         Paired differences on the test specimens.
     rms_severe : Interval or None
         AUC of RMS alone for the state with the largest damage against healthy.
-    circular : TrainedCircularFile or None
+    network : TrainedNetworkFile or None
         Network on the synchronous average; None without networks.
     referenced : Referenced or None
         Classifiers beside a healthy record of the same gearbox; None where the set has no second one.
@@ -88,7 +82,6 @@ class Training:
     comparisons: tuple[Comparison, ...]
     rms_severe: Interval | None
     class_areas: np.ndarray
-    circular: TrainedCircularFile | None = None
     referenced: Referenced | None = None
     nested: Nested | None = None
 
@@ -108,7 +101,7 @@ def train_models(
     Parameters
     ----------
     dataset : siggen Dataset
-        What `siggen.open` returned; the network reads its signals.
+        What `siggen.open` returned.
     table : pyarrow.Table
         Its feature table.
     seed : int
@@ -130,19 +123,16 @@ def train_models(
     matrix = feature_matrix(table, classes)
     split = specimen_split(matrix.labels, classes)
     # first of all: records that are too short for it are said before anything is trained
-    windows = network_records(dataset, stage) if options.cnn else None
+    averages = table_averages(dataset, table) if options.cnn else None
     models = _feature_models(matrix, split, seed, stage)
     with stage("permuted labels", PERMUTATIONS) as advance:
         control = permutation_control(matrix, split, seed, strength=models[INDICATORS].strength, advance=advance)
     results = [_judge(name, model, matrix, split, control, seed) for name, model in models.items()]
-    trained, circular, averages = None, None, None
-    if windows is not None:
-        identity = str(dataset.manifest["identity"])
-        found, trained = judge_networks(identity, windows, matrix, split, seed, options, stage)
-        averages = table_averages(dataset, table)
-        network_alone, judged_alone = judge_circular(CIRCULAR, averages, matrix, split, seed, options, stage)
-        circular = TrainedCircularFile(network_alone, averages.channels, identity)
-        results += [*found, judged_alone]
+    trained = None
+    if averages is not None:
+        alone, judged_alone = judge_network(NETWORK, averages, matrix, split, seed, options, stage)
+        trained = TrainedNetworkFile(alone, averages.channels, str(dataset.manifest["identity"]))
+        results.append(judged_alone)
     specimens = {name: _specimens(matrix, mask) for name, mask in _masks(split).items()}
     details = (str(found.details["note"]) for found in results if found.details.get("note"))
     strange = strange_states_note(other, split) if other else ""
@@ -154,12 +144,11 @@ def train_models(
         split=split,
         specimens=specimens,
         notes=tuple(notes),
-        other=judge_other(models, (trained, circular), results, other, split, seed, stage) if other else (),
+        other=judge_other(models, trained, results, other, split, seed) if other else (),
         other_name=other.dataset.path.name if other else "",
         comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
         class_areas=mean_areas(matrix, split),
-        circular=circular,
         referenced=referenced_classifiers(matrix, split, results, averages, seed, options, stage),
         nested=_nested(matrix, split, seed, stage),
     )

@@ -27,3 +27,22 @@ def test_windows_are_those_of_the_loader_and_their_mean_is_the_answer_of_a_recor
     assert mine["p_severe"][0] == pytest.approx(wavering[own, found.classes.index("severe")].mean())
     scores = {row.measure: row.score.value for row in diagnostics.score(dataset, mine).rows}
     assert scores["balanced accuracy"] == 1.0
+
+
+def test_averages_and_tables_go_into_a_fit_as_they_are(
+    dataset: Any, measured: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import torch
+
+    for module in ("indicators.classifier_table", "training.average_rows"):
+        monkeypatch.setattr(f"diagnostics.{module}.record_table", lambda *_, **__: measured)
+    found = diagnostics.averages(dataset, "test")
+    assert found.values.shape == (8 * 3, 3 * 2, 1024)
+    assert set(found.labels["specimen_id"]) == set(range(16, 24))
+    rows, truth = next(iter(torch.utils.data.DataLoader(found, batch_size=5)))
+    np.testing.assert_array_equal(rows.numpy(), found.values[:5])
+    np.testing.assert_array_equal(truth.numpy(), found.labels["class_id"][:5])
+    values, target, groups = diagnostics.table(dataset).split("test")
+    assert len(values) == len(target) == len(groups) == 24
+    names = np.array(found.classes)
+    np.testing.assert_array_equal(names[found.labels["class_id"]], target)

@@ -75,16 +75,15 @@ def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
 def test_a_network_of_another_model_is_refused(folder: Path) -> None:
     torch = pytest.importorskip("torch")
     pytest.importorskip("safetensors")
-    from diagnostics.loader.windows import WindowSettings
-    from diagnostics.training.cnn import WideKernelNetwork
-    from diagnostics.training.cnn_files import NetworkFile, save_network
+    from diagnostics.training.cnn import CircularNetwork, TrainedNetwork
+    from diagnostics.training.cnn_files import save_network
+    from diagnostics.training.network_training import TrainedNetworkFile
 
-    windows, channels = WindowSettings(teeth=18), ("bearing_vertical", "bearing_horizontal")
     torch.manual_seed(0)
-    network = WideKernelNetwork(2, 3, windows.samples_per_tooth)
+    trained = TrainedNetwork(CircularNetwork(6, 3), ("healthy", "slight", "severe"), 1, 1, (), "")
     for identity in ("f" * 64, "0" * 64):
-        facts = NetworkFile(("healthy", "slight", "severe"), channels, windows, (0.0,) * 2, (1.0,) * 2, identity)
-        save_network(network, facts, folder / "cnn.safetensors")
+        file = TrainedNetworkFile(trained, ("bearing_vertical", "bearing_horizontal"), identity)
+        save_network(file, folder / "cnn.safetensors")
         reseal(folder)
         if identity[0] == "f":
             with pytest.raises(UsageError, match=r"cnn\.safetensors: does not belong .*identity"):

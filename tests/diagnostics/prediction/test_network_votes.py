@@ -19,8 +19,8 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.statistics.calibration import tempered
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.baselines import state_index
-from diagnostics.training.circular_network import CircularSettings, circular_probability, train_circular
-from diagnostics.training.circular_training import TrainedCircularFile
+from diagnostics.training.cnn import NetworkSettings, network_probability, train_network
+from diagnostics.training.network_training import TrainedNetworkFile
 from diagnostics.training.training import Training
 from siggen.errors import UsageError
 
@@ -30,20 +30,20 @@ def test_the_vote_of_a_recording_is_that_of_the_record_and_a_foreign_network_is_
 ) -> None:
     averages = averaged_records(measured)
     target = state_index(feature_matrix(features), training.split.classes)
-    found = train_circular(averages, target, training.split, 1, CircularSettings(most_epochs=8))
-    kept = TrainedCircularFile(replace(found, temperature=0.7), averages.channels, "0" * 64)
-    save_models(replace(training, circular=kept), features, dataset, tmp_path)
+    found = train_network(averages, target, training.split, 1, NetworkSettings(most_epochs=8))
+    kept = TrainedNetworkFile(replace(found, temperature=0.7), averages.channels, "0" * 64)
+    save_models(replace(training, network=kept), features, dataset, tmp_path)
     model = load_model(tmp_path)
-    assert model.circular is not None
+    assert model.network is not None
 
     place = int(np.flatnonzero(training.split.test)[2])
     row = dataset.record(int(features.column("record_id")[place].as_py()))
     signals = {name: row[f"accel_{name}_m_s2"] for name in averages.channels}
     recording = MeasuredRecording(Path("run.npz"), signals, dataset.fs_hz, row["tacho_s"], simulated=True)
     votes = {vote.classifier: vote for vote in predict_recording(model, recording, (18, 47)).votes}
-    alone = circular_probability(found.network, averages.chosen(np.array([place])))
-    np.testing.assert_allclose(votes["circular"].probability, tempered(alone, 0.7)[0], atol=1e-4)
+    alone = network_probability(found.network, averages.chosen(np.array([place])))
+    np.testing.assert_allclose(votes["network"].probability, tempered(alone, 0.7)[0], atol=1e-4)
 
-    save_models(replace(training, circular=replace(kept, identity="f" * 64)), features, dataset, tmp_path)
-    with pytest.raises(UsageError, match=r"circular\.safetensors: does not belong .*identity"):
+    save_models(replace(training, network=replace(kept, identity="f" * 64)), features, dataset, tmp_path)
+    with pytest.raises(UsageError, match=r"cnn\.safetensors: does not belong .*identity"):
         load_model(tmp_path)

@@ -22,10 +22,14 @@ from diagnostics.indicators.classifier_table import classifier_table, feature_ma
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks
-from diagnostics.training import circular_network, circular_training
+from diagnostics.training import cnn, network_training
 from diagnostics.training.average_rows import averaged_records
-from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
-from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.network_training import (
+    NetworkOptions,
+    TrainedNetworkFile,
+    judge_network,
+    network_predictions_of,
+)
 from diagnostics.training.referenced import (
     healthy_references,
     referenced_classifiers,
@@ -195,30 +199,30 @@ def test_a_reference_is_judged_against_none_on_the_records_that_have_one(trainin
 
 
 @pytest.mark.slow  # trains four networks
-def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
+def test_the_network_is_judged_alone_and_beside_a_healthy_record(
     indicators_of_both: RecordTable, features_of_both: pa.Table, training: Training,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    few = partial(circular_network.CircularSettings, most_epochs=12)
-    monkeypatch.setattr(circular_network, "CircularSettings", few)
-    monkeypatch.setattr(circular_training, "PERMUTED_EPOCHS", 2)
+    few = partial(cnn.NetworkSettings, most_epochs=12)
+    monkeypatch.setattr(cnn, "NetworkSettings", few)
+    monkeypatch.setattr(network_training, "PERMUTED_EPOCHS", 2)
     averages, options = averaged_records(indicators_of_both), NetworkOptions()
     matrix, split = feature_matrix(features_of_both), training.split
-    trained, alone = judge_circular("circular", averages, matrix, split, 0, options, silent_stage)
+    trained, alone = judge_network("network", averages, matrix, split, 0, options, silent_stage)
     found = referenced_classifiers(matrix, split, [*training.judged, alone], averages, 0, options, silent_stage)
     assert found is not None
     by_name = {judged.name: judged for judged in found.judged}
-    assert list(by_name) == ["indicators", "circular", "healthy_referenced", "circular_referenced"]
+    assert list(by_name) == ["indicators", "network", "healthy_referenced", "network_referenced"]
     # a dip of 15 and 50 % once per revolution; beside a record without it nothing else is left
-    assert by_name["circular"].scores.macro_auroc.value > 0.7
-    assert by_name["circular_referenced"].scores.macro_auroc.value > 0.8
+    assert by_name["network"].scores.macro_auroc.value > 0.7
+    assert by_name["network_referenced"].scores.macro_auroc.value > 0.8
     assert [(pair.first, pair.second) for pair in found.comparisons] == [
         ("healthy_referenced", "indicators"),
-        ("circular_referenced", "circular"),
-        ("circular_referenced", "healthy_referenced"),
+        ("network_referenced", "network"),
+        ("network_referenced", "healthy_referenced"),
     ]
     assert alone.permuted_auroc.shape == (1,)
-    every = circular_predictions_of(TrainedCircularFile(trained, averages.channels, "0"), averages, matrix)
+    every = network_predictions_of(TrainedNetworkFile(trained, averages.channels, "0"), averages, matrix)
     np.testing.assert_array_equal(every.truth[split.test], alone.predictions.truth)
 
 

@@ -1,93 +1,174 @@
-"""The network: windows, determinism, files, and that it can learn at all."""
+"""The network on averages: its rows, its shaft without a beginning, and that it finds what a level does not show."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
-import pyarrow as pa
 import pytest
+import torch
 
-from diagnostics.indicators.classifier_table import feature_matrix
-from diagnostics.loader import windows
-from diagnostics.loader.windows import OrderRecords, WindowSettings, drawn_windows, order_records, record_windows
-from diagnostics.records.recording import Recording
-from diagnostics.training.baselines import state_index
-from diagnostics.training.splits import SpecimenSplit, specimen_split
-from siggen.errors import DatasetError, UsageError
+from diagnostics.signal.shaft_signals import separated_average
+from diagnostics.statistics.evaluation import Predictions, macro_auroc
+from diagnostics.training import cnn
+from diagnostics.training.average_rows import (
+    STEPS,
+    AveragedRecords,
+    average_rows,
+    moved,
+    padded_lines,
+    with_references,
+)
+from diagnostics.training.cnn import (
+    CircularNetwork,
+    NetworkSettings,
+    TrainedNetwork,
+    network_predictions,
+    network_probability,
+    train_network,
+)
+from diagnostics.training.cnn_files import load_network, save_network
+from diagnostics.training.network_training import TrainedNetworkFile
+from diagnostics.training.splits import SpecimenSplit
+from siggen.errors import UsageError
 
-
-@pytest.fixture(scope="module")
-def records(dataset: Any) -> OrderRecords:
-    return order_records(dataset)
-
-
-@pytest.fixture(scope="module")
-def split(features: pa.Table) -> SpecimenSplit:
-    return specimen_split(feature_matrix(features).labels)
-
-
-@pytest.fixture(scope="module")
-def target(features: pa.Table, split: SpecimenSplit) -> np.ndarray:
-    return state_index(feature_matrix(features), split.classes)
-
-
-def test_windows_hold_eight_revolutions_and_start_on_a_revolution(records: OrderRecords) -> None:
-    found = record_windows(records, 0)
-    assert records.settings.samples == 8 * 18 * 16
-    assert found.shape == (6, 2, records.settings.samples)  # 29 revolutions: starts 0, 4 ... 20
-    np.testing.assert_array_equal(found[1], records.signals[0][:, 4 * 288 : 12 * 288])
+ANGLE = 2 * np.pi * np.arange(STEPS) / STEPS
+CLASSES = ("healthy", "damaged")
 
 
-def test_drawn_windows_are_pieces_of_their_record(records: OrderRecords) -> None:
-    found = drawn_windows(records, np.array([3, 5]), 2, np.random.default_rng(0))
-    signal = records.signals[5]
-    matches = [np.array_equal(found[2], signal[:, s : s + 2304]) for s in range(signal.shape[1] - 2303)]
-    assert sum(matches) == 1
+def records_of(signals: np.ndarray, teeth: int) -> AveragedRecords:
+    """Return (records, channels, 1024) averages by their lines, as the table of a set keeps them."""
+    lines = (2.0 * np.fft.rfft(signals, axis=2) / STEPS).astype(np.complex64)
+    return AveragedRecords(padded_lines(lines), np.full(len(lines), teeth), ("lid",) * signals.shape[1])
 
 
-def test_a_record_shorter_than_a_window_is_refused(dataset: Any) -> None:
-    with pytest.raises(DatasetError, match=r"holds 2[89] whole pinion revolutions; a window of the network needs 40"):
-        order_records(dataset, WindowSettings(teeth=18, revolutions=40))
+@pytest.mark.parametrize("teeth", [17, 18, 31])
+def test_rows_are_the_average_and_its_residual_whatever_the_teeth(teeth: int) -> None:
+    rng = np.random.default_rng(0)
+    average = sum(a * np.cos(k * ANGLE + 6.3 * b) for k, (a, b) in enumerate(rng.random((360, 2))) if k)
+    found = average_rows(records_of(average[None, None], teeth))[0]
+    # float32 lines of size 1: 360 of them round to some 1e-6 each
+    np.testing.assert_allclose(found[0], average, atol=1e-4)
+    np.testing.assert_allclose(found[1], separated_average(average, teeth).residual, atol=1e-4)
 
 
-def test_same_seed_same_network_and_files_keep_it(
-    records: OrderRecords, target: np.ndarray, split: SpecimenSplit, tmp_path: Path
-) -> None:
-    import torch
+def test_whitening_takes_a_smooth_path_away_and_leaves_the_shape_of_an_event() -> None:
+    event = np.zeros(STEPS)
+    event[700] = 1.0
+    orders = np.arange(STEPS // 2 + 1)
+    heard = np.fft.irfft(np.fft.rfft(event) * np.exp(-(((orders - 150) / 120.0) ** 2)) * 40.0)  # 17 dB down at order 0
+    plain, rung = (average_rows(records_of(signal[None, None], 600))[0, 2] for signal in (event, heard))
+    # of a spike, every line from order 3 on is as strong: flat already
+    assert np.corrcoef(plain[690:710], event[690:710])[0, 1] > 0.95
+    carried = (plain @ rung) / np.linalg.norm(plain) / np.linalg.norm(rung)
+    assert carried > 0.85
+    assert carried > 1.05 * (event @ heard) / np.linalg.norm(event) / np.linalg.norm(heard)
 
-    from diagnostics.training.cnn import TrainingSettings, train_network
-    from diagnostics.training.cnn_files import describe_network, load_network, save_network
 
-    short = TrainingSettings(most_epochs=2, windows_per_epoch=64)
+def test_beside_a_healthy_record_what_both_share_is_gone() -> None:
+    rng = np.random.default_rng(1)
+    signals = rng.standard_normal((3, 2, STEPS))
+    signals[1] = signals[0]
+    alone = records_of(signals, 18)
+    found = with_references(alone, np.array([0, 2]), [np.array([1]), np.array([0, 1])])
+    through_a_path = moved(found, np.random.default_rng(2), gain_db=3.0)
+    for records in (found, through_a_path):  # a gearbox has one path: record and reference pass the same
+        rows = average_rows(records)
+        assert rows.shape == (2, 12, STEPS)
+        for shared in (rows[0, 4:8], rows[0, 10:]):  # difference, its residual, and that whitened; 2 channels each
+            np.testing.assert_allclose(shared, 0.0, atol=1e-4)
+        assert rows[1, 4:8].std() > 0.5
+        assert rows[1, 10:].std() > 0.5
+    assert found.healthy is not None
+    np.testing.assert_allclose(found.healthy[1], alone.lines[0], rtol=1e-6)
+
+
+@pytest.mark.parametrize("steps", [16, 512, 1008])
+def test_where_the_revolution_begins_does_not_matter(steps: int) -> None:
+    torch.manual_seed(0)
+    network = CircularNetwork(rows=6, classes=3).eval()
+    rows = torch.randn(5, 6, STEPS)
+    with torch.no_grad():  # 16 steps: the product of all strides; float32 in another order of summation
+        torch.testing.assert_close(network(torch.roll(rows, steps, 2)), network(rows), atol=1e-5, rtol=1e-4)
+
+
+def test_a_channel_in_another_unit_changes_nothing() -> None:
+    records = records_of(np.random.default_rng(6).standard_normal((8, 2, STEPS)), 18)
+    factor = np.array([[30.0 / np.pi], [1e-2]], np.float32)  # rad/s as rpm, cm as m
+    scaled = replace(records, lines=records.lines * factor)
+    damaged, split = np.arange(8) % 2, planted_split(np.arange(8) // 2, 2, 1)
+    first, second = (train_network(taken, damaged, split, 1, few(2)) for taken in (records, scaled))
+    np.testing.assert_allclose(
+        network_probability(first.network, records), network_probability(second.network, scaled), rtol=1e-3
+    )
+
+
+def planted(gearboxes: int, rng: np.random.Generator) -> tuple[AveragedRecords, np.ndarray, np.ndarray]:
+    """Return averages with mesh lines and noise; damaged ones have a burst of 4 degrees and no more energy."""
+    signals, damaged = [], np.arange(2 * gearboxes) % 2
+    for state in damaged:
+        mesh = sum(rng.uniform(0.5, 2.0) * np.cos(18 * h * ANGLE + 6.3 * rng.random()) for h in (1, 2, 3))
+        noise = rng.standard_normal(STEPS)
+        if state:
+            burst = np.exp(-0.5 * ((np.arange(STEPS) - STEPS // 2) / 4.0) ** 2) * np.cos(200 * ANGLE)
+            noise += 4.0 * np.roll(burst, rng.integers(STEPS))
+        signals.append(mesh * 5.0 + noise / noise.std() * rng.uniform(0.1, 0.3))
+    return records_of(np.array(signals)[:, None], 18), damaged, np.arange(2 * gearboxes) // 2
+
+
+def planted_split(specimen: np.ndarray, train: int, validation: int) -> SpecimenSplit:
+    held = specimen >= train + validation
+    return SpecimenSplit(specimen < train, (specimen >= train) & ~held, held, CLASSES, "healthy")
+
+
+def few(epochs: int) -> NetworkSettings:
+    return NetworkSettings(most_epochs=epochs)
+
+
+def area(found: Predictions) -> float:
+    return float(macro_auroc(found, np.ones((1, found.truth.size)))[0])
+
+
+def test_a_burst_without_more_energy_is_found_on_other_gearboxes_by_the_labels_alone(tmp_path: Path) -> None:
+    rng = np.random.default_rng(3)
+    records, damaged, specimen = planted(90, rng)
+    split = planted_split(specimen, 40, 10)
+    test = np.flatnonzero(split.test)
     state = torch.random.get_rng_state()
-    first, second = (train_network(records, target, split, 7, short) for _ in range(2))
+    settings = few(25)
+    first = train_network(records, damaged, split, 7, settings)
+    # a network that learns is not best where it starts
+    assert first.best_epoch > 5
+    assert first.best_epoch == int(np.argmin(first.validation_loss)) + 1
+    assert first.note == ""
     assert torch.equal(state, torch.random.get_rng_state())  # the caller's generator is left alone
+    assert area(network_predictions(first, records, test, damaged, specimen)) > 0.9
+    # Labels the other way round where it learns: whoever sees those alone names every test record the other way round.
+    # Permuted labels would leave a chance correlation with the burst, whose sign hangs on last bits.
+    turned = np.where(split.test, damaged, 1 - damaged)
+    blind = train_network(records, turned, split, 7, settings)
+    assert area(network_predictions(blind, records, test, damaged, specimen)) < 0.1
+
+    kept = TrainedNetworkFile(replace(first, temperature=0.8), records.channels, "identity")
+    save_network(kept, tmp_path / "cnn.safetensors")
+    network, facts = load_network(tmp_path / "cnn.safetensors")
+    assert (facts.classes, facts.channels, facts.temperature) == (CLASSES, ("lid",), 0.8)
+    np.testing.assert_array_equal(network_probability(network, records), network_probability(first.network, records))
+
+
+def test_the_same_seed_gives_the_same_network() -> None:
+    records, damaged, specimen = planted(12, np.random.default_rng(4))
+    split = planted_split(specimen, 8, 2)
+    first, second = (train_network(records, damaged, split, 5, few(2)) for _ in range(2))
     for name, value in first.network.state_dict().items():
         assert torch.equal(value, second.network.state_dict()[name]), name
-
-    train = np.concatenate([records.signals[k] for k in np.flatnonzero(split.train)], axis=1)
-    np.testing.assert_allclose(first.network.mean.numpy()[:, 0], train.mean(axis=1), atol=1e-3)
-    np.testing.assert_allclose(first.network.scale.numpy()[:, 0], train.std(axis=1), rtol=1e-3)
-
-    facts = describe_network(first, records.channels, records.settings, "identity")
-    save_network(first.network, facts, tmp_path / "cnn.safetensors")
-    network, read = load_network(tmp_path / "cnn.safetensors")
-    assert read == facts
-    windows = torch.from_numpy(record_windows(records, 0))
-    expected = first.network(windows).detach().numpy()
-    np.testing.assert_array_equal(network(windows).detach().numpy(), expected)
+    assert first.validation_loss == second.validation_loss
 
 
-def test_the_network_learns_within_few_epochs_and_computes_in_float32_alone(
-    records: OrderRecords, target: np.ndarray, split: SpecimenSplit, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    import torch
-
-    from diagnostics.training import cnn
-
+def test_a_network_that_has_not_learned_says_so_and_computes_in_float32_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    records, damaged, specimen = planted(12, np.random.default_rng(4))
+    split = planted_split(specimen, 8, 2)
     kinds: set[torch.dtype] = set()
 
     class Watched(torch.nn.Conv1d):
@@ -97,94 +178,33 @@ def test_the_network_learns_within_few_epochs_and_computes_in_float32_alone(
             return mapped
 
     monkeypatch.setattr(cnn.nn, "Conv1d", Watched)
-    trained = cnn.train_network(records, target, split, 7, cnn.TrainingSettings(most_epochs=6, windows_per_epoch=144))
+    trained = train_network(records, damaged, split, 7, NetworkSettings(most_epochs=2, learning_rate=3.0))
     # bfloat16 did not learn on a processor with matrix units, whose convolutions oneDNN 3.12 is reported to get wrong
     assert kinds == {torch.float32}
-    assert min(trained.validation_loss) < np.log(3) - 0.2  # guessing three states, which it begins with
-    assert trained.note == ""
-
-
-def test_a_network_that_has_not_learned_says_so(
-    records: OrderRecords, target: np.ndarray, split: SpecimenSplit
-) -> None:
-    from diagnostics.training.cnn import TrainingSettings, train_network, training_note
-
-    useless = TrainingSettings(most_epochs=2, windows_per_epoch=64, learning_rate=3.0)
-    trained = train_network(records, target, split, 7, useless)
-    assert min(trained.validation_loss) > np.log(3)
+    assert min(trained.validation_loss) > np.log(2)
     assert trained.note.startswith("the 1-D network has not learned: its best validation loss is ")
-    assert "guessing by how often each class occurs gives 1.1;" in trained.note
-    # three of four are of class 0: guessing costs -(0.75 ln 0.75 + 0.25 ln 0.25) = 0.562, not ln 2
-    train, validation = np.array([0, 0, 0, 1]), np.array([0, 1, 0, 0])
-    assert training_note("network", [0.6, 0.55], 2, train, validation) == ""
-    assert "0.57, and guessing by how often each class occurs gives 0.562" in training_note(
-        "network", [float("nan"), 0.57], 2, train, validation
-    )
-    assert "loss is nan" in training_note("network", [float("nan")], 1, train, validation)
+    assert "guessing by how often each class occurs gives 0.693;" in trained.note
+    without = train_network(records, damaged, replace(split, validation=split.validation & False), 7, few(1))
+    assert without.note == "no validation specimens: trained for 1 epochs without stopping"
+
+
+@pytest.mark.parametrize(("name", "message"), [("head.bias", r"head\.bias that is not finite"), ("", "another schema")])
+def test_weights_that_are_not_finite_or_of_another_schema_are_refused(name: str, message: str, tmp_path: Path) -> None:
+    network = CircularNetwork(6, 2)
+    if name:
+        torch.nn.init.constant_(network.get_parameter(name), float("nan"))
+    trained = TrainedNetwork(network, CLASSES, 1, 1, (), "")
+    save_network(TrainedNetworkFile(trained, ("a", "b") if name else ("a",), "0" * 64), tmp_path / "cnn.safetensors")
+    with pytest.raises(UsageError, match=message):
+        load_network(tmp_path / "cnn.safetensors")
 
 
 def test_a_foreign_file_is_not_read(tmp_path: Path) -> None:
     from safetensors.numpy import save_file
 
-    from diagnostics.training.cnn_files import load_network
-
     save_file({"x": np.zeros(3)}, tmp_path / "other.safetensors")
-    with pytest.raises(UsageError, match="received format None"):
+    with pytest.raises(UsageError, match="received format None; allowed is 'siggen-diagnostics network on averages 1'"):
         load_network(tmp_path / "other.safetensors")
     (tmp_path / "broken.safetensors").write_bytes(b"not a file of weights")
     with pytest.raises(UsageError, match="cannot be read as safetensors"):
         load_network(tmp_path / "broken.safetensors")
-
-
-@pytest.mark.slow
-def test_network_learns_a_plain_modulation(records: OrderRecords, target: np.ndarray, split: SpecimenSplit) -> None:
-    from diagnostics.statistics.scores import scores
-    from diagnostics.training.cnn import network_predictions, train_network
-
-    trained = train_network(records, target, split, seed=1)
-    specimen = np.repeat(np.arange(24), 3)
-    found = network_predictions(trained, records, np.flatnonzero(split.test), target, specimen)
-    assert scores(found, seed=0).accuracy.value > 0.8
-    assert trained.best_epoch == int(np.argmin(trained.validation_loss)) + 1
-
-
-@pytest.mark.parametrize(("name", "message"), [("head.bias", r"head\.bias that is not finite"), ("", "another schema")])
-def test_weights_that_are_not_finite_or_of_another_schema_are_refused(name: str, message: str, tmp_path: Path) -> None:
-    import torch
-
-    from diagnostics.training.cnn import WideKernelNetwork
-    from diagnostics.training.cnn_files import NetworkFile, load_network, save_network
-
-    network = WideKernelNetwork(2, 3, WindowSettings(teeth=18).samples_per_tooth)
-    if name:
-        torch.nn.init.constant_(network.get_parameter(name), float("nan"))
-    channels = ("a", "b") if name else ("a", "b", "c")
-    facts = NetworkFile(("h", "s", "t"), channels, WindowSettings(teeth=18), (0.0,) * 2, (1.0,) * 2, "0" * 64)
-    save_network(network, facts, tmp_path / "cnn.safetensors")
-    with pytest.raises(UsageError, match=message):
-        load_network(tmp_path / "cnn.safetensors")
-
-
-def test_pinions_of_different_teeth_get_the_same_steps_per_revolution(monkeypatch: pytest.MonkeyPatch) -> None:
-    time_s, teeth, speed_hz = np.arange(12800) / 12800.0, (18, 24), (20.0, 16.0)
-    pulses = [np.arange(0.0, 0.99, 1.0 / speed) for speed in speed_hz]
-    found = [
-        Recording(
-            {"record_id": i, "teeth_pinion": teeth[i]},
-            {"a": np.sin(2.0 * np.pi * teeth[i] * speed_hz[i] * time_s).astype(np.float32)},
-            pulses[i],
-            12800.0,
-        )
-        for i in range(2)
-    ]
-    labels = pa.table({"teeth_pinion": list(teeth)})
-    dataset = SimpleNamespace(
-        labels=lambda columns=None: labels.select(columns or ["teeth_pinion"]), channels=[SimpleNamespace(name="a")]
-    )
-    monkeypatch.setattr(windows, "recordings", lambda _: iter(found))
-    records = order_records(dataset)  # type: ignore[arg-type]
-    assert records.settings.samples_per_revolution == 24 * 16
-    for signal, count in zip(records.signals, teeth, strict=True):
-        window = signal[0, : records.settings.samples]
-        spectrum = np.abs(np.fft.rfft(window))
-        assert int(np.argmax(spectrum)) == count * records.settings.revolutions
