@@ -19,7 +19,7 @@ TITLES = {
     INDICATORS: "logistic regression on indicators",
     BOOSTING: "gradient boosting on indicators",
     RMS_ALONE: "RMS alone",
-    NETWORK: "1-D network on the average",
+    NETWORK: "1-D network",
     REFERENCED: "logistic regression beside a healthy record",
     NETWORK_REFERENCED: "1-D network beside a healthy record",
 }

@@ -132,7 +132,8 @@ def judge_network(
     found = _votes(trained, records, matrix, split.test)
     control = _control(name, records, matrix, split, seed, settings, stage)
     result = judged(name, found, temperature, control, details, seed, split.healthy)
-    return replace(trained, temperature=temperature), replace(result, validation=calibrated(validation, temperature))
+    seen = calibrated(validation, temperature) if split.validation.any() else None
+    return replace(trained, temperature=temperature), replace(result, validation=seen)
 
 
 def _trained(

@@ -37,7 +37,7 @@ def test_an_answer_comes_with_its_votes_its_distance_and_its_length() -> None:
     assert prediction_summary(prediction(0.83)) == [
         "The recording is most like the state severe.",
         "The most probable state is severe by indicators (95\xa0%; right in 45\xa0% of its test records) and healthy "
-        "by the network (60\xa0%; 50\xa0% of the pieces agree).",
+        "by the 1-D network (60\xa0%; 50\xa0% of the pieces agree).",
         "Its distance to the training records is 0.83, within the threshold of 2.00.",
         "The models used 1\xa0piece of 53 or more pinion revolutions. The pinion speed is 36.33\xa0Hz (tacho).",
     ]

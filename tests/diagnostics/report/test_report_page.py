@@ -208,19 +208,18 @@ def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("few_trees")
-def test_records_too_short_for_the_network_leave_the_rest(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
+def test_seven_revolutions_and_no_validation_specimens_still_train_every_classifier(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
     short = with_channels(make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25), CHANNELS[:1])
-    earlier = [tmp_path / "models" / "cnn.safetensors", tmp_path / "figures" / "confusion_network.png"]
-    for path in earlier:
-        path.parent.mkdir()
-        path.write_bytes(b"of an earlier run")
+    earlier = tmp_path / "figures" / "confusion_network.png"
+    earlier.parent.mkdir()
+    earlier.write_bytes(b"of an earlier run")
     write_report(short, tmp_path, seed=0)
     metrics = json.loads((tmp_path / "metrics.json").read_text())
-    assert set(metrics["training"]["classifiers"]) == {"indicators", "boosting", "rms"}
-    assert any(note.startswith("No network: record") for note in metrics["notes"])
+    assert set(metrics["training"]["classifiers"]) == {"indicators", "boosting", "rms", "network"}
+    assert "no validation specimens: trained for 80 epochs without stopping" in metrics["notes"]
     assert any("gear sidebands not resolved by 2 gear revolutions" in note for note in metrics["notes"])
     assert any("no validation specimens" in note for note in metrics["notes"])
-    assert not any(path.exists() for path in earlier)
+    assert not earlier.exists()
 
 
 def test_strongest_mesh_harmonic_is_found() -> None:
