@@ -208,7 +208,9 @@ def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("few_trees")
-def test_seven_revolutions_and_no_validation_specimens_still_train_every_classifier(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
+def test_seven_revolutions_and_no_validation_specimens_still_train_every_classifier(
+    make_dataset: Callable[..., Any], tmp_path: Path
+) -> None:
     short = with_channels(make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25), CHANNELS[:1])
     earlier = tmp_path / "figures" / "confusion_network.png"
     earlier.parent.mkdir()
