@@ -80,7 +80,8 @@ def impacts(force_n: FloatArray) -> list[int]:
 
 @pytest.mark.parametrize(("torque_nm", "knock_m_s"), KNOCKS)
 def test_scipy_gives_the_motion_of_flanks_that_bounce_within_the_backlash(torque_nm: float, knock_m_s: float) -> None:
-    model, own = knocked(torque_nm, knock_m_s, 16)
+    # Impacts multiply what steps leave: 16 per sample leave up to 1.9e-3, 32 and 64 up to 3e-4.
+    model, own = knocked(torque_nm, knock_m_s, 32)
     met = impacts(own[1])
     assert len(met) >= 10
     assert {1, -1} == set(met)
