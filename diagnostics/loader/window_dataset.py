@@ -8,7 +8,7 @@ Batches are the same for any number of workers, since the sampler stays in one p
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,15 +23,15 @@ from diagnostics.loader.window_sample import RowGroupSignals, Sample, Transform,
 from diagnostics.records.usable_records import of_quantity
 from siggen.dataset.reading import Dataset
 
-KEPT_RECORDS = 32
-"""Decoded records that a process keeps; windows of one record overlap and come close together from the sampler."""
+KEPT_BYTES = 256 << 20
+"""Decoded records that a process keeps, whole row groups of them; a record alone costs as much as its row group."""
 
 
 class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type checker does not read torch
     """Windows of one split; `dataset[k]` is a dict with `windows` (channels, samples) float32 and the labels.
 
-    Without a cache a window in random order costs the reading of its row group. With `RowGroupSampler` or a cache it
-    does not.
+    Row groups are decoded whole and kept up to 256 MB. Where a split is larger, a window in random order costs the
+    reading of its row group; with `RowGroupSampler` or a cache it does not.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         self.transform, self.seed = transform, seed
         # shared, so that copies in worker processes count on where an earlier epoch's stopped
         self._drawn = torch.zeros(self.index.size, dtype=torch.int64).share_memory_()
-        self._records: dict[tuple[int, int], Sequence[np.ndarray]] = {}
+        self._groups: dict[int, Mapping[int, Sequence[np.ndarray]]] = {}
 
     def __len__(self) -> int:
         """Return the windows of the split."""
@@ -96,17 +96,22 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         return transformed(sample, self.transform, self.seed, drawn, number)
 
     def _record(self, number: int) -> Sequence[np.ndarray]:
-        """Return the decoded channels of a window's record; the latest records stay in memory."""
-        group, row = int(self.index.group[number]), int(self.index.row[number])
-        if (group, row) not in self._records:
-            while len(self._records) >= KEPT_RECORDS:
-                del self._records[next(iter(self._records))]
-            self._records[group, row] = self.signals.read(group, [row])[row]
-        return self._records[group, row]
+        """Return the decoded channels of a window's record; the latest row groups stay in memory."""
+        group = int(self.index.group[number])
+        if group not in self._groups:
+            usable = np.flatnonzero(self.index.lengths[group]).tolist()
+            self._groups[group] = self.signals.read(group, usable)
+            while len(self._groups) > 1 and sum(map(_bytes, self._groups.values())) > KEPT_BYTES:
+                del self._groups[next(iter(self._groups))]
+        return self._groups[group][int(self.index.row[number])]
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what goes to a worker process: everything but the decoded records."""
-        return {**self.__dict__, "_records": {}}
+        return {**self.__dict__, "_groups": {}}
+
+
+def _bytes(records: Mapping[int, Sequence[np.ndarray]]) -> int:
+    return sum(channel.nbytes for channels in records.values() for channel in channels)
 
 
 class RowGroupSampler(Sampler[int]):  # type: ignore[misc]

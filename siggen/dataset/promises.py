@@ -64,6 +64,19 @@ class Promises:
             self._keep(name, table.footer)
             yield table
 
+    def footer(self, name: str) -> pq.FileMetaData:
+        """Return the footer of a Parquet file of the set, read once.
+
+        Raises
+        ------
+        DatasetError
+            As of `table`.
+        """
+        if name not in self._footers:
+            with self.table(name) as table:
+                return table.footer
+        return self._footers[name]
+
     def _keep(self, name: str, footer: pq.FileMetaData) -> None:
         self._footers[name] = footer
         self._footers.move_to_end(name)

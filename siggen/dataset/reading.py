@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +15,6 @@ import pyarrow.compute as pc
 import yaml
 
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
-from siggen.dataset.checked_file import CheckedTable
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
 from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
 from siggen.dataset.object_name import CHECKSUMS
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
+
+
+KEPT_BYTES = 256 << 20
+"""Decoded row groups that a set keeps in memory, so that records of one row group are decoded once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +81,8 @@ class Dataset:
         self.manifest: dict[str, Any] = self.inventory.content
         self.index = ShardIndex(storage, self.inventory)
         self._promises = Promises(storage, self.inventory, self.index)
+        self._ids: dict[str, np.ndarray] = {}
+        self._groups: OrderedDict[tuple[str, int], pa.Table] = OrderedDict()
         self.config: dict[str, Any] = self._read_config()
         self.splits: tuple[str, ...] = tuple(s for s in SPLITS if s in self.inventory.splits)
         self.channels: tuple[Channel, ...] = self.inventory.channels
@@ -90,6 +96,24 @@ class Dataset:
         rows = ", ".join(f"{split}: {self.inventory.splits[split].rows}" for split in self.splits)
         channels = counted(len(self.channels), "channel")
         return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what goes to another process: everything but the decoded row groups."""
+        return {**self.__dict__, "_groups": OrderedDict()}
+
+    def __len__(self) -> int:
+        """Return the number of records of all splits."""
+        return sum(self.inventory.splits[split].rows for split in self.splits)
+
+    def __getitem__(self, split: str) -> Split:
+        """Return a split.
+
+        Raises
+        ------
+        UsageError
+            If it does not exist.
+        """
+        return Split(self, *self._splits(split))
 
     def names(self) -> tuple[Names, dict[str, str]]:
         """Return the user's names of gears, shafts and meshes, and the program's name of columns with an own one."""
@@ -118,6 +142,12 @@ class Dataset:
             If the split or a column does not exist.
         """
         return self._table(METADATA_FOLDER, split, columns)
+
+    def record_ids(self, split: str) -> np.ndarray:
+        """Return the ids of a split's records in their order, (n,) int64; read once."""
+        if split not in self._ids:
+            self._ids[split] = self.labels(split, ["record_id"])["record_id"].to_numpy().astype(np.int64)
+        return self._ids[split]
 
     def damage(self, split: str | None = None) -> pa.Table:
         """Return one row per single damage of every record of a split, or of all splits."""
@@ -250,8 +280,27 @@ class Dataset:
         return as_record(row)
 
     def _row(self, name: str, record_id: int) -> pa.Table | None:
-        with self._promises.table(name) as file:
-            return row_of(file, record_id)
+        """Return the row of a record in a file whose first column is `record_id`; None if there is none."""
+        footer = self._promises.footer(name)
+        for number in range(footer.num_row_groups):
+            statistics = footer.row_group(number).column(0).statistics
+            if statistics is None or not statistics.has_min_max or statistics.min <= record_id <= statistics.max:
+                table = self._decoded(name, number)
+                place = pc.index(table["record_id"], record_id).as_py()
+                if place >= 0:
+                    return table.slice(place, 1)
+        return None
+
+    def _decoded(self, name: str, number: int) -> pa.Table:
+        """Return a row group of a file; the last ones that were asked for stay in memory."""
+        key = (name, number)
+        if key not in self._groups:
+            with self._promises.table(name) as file:
+                self._groups[key] = file.group(number)
+            while len(self._groups) > 1 and sum(table.nbytes for table in self._groups.values()) > KEPT_BYTES:
+                self._groups.popitem(last=False)
+        self._groups.move_to_end(key)
+        return self._groups[key]
 
     def _why_no_record(self, record_id: int) -> str:
         for failure in self.inventory.failures:
@@ -299,16 +348,69 @@ class Dataset:
             raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
 
 
-def row_of(file: CheckedTable, record_id: int) -> pa.Table | None:
-    """Return the row of a record in a table whose first column is `record_id`; None if there is none."""
-    for group in range(file.footer.num_row_groups):
-        statistics = file.footer.row_group(group).column(0).statistics
-        if statistics is None or not statistics.has_min_max or statistics.min <= record_id <= statistics.max:
-            table = file.group(group)
-            row = table.filter(pc.equal(table["record_id"], record_id))
-            if row.num_rows:
-                return row
-    return None
+@dataclass(frozen=True, slots=True)
+class Split:
+    """The records of one split: `dataset["train"]`. It has a length, and `split[k]` is its k-th record.
+
+    Attributes
+    ----------
+    dataset : Dataset
+    name : str
+        train, validation or test.
+    """
+
+    dataset: Dataset
+    name: str
+
+    def __len__(self) -> int:
+        return self.dataset.inventory.splits[self.name].rows
+
+    def __getitem__(self, number: int) -> dict[str, Any]:
+        """Return a record as `Dataset.record` gives it; negative numbers count from the end."""
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"record {number} of {len(self)} of the split {self.name}")
+        return self.dataset.record(int(self.dataset.record_ids(self.name)[number % len(self)]))
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        for batch in self.dataset.records(self.name):
+            yield from (as_record(batch.slice(row, 1)) for row in range(batch.num_rows))
+
+    def labels(self, columns: Sequence[str] | None = None) -> pa.Table:
+        """Return ids, labels and operating conditions (no signals), see `Dataset.labels`."""
+        return self.dataset.labels(self.name, columns)
+
+    def arrays(self, channel: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return all signals of a channel, the state of every record, and its gearbox.
+
+        Parameters
+        ----------
+        channel : str
+            Name of a channel; a set that does not fit into memory has `Dataset.records`.
+
+        Returns
+        -------
+        (n, samples) float32
+            In the unit of the channel.
+        (n,) str
+            Names of states.
+        (n,) int64
+            Number of the gearbox, for splits by group.
+
+        Raises
+        ------
+        UsageError
+            If there is no such channel.
+        """
+        columns = {known.name: known.column for known in self.dataset.channels}
+        if channel not in columns:
+            raise UsageError(f"channel: received {channel!r}; allowed are {', '.join(columns)}")
+        batches = self.dataset.records(self.name, [columns[channel]])
+        labels = self.labels(["state", "specimen_id"])
+        return (
+            np.concatenate([signal_matrix(batch.column(0)) for batch in batches]),
+            np.array(labels["state"].to_pylist()),
+            labels["specimen_id"].to_numpy().astype(np.int64),
+        )
 
 
 def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:
@@ -318,7 +420,7 @@ def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:
     for name in row.schema.names:
         column = row.column(name)
         if name in signals:
-            record[name] = signal_matrix(column)[0]
+            record[name] = signal_matrix(column)[0].copy()  # what Arrow holds cannot be written to
         elif name == TACHO_COLUMN.name:
             record[name] = np.asarray(column[0].as_py(), dtype=np.float64)
         else:
@@ -329,7 +431,7 @@ def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:
 def as_internals(row: pa.Table | pa.RecordBatch) -> dict[str, np.ndarray]:
     """Return the first row of internal quantities: name -> float32 (n,)."""
     series = [field.name for field in row.schema if pa.types.is_fixed_size_list(field.type)]
-    return {name: signal_matrix(row.column(name))[0] for name in series}
+    return {name: signal_matrix(row.column(name))[0].copy() for name in series}
 
 
 def open(path: PurePath | str) -> Dataset:

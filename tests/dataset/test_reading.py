@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 import yaml
 
 from siggen.columns.record import signal_matrix
+from siggen.dataset import reading
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
@@ -78,6 +80,29 @@ def test_columns_are_those_asked_for(dataset: Dataset) -> None:
     assert dataset.labels(columns=["state", "record_id"]).column_names == ["state", "record_id"]
     assert SIGNAL not in dataset.labels().column_names
     assert next(dataset.records(columns=["mesh_hz"])).schema.names == ["mesh_hz"]
+
+
+def test_a_split_is_records_by_number_and_arrays_for_a_fit(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reading, "KEPT_BYTES", 1)  # the group that was asked for last alone
+    dataset = open_set(folder)
+    train = dataset["train"]
+    assert (len(dataset), len(train)) == (30, 18)
+    values, states, groups = train.arrays("bearing_vertical")
+    assert (values.shape, values.dtype) == ((18, 512), np.float32)
+    for number in (17, 0, 9, -1):
+        record = train[number]
+        assert np.array_equal(record[SIGNAL], values[number])
+        assert (record["state"], record["specimen_id"]) == (states[number], groups[number])
+        record[SIGNAL][:] = 0.0  # an own copy: what is read again is as it was
+        assert np.array_equal(train[number][SIGNAL], values[number])
+    assert [record["record_id"] for record in train] == dataset.record_ids("train").tolist()
+    assert pickle.loads(pickle.dumps(train))[3]["record_id"] == train[3]["record_id"]
+    with pytest.raises(IndexError, match="record 18 of 18 of the split train"):
+        train[18]
+    with pytest.raises(UsageError, match="no split 0; it has train, validation, test"):
+        dataset[0]  # type: ignore[index]
+    with pytest.raises(UsageError, match="received 'lid'; allowed are bearing_vertical, bearing_horizontal"):
+        train.arrays("lid")
 
 
 def test_damage_has_one_row_per_pit(dataset: Dataset) -> None:
