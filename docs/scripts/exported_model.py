@@ -21,7 +21,7 @@ def integrate(model, times, rtol=1e-6):
     meshes = meshes_of(model)
     inverse = np.linalg.inv(model["mass"])
     moved = -inverse @ np.hstack([model["stiffness"], model["damping"]])
-    pushed = inverse @ np.vstack([mesh.rows for mesh in meshes]).T
+    pushed = inverse @ np.vstack([mesh.pushed for mesh in meshes]).T
     drive = Drive(model, inverse)
 
     def rate(t, z):
@@ -61,6 +61,7 @@ class Mesh:
         turn, turn_x = own.get("tilt_vector", none), own.get("tilt_friction_vector", none)
         self.tilts, self.static_tilt = "tilt_vector" in own, own.get("static_tilt_rad", 0.0)
         self.rows = np.stack([p, *own["sliding_vectors"], turn, turn_x])
+        self.pushed = np.stack([p, *own["friction_vectors"], turn, turn_x])
         # Sliding speed by the rigid rotation: that of a pair at s is the first + s the second.
         turning = [name in own["rotations"] for name in names]
         speed = 2 * np.pi * model["speed_hz"] * np.where(turning, model["rolling"], 0.0)

@@ -16,7 +16,6 @@ from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_internals import PairContact
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.structure.back_flanks import on_back_flanks
-from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.shaft_lines import frame_turns
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
@@ -152,11 +151,10 @@ def specimen_motion(
             integrator=dynamics.method,
             input_vectors=vectors,
         )
-    rubbing = dynamics.rubbing != "off"
     kind = ExponentialMotion if dynamics.method == "exponential" else PairMotion
     more: dict[str, Any] = {"stride": stride} if kind is ExponentialMotion else {}
     return kind(
-        locked_load(mesh.structure) if rubbing else mesh.structure,
+        mesh.structure,
         [_pair_mesh(dynamics, one, number, front) for number, one in enumerate(mesh.every)],
         mean=MeanState(point.torque_nm, point.speed_hz * (1.0 - frame_turns(mesh.structure))),
         step_s=step_s,

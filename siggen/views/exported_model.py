@@ -19,7 +19,7 @@ from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
-from siggen.dynamics.structure.shaft_lines import frame_turns, rolling
+from siggen.dynamics.structure.shaft_lines import frame_turns, rolling, without_drift
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations
@@ -156,6 +156,7 @@ def _meshes(motion: Motion, names: Names) -> dict[str, Any]:
             "name": names.mesh(mesh.name),
             "vector": mesh.vector,
             "sliding_vectors": mesh.sliding,
+            "friction_vectors": without_drift(motion.structure, mesh.sliding),
             "rotations": np.array(mesh.turning),
             "equivalent_mass_kg": mesh.mass_kg,
             "pitches_per_rad": per_radian * rate,

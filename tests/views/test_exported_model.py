@@ -90,7 +90,7 @@ def test_scipy_gives_the_motion_of_helical_teeth_whose_slices_rub_both_ways() ->
 
 
 MATRICES = ("mass", "damping", "stiffness")
-VECTORS = ("mesh.0.vector", "mesh.0.sliding_vectors")
+VECTORS = ("mesh.0.vector", "mesh.0.sliding_vectors", "mesh.0.friction_vectors")
 Change = Callable[[np.ndarray], np.ndarray]
 
 

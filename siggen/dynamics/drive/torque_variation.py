@@ -20,7 +20,7 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.slow_variation import SlowVariation
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
+from siggen.dynamics.structure.shaft_lines import driven_and_loaded, rigid_rotation, without_drift
 from siggen.dynamics.structure.structure import Structure, vector
 
 
@@ -51,9 +51,7 @@ class TorqueVariation(Source):
         motor, load = driven_and_loaded(structure)
         rotation = rigid_rotation(structure)
         self.reduced_inertia_kg_m2 = float(rotation @ structure.mass @ rotation)
-        self._vectors = np.stack(
-            [structure.torque_vector, without_drift(structure, load), without_drift(structure, motor)]
-        )
+        self._vectors = np.stack([structure.torque_vector, *without_drift(structure, _units(structure, load, motor))])
         self._gear_turn = abs(rotation[structure.coordinates.index(load)])
         self._torque_nm = torque_nm
         self._settings = settings
@@ -86,15 +84,6 @@ class TorqueVariation(Source):
         return self.reduced_inertia_kg_m2 * turning.acceleration_rad_s2 + self._torque_nm * s.line_ripple * ripple
 
 
-def driven_and_loaded(structure: Structure) -> tuple[str, str]:
-    """Return the coordinates at which motor and load act."""
-    torques = dict(zip(structure.coordinates, structure.torque_vector, strict=True))
-    return max(torques, key=lambda name: torques[name]), min(torques, key=lambda name: torques[name])
-
-
-def without_drift(structure: Structure, coordinate: str) -> FloatArray:
-    """Return the generalised force (n,) of a unit torque at a coordinate less what moves the train as a whole."""
-    rotation = rigid_rotation(structure)
-    share = rotation[structure.coordinates.index(coordinate)]
-    moved = structure.mass @ rotation
-    return np.asarray(vector(structure.coordinates, {coordinate: 1.0}) - moved * (share / float(rotation @ moved)))
+def _units(structure: Structure, *names: str) -> FloatArray:
+    """Return a unit torque (names, n) at each of the coordinates."""
+    return np.array([vector(structure.coordinates, {name: 1.0}) for name in names])

@@ -1,4 +1,4 @@
-"""The load held softly at its mean speed, so that friction, which takes torque, does not change the speed (derived).
+"""The load held softly at its mean speed, for responses to small forces, which would turn the shafts away (derived).
 
 A spring and a damper on the rotation of the load make T_L = T_0 z_2/z_1 + D θ̇_L + K θ_L: the mean of θ̇_L is then zero
 and θ_L settles at a constant angle. At 1 Hz it is far below every mode of the gearbox.
@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.dynamics.structure.shaft_lines import turning_per_load
+from siggen.dynamics.structure.shaft_lines import driven_and_loaded, turning_per_load
 from siggen.dynamics.structure.structure import Element, Structure, assemble
 
 LOCK_HZ = 1.0
@@ -21,8 +21,7 @@ LOCK_DAMPING_RATIO = 0.95
 
 def locked_load(structure: Structure) -> Structure:
     """Return the structure with spring and damper on the rotation at which the load acts."""
-    torques = dict(zip(structure.coordinates, structure.torque_vector, strict=True))
-    load = min(torques, key=lambda name: torques[name])
+    _, load = driven_and_loaded(structure)
     rotation = turning_per_load(structure)
     inertia = float(rotation @ structure.mass @ rotation)
     omega = 2.0 * np.pi * LOCK_HZ

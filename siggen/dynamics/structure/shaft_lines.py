@@ -43,6 +43,22 @@ def rigid_rotation(structure: Structure) -> FloatArray:
     return np.asarray(turning_lines(structure).sum(axis=0))
 
 
+def driven_and_loaded(structure: Structure) -> tuple[str, str]:
+    """Return the coordinates at which motor and load act."""
+    torques = dict(zip(structure.coordinates, structure.torque_vector, strict=True))
+    return max(torques, key=lambda name: torques[name]), min(torques, key=lambda name: torques[name])
+
+
+def without_drift(structure: Structure, forces: FloatArray) -> FloatArray:
+    """Return generalised forces (k, n) less what moves the train as a whole, f - M r (rᵀf)/(rᵀMr).
+
+    How the train turns as a whole is prescribed: the drive gives what other forces would take from that.
+    """
+    rotation = rigid_rotation(structure)
+    moved = structure.mass @ rotation
+    return np.asarray(forces - np.outer(forces @ rotation, moved) / float(rotation @ moved))
+
+
 def frame_turns(structure: Structure) -> float:
     """Return the turns of the frame in space per turn of the first shaft line; 0 where it stands still."""
     if not structure.frame:

@@ -67,8 +67,9 @@ def equations_about(
     reference_stiffness: FloatArray,
     touching_m: FloatArray,
     input_vectors: FloatArray | None = None,
+    steady: FloatArray | float = 0.0,
 ) -> Equations:
-    """Return the equations about the static state of a torque.
+    """Return the equations about the static state of a torque, and of steady forces beside it.
 
     Parameters
     ----------
@@ -79,10 +80,12 @@ def equations_about(
         Approach at which drive flanks touch, and back flanks.
     input_vectors : (m, n) or None
         Generalised forces per unit of the inputs; None: no inputs.
+    steady : (n,)
+        Balanced generalised forces.
     """
     p = np.array([mesh.vector for mesh in structure.meshes])
     loaded = structure.stiffness + mesh_springs(structure, reference_stiffness)
-    elastic = static_solution(structure, loaded, structure.torque_vector * torque_nm)
+    elastic = static_solution(structure, loaded, structure.torque_vector * torque_nm + steady)
     force = np.array([float(k * (row * elastic).sum()) for k, row in zip(reference_stiffness, p, strict=True)])
     touching = np.where(force >= 0.0, touching_m[:, 0], touching_m[:, 1])
     pushed = p * (reference_stiffness * touching)[:, None]

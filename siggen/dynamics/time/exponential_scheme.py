@@ -22,6 +22,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
+from siggen.dynamics.structure.shaft_lines import without_drift
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import Equations, inverse_times, state_matrix
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
@@ -137,7 +138,7 @@ def _forces(structure: Structure) -> FloatArray:
     """Return the accelerations (channels, n) by a unit of every channel, mesh after mesh."""
     vectors: list[FloatArray] = []
     for mesh in structure.meshes:
-        vectors += [mesh.vector, *mesh.sliding]
+        vectors += [mesh.vector, *without_drift(structure, mesh.sliding)]
         if mesh.tilt is not None:
             vectors += [mesh.tilt, friction_tilt(structure.coordinates, mesh)]
     return -inverse_times(structure.mass, np.array(vectors).T).T

@@ -61,13 +61,12 @@ def slowest_decay_per_s(
     structure: Structure,
     equations: Equations,
     mesh_damping_n_s_per_m: FloatArray,
-    above_hz: float = 0.0,
     *,
     at_meshes: bool = False,
 ) -> float:
     """Return the smallest decay rate [1/s] of the modes that the mesh excites and a bearing shows; 0 if undamped.
 
-    Modes below `above_hz` do not count. `at_meshes`: those count too that approaches of meshes show alone.
+    `at_meshes`: those count too that approaches of meshes show alone.
 
     The residue of mode i in the displacement at a bearing, c · r_i l_i · B, tells whether it takes part.
     """
@@ -89,7 +88,6 @@ def slowest_decay_per_s(
         participation = np.linalg.lstsq(right, inputs.astype(complex), rcond=None)[0]
         residue = np.abs(motions @ right[:m]).max(axis=0) * np.abs(participation)
         excited |= residue > EXCITED_SHARE * residue.max()
-    excited &= np.abs(values) >= 2.0 * np.pi * above_hz
     return float(max(0.0, (-values.real[excited]).min()))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
-from siggen.dynamics.structure.shaft_lines import rolling
+from siggen.dynamics.structure.shaft_lines import rolling, without_drift
 from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.equations import Equations, inverse_times
 
@@ -22,7 +22,8 @@ class PairEquations(NamedTuple):
     """Constant numbers of the equations of motion and how sliding enters them.
 
     `rows` (2n + 6 meshes, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C; then of
-    each mesh p, r_0, r_1, M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1, and where gears tilt t, M⁻¹ t and M⁻¹ t_x. `static` (meshes, 3):
+    each mesh p, r_0, r_1, M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1, and where gears tilt t, M⁻¹ t and M⁻¹ t_x; those of the
+    friction without drift (`shaft_lines.without_drift`). `static` (meshes, 3):
     force, approach and tilt that deviations count from. `rigid_sliding` (meshes, 2): sliding speed at s of the rigid
     rotation is the first plus s times the second [m/s, 1/s]. `places` (meshes, 2): base pitches that a mesh has turned
     are the first times those of the first mesh, plus the second. `external_input` (m, n): see `Equations`.
@@ -53,7 +54,7 @@ def pair_equations(structure: Structure, equations: Equations, speed_hz: float, 
 
 def _mesh_rows(structure: Structure, equations: Equations, number: int) -> list[FloatArray]:
     mesh = structure.meshes[number]
-    inputs = inverse_times(structure.mass, mesh.sliding.T).T
+    inputs = inverse_times(structure.mass, without_drift(structure, mesh.sliding).T).T
     rows = [mesh.vector[None], mesh.sliding, equations.mesh_input[number][None], inputs]
     if mesh.tilt is not None:
         arms = np.stack([mesh.tilt, friction_tilt(structure.coordinates, mesh)], axis=1)

@@ -1,7 +1,9 @@
 """PairMotion: a structure under the forces of single tooth pairs, as what `response` steps through time.
 
-Equations (derived, signs by power): M ẅ + C w' + K w = -p (ΣN - F_s) - r_0 ΣF - r_1 Σ s F of every mesh, about the
-static state at the mean mesh stiffness; p and r are the vectors of the mesh. The phase of every mesh is prescribed.
+Equations (derived, signs by power): M ẅ + C w' + K w = -p (ΣN - F_s) - f_0 ΣF - f_1 Σ s F of every mesh, about the
+static state at the mean mesh stiffness; p and r are the vectors of the mesh, f those r without what moves the train
+as a whole: how that turns is prescribed, with it the phase of every mesh. The load is less by what friction takes on
+the mean: bodies turn at one speed, and every shaft is in balance.
 Where gears tilt, - t Σμ - t_x Σ ζ F come to the right side, with the moments μ of the pairs across the face and the
 centre ζ = μ/N at which they rub; what tilting adds to the sliding speed, some 1e-6 of it, is left out.
 """
@@ -29,10 +31,9 @@ from siggen.dynamics.mesh.pair_internals import (
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
-from siggen.dynamics.structure.load_lock import LOCK_HZ
-from siggen.dynamics.structure.shaft_lines import rolling
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.structure.shaft_lines import driven_and_loaded, rigid_rotation, rolling, without_drift
+from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.equations import equations_about, external_push, mesh_springs
 from siggen.dynamics.time.motion import APPROACH_LIMIT_PITCHES
 from siggen.dynamics.time.pair_equations import APPROACH, TILT, PairEquations, pair_equations
@@ -73,7 +74,8 @@ class PairMotion:
     """Steps with the classical Runge-Kutta method; works with any structure.
 
     `meshes` in the order of those of the structure. `input_vectors` (m, n) are those of `equations_about`;
-    `speed_input` is the number of the input that is Ω/Ω_0 - 1, or -1 where the speed is constant.
+    `speed_input` is the number of the input that is Ω/Ω_0 - 1, or -1 where the speed is constant. `load_relief_nm`: by
+    how much mean friction makes the load's torque [N m] less than the ratio would.
     """
 
     coarse_inputs = False
@@ -91,14 +93,23 @@ class PairMotion:
         speed_input: int = -1,
     ) -> None:
         self.structure, self.meshes = structure, tuple(meshes)
+        self._step_s, self._speed_input = step_s, speed_input
         self.laws = tuple(mesh.law for mesh in meshes)
         self._stiffness = np.array([mesh.stiffness_n_per_m for mesh in meshes])
         touching_m = np.array([[0.0, -law.backlash_m] for law in self.laws])
-        self.equations = equations_about(structure, mean.torque_nm, self._stiffness, touching_m, input_vectors)
+        about = structure, mean.torque_nm, self._stiffness, touching_m, input_vectors
+        self.equations = equations_about(*about)
         self.teeth = self.laws[0].teeth
         self.pair_equations = pair_equations(structure, self.equations, mean.speed_hz, self._places())
-        rubs = any(law.places[layout.ROUGHNESSES] > 0 for law in self.laws)
-        seen = structure, self.equations, self.damping, 2.0 * LOCK_HZ if rubs else 0.0
+        self._rubbing, self.load_relief_nm = self._mean_friction(), 0.0
+        if self._rubbing.any():
+            load = vector(structure.coordinates, {driven_and_loaded(structure)[1]: 1.0})
+            rotation = rigid_rotation(structure)
+            self.load_relief_nm = float(rotation @ self._rubbing / (rotation @ load))
+            relief = without_drift(structure, self.load_relief_nm * load[None])[0]
+            self.equations = equations_about(*about, relief)
+            self.pair_equations = pair_equations(structure, self.equations, mean.speed_hz, self._places())
+        seen = structure, self.equations, self.damping
         self.transient_s, self.decay_s = transient_s(*seen), decay_s(*seen)
         self.limits_m = np.array([law.backlash_m + APPROACH_LIMIT_PITCHES * law.base_pitch_m for law in self.laws])
         self.tilts = structure.mesh.tilt is not None
@@ -106,8 +117,6 @@ class PairMotion:
         moved = (structure.coordinates[i] for i in self._bodies)
         self.internal_names = (*self._mesh_names(), *with_units(moved))
         self._pairs = tuple(pair_table(law) for law in self.laws)
-        self._step_s = step_s
-        self._speed_input = speed_input
 
     @property
     def law(self) -> PairLaw:
@@ -141,8 +150,6 @@ class PairMotion:
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state (2n,) at rest in which the pairs at this angle carry the torque, moved by mean friction.
-
-        A load that is held softly turns by it, for which it would need a second.
 
         Raises
         ------
@@ -178,20 +185,21 @@ class PairMotion:
 
     @cached_property
     def _rest(self) -> FloatArray:
-        """The deflection (n,) by the mean of friction and its moments over the mesh, at rest and mean speed.
+        """The deflection (n,) by the mean of friction over the mesh."""
+        push = without_drift(self.structure, -self._rubbing[None])[0]
+        return static_solution(self.structure, self._loaded, push)
 
-        None where nothing holds the load: friction then brakes it.
-        """
-        loaded, push = self._loaded, np.zeros_like(self.equations.static_deflection)
-        rubs = any(law.places[layout.ROUGHNESSES] > 0 for law in self.laws)
-        if not rubs or free_rotations(self.structure, loaded).shape[1] > 0:
-            return push
+    def _mean_friction(self) -> FloatArray:
+        """Return what the mean of friction takes (n,) [N, N m], over the mesh at rest at its mean speed."""
+        taken = np.zeros_like(self.equations.static_deflection)
+        if not any(law.places[layout.ROUGHNESSES] > 0 for law in self.laws):
+            return taken
         angles = np.asarray(np.arange(MEAN_ANGLES) * self.teeth * GOLDEN % self.teeth, dtype=np.float64)
         states = np.stack([self._standing(angle) for angle in angles])
         for mesh, pairs in zip(self.structure.meshes, self.pairs(states, angles), strict=True):
             friction, (r_0, r_1) = pairs[:, :, columns.FRICTION], mesh.sliding
-            push = push + (-r_0 * friction.sum() - r_1 * (pairs[:, :, columns.POSITION] * friction).sum())
-        return static_solution(self.structure, loaded, push / MEAN_ANGLES)
+            taken = taken + r_0 * friction.sum() + r_1 * (pairs[:, :, columns.POSITION] * friction).sum()
+        return np.asarray(taken / MEAN_ANGLES)
 
     def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_] | None:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""

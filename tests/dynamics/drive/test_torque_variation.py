@@ -14,7 +14,7 @@ from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariati
 from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_columns import FRICTION, SLIDING
+from siggen.dynamics.mesh.pair_columns import FRICTION, POSITION, SLIDING
 from siggen.dynamics.structure.shaft_lines import rigid_rotation
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import state_rate
@@ -192,11 +192,17 @@ def test_work_of_a_run_up_with_friction_becomes_kinetic_energy_and_losses() -> N
     whole, rate = states[:, n:] + omega[:, None] * rotation, states[:, n:]
     q = states[:, :n] + motion.equations.static_deflection
     # Forces that act on the bodies, as opposed to the equations' inputs, which contain inertia: M r dΩ/dt is no force.
+    load, relief = structure.coordinates.index("theta_l"), motion.load_relief_nm
     forces = structure.torque_vector * TORQUE + inputs @ motion_vectors(structure, excitation)
+    forces[:, load] += relief
     forces += (structure.mass @ rotation) * rigid_push(structure, source, inputs, drive, time)[:, None]
     given = integral((forces * whole).sum(axis=1), time)
     values = dict(zip(motion.internal_names, motion.internals(states, pitches, inputs).T, strict=True))
     (table,) = motion.pairs(states, pitches, inputs)
+    # What the drive gives against friction that the load is not relieved of.
+    friction, arms = table[:, :, FRICTION], structure.mesh.sliding @ rotation
+    taken = ((arms[0] + arms[1] * table[:, :, POSITION]) * friction).sum(axis=1) - rotation[load] * relief
+    given += integral(omega * taken, time)
     teeth = integral(values["mesh_force_n"] * values["approach_rate_m_s"], time)
     rubbed = integral((table[:, :, FRICTION] * table[:, :, SLIDING]).sum(axis=1), time)
     dampers = integral(np.einsum("ti,ij,tj->t", rate, structure.damping, rate), time)

@@ -10,7 +10,6 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
-from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.planning.plan import planned_record
@@ -49,7 +48,7 @@ def velocity(run: PairMotion, states: np.ndarray, name: str) -> np.ndarray:
 
 def test_contact_ratio_and_friction_arms_are_those_of_the_geometry() -> None:
     chosen = law(missing_material(gear_pair(), None, corner_contact=False), friction=constant_friction(0.05))
-    run = motion(locked_load(make_structure()), chosen, step_s=STEP_S)
+    run = motion(make_structure(), chosen, step_s=STEP_S)
     pitches, states = settled(run, 30.0, STEP_S, STEPS_PER_MESH)
     pairs = run.pairs(states[:-1], pitches[:-1])[0]
     touching = pairs[:, :, FLANK] > 0.0

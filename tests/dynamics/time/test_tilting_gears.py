@@ -16,7 +16,6 @@ from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.structure.casing_structure import casing_structure
-from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
@@ -155,12 +154,12 @@ def helical_run(step_s: float) -> tuple[PairMotion, Structure]:
     )
     bare = casing_structure(stage, make_casing(), (SHAFT, SHAFT))
     meshes = [PairMesh(chosen, mean_mesh_stiffness(over))]
-    return PairMotion(locked_load(bare), meshes, mean=MeanState(TORQUE, 30.0), step_s=step_s), bare
+    return PairMotion(bare, meshes, mean=MeanState(TORQUE, 30.0), step_s=step_s), bare
 
 
 def spur_run(step_s: float) -> tuple[PairMotion, Structure]:
     chosen = tilting_law(one_sided(), 3e-6, friction=0.05, coupled=True)
-    return motion(locked_load(structure()), chosen, step_s=step_s), structure()
+    return motion(structure(), chosen, step_s=step_s), structure()
 
 
 @pytest.mark.slow
