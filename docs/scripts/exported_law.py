@@ -51,7 +51,7 @@ class Pair:
 
 @dataclass
 class Spring:
-    """Elastic force of a pair with its stiffness, carrying share, share on damage, moment and its derivatives."""
+    """Elastic force of a pair with its stiffness, carrying share, share on rough land, moment and its derivatives."""
 
     force: float = 0.0
     slope: float = 0.0

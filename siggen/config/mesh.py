@@ -11,7 +11,6 @@ from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
-ROUGHNESS = "rms roughness of either flank, and of its lands inside damage (mixed_ehl)"
 DAMPING_PARTS = (
     "parts of the mesh damping ratio with damping: asperity_share: always there, in a full oil film, where asperities "
     "carry all"
@@ -32,7 +31,7 @@ class Mesh(Section):
     damage: Literal["all", "geometry"] = Field(
         default="all",
         description="how damage acts with law: pairs; geometry: lands carry, flanks sink where none is left, "
-        "lands inside damage are rough; all: geometry, and weaker sections",
+        "land within 0.5 mm of it is rough; all: geometry, and weaker sections",
     )
     pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1)] = Field(
         default=0.1, description="rounding of the edges of damage (law: pairs)"
@@ -70,9 +69,9 @@ class Friction(Section):
         default=Uniform(low=0.07, high=0.11), description="friction coefficient of asperities, by the oil's additives"
     )
     roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
-        default=Uniform(low=0.2, high=0.5), description=f"{ROUGHNESS}; run in"
+        default=Uniform(low=0.2, high=0.5), description="rms roughness of either flank, run in (mixed_ehl)"
     )
     pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=2.0,
-        description=ROUGHNESS,
+        description="rms roughness of a flank in damage and on the land within 0.5 mm of it (mixed_ehl)",
     )

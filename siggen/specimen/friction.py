@@ -25,7 +25,7 @@ LEAST_LINE_LOAD_N_PER_M = 1e3
 def specimen_friction(
     section: Friction, pair: GearPair, point: OperatingPoint, *, rough_pits: bool = False
 ) -> FrictionLaw | None:
-    """Return the law of a drawn section, None where friction is off; with `rough_pits` it knows the lands in damage."""
+    """Return the law of a drawn section, None where friction is off; with `rough_pits` it knows rough land."""
     if section.model == "off":
         return None
     if section.model == "constant":
@@ -76,9 +76,9 @@ def pitch_point(pair: GearPair, mesh: LubricatedMesh) -> PitchPoint:
 
 
 def composite_roughness_m(section: Friction) -> tuple[float, float]:
-    """Return the composite rms roughness of two healthy flanks, and of a healthy one on the lands inside damage [m]."""
+    """Return the composite rms roughness of two healthy flanks, and of a healthy one on rough land [m]."""
     healthy_m = 1e-6 * constant(section.roughness_um)
-    # Lands inside damage are never smoother than the flank around them.
+    # Land beside damage is never smoother than the flank around it.
     pitted_m = max(1e-6 * constant(section.pit_roughness_um), healthy_m)
     return hypot(healthy_m, healthy_m), hypot(pitted_m, healthy_m)
 

@@ -1,8 +1,8 @@
 """What happens in every tooth contact, named with units: forces, friction, film, pressure; at output rate only.
 
 Values are those of the table of pairs (`pair_places`). Film and film ratio (reference: standard literature, formulas
-of `lubrication`) are computed from them: central film by Masjedi and Khonsari at the line load on what carries; the
-roughness inside damage enters by its mean square over the face (derived). Hertz pressure: line contact. While a pair
+of `lubrication`) are computed from them: central film at the line load on what carries; rough
+land enters by its mean square over what carries (derived). Hertz pressure: line contact. While a pair
 does not touch, its forces, moments, damping and load share are 0, and what only a contact has (`contact_names`) is
 NaN; a back flank that touches has force and friction, but neither film nor pressure.
 """
@@ -59,7 +59,7 @@ PER_PAIR = (
 class PairContact:
     """What pressure and film of the pairs follow from.
 
-    `oil` is None without one; `roughness_m`: composite rms of healthy flanks and of a pair inside damage.
+    `oil` is None without one; `roughness_m`: composite rms of healthy flanks and on rough land.
     """
 
     effective_modulus_pa: float

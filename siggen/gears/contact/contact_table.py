@@ -24,9 +24,9 @@ import numpy as np
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.column_halving import halved
 from siggen.gears.contact.kind_row import KindRow, felt, first_touch, kind_row, pits_of_kind, touch_along
-from siggen.gears.contact.table_columns import FORCE, TableSolver, column_curves, table_solver
+from siggen.gears.contact.table_columns import FORCE, ROUGH, TableSolver, column_curves, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.contact.tilted_columns import tilted_columns
+from siggen.gears.contact.tilted_columns import ROUGH_BEND, tilted_columns
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
@@ -158,7 +158,10 @@ def _refined(solver: TableSolver, row: KindRow, run: IntArray) -> tuple[IntArray
     end = solver.reference + 1
 
     def bent(low: FloatArray, middle: FloatArray, high: FloatArray, weight: float) -> bool:
-        return not _is_mean(low[:end, 0, FORCE], middle[:end, 0, FORCE], high[:end, 0, FORCE], weight)
+        if not _is_mean(low[:end, 0, FORCE], middle[:end, 0, FORCE], high[:end, 0, FORCE], weight):
+            return True
+        off = (1.0 - weight) * low[:end, 0, ROUGH] + weight * high[:end, 0, ROUGH] - middle[:end, 0, ROUGH]
+        return bool(np.any(np.abs(off) > ROUGH_BEND))
 
     ends, curves = halved(wanted, lambda places: column_curves(solver, row, places), bent, solver.options.finest)
     return ends, tilted_columns(solver, row, ends, curves)

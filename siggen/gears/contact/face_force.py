@@ -49,8 +49,8 @@ class FaceForce(NamedTuple):
     """What the pair answers to an approach and a tilt.
 
     `force_n`: F; `moment_n_m`: M, positive with the load at positive y; `stiffness_n_per_m`: dF/dd to 0.2 %;
-    `turning_n`: dM/dd = dF/dθ; `tilting_n_m`: dM/dθ; `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`:
-    share of the load on slices whose normal lies in damage; `passes` of the solver, -1: not solved.
+    `turning_n`: dM/dd = dF/dθ; `tilting_n_m`: dM/dθ; `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_rough`:
+    share of the load on rough land; `passes` of the solver, -1: not solved.
     """
 
     force_n: float
@@ -59,7 +59,7 @@ class FaceForce(NamedTuple):
     turning_n: float
     tilting_n_m: float
     carrying_m: float
-    on_damage: float
+    on_rough: float
     passes: int
 
 
@@ -229,12 +229,12 @@ def _move(loads: FloatArray, room: SolverRoom, chosen: int) -> tuple[float, bool
 
 @njit(cache=True, _nrt=False, error_model="numpy")
 def _answer(slices: FaceSlices, loads: FloatArray, answers: Answers, passes: int) -> FaceForce:
-    total = square = moment = damaged = 0.0
+    total = square = moment = on_rough = 0.0
     for i in range(loads.size):
         total += loads[i]
         square += loads[i] * loads[i]
         moment += loads[i] * slices.face_m[i]
-        damaged += loads[i] * slices.on_damage[i]
+        on_rough += loads[i] * slices.rough[i]
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
     length = slices.kernel.cell_m * total * total / square
     return FaceForce(
@@ -244,6 +244,6 @@ def _answer(slices: FaceSlices, loads: FloatArray, answers: Answers, passes: int
         answers.turning_n,
         answers.tilting_n_m,
         length,
-        damaged / total,
+        on_rough / total,
         passes,
     )

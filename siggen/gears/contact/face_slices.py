@@ -16,8 +16,8 @@ from siggen.gears.contact.two_edges import GapSink, gap_sink
 class FaceSlices(NamedTuple):
     """The slices at one position (a named tuple, since compiled code takes no dataclass); arrays are (n,).
 
-    `left_m`, `right_m`, `notch_m`, `floor_m`: the gap that each slice meets, as for `two_edges.gap_sink`; `on_damage`:
-    part of a slice whose normal lies in a gap of the damage; `covered`: part of a slice that has this gap, the rest has
+    `left_m`, `right_m`, `notch_m`, `floor_m`: the gap that each slice meets, as for `two_edges.gap_sink`; `rough`: part
+    of a slice that is rough land; `covered`: part of a slice that has this gap, the rest has
     only the edges `tips_m` (n, 2; left, right) of the teeth; `spread`: k of `covered_slice`; `lead_m`: missing material
     across the face, of any sign; `face_m`: y from the middle of the face; `kernel`: K; `teeth`: T; `radius_m`: R by
     which slices act on each other; `radii_m`: R of each; `rounding_m`: radius of the edges; `kappa_per_pa`: κ;
@@ -28,7 +28,7 @@ class FaceSlices(NamedTuple):
     right_m: FloatArray
     notch_m: FloatArray
     floor_m: FloatArray
-    on_damage: FloatArray
+    rough: FloatArray
     covered: FloatArray
     lead_m: FloatArray
     face_m: FloatArray

@@ -20,7 +20,7 @@ class ForceCurve(NamedTuple):
     turning_n: FloatArray
     tilting_n_m: FloatArray
     carrying_m: FloatArray
-    on_damage: FloatArray
+    on_rough: FloatArray
 
 
 @entry(cache=True, _nrt=False, error_model="numpy")
@@ -77,7 +77,7 @@ def _write_curve(
         out[3, j] = answer.turning_n
         out[4, j] = answer.tilting_n_m
         out[5, j] = answer.carrying_m
-        out[6, j] = answer.on_damage
+        out[6, j] = answer.on_rough
     return True
 
 

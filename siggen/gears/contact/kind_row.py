@@ -16,6 +16,7 @@ from siggen.gears.contact.pair_rest import PairRest, pair_rest
 from siggen.gears.contact.table_options import TableOptions, face_slices, half_width, reference_force_n
 from siggen.gears.damage.flank_chords import FlankChords, flank_chords
 from siggen.gears.damage.part_chip import standing_share
+from siggen.gears.damage.rough_land import rough_land, rough_shares
 from siggen.gears.damage.tooth_damage import Damage, acts_unevenly, goes_through, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import carrying_middle_m, slice_radii_m, slice_shifts_m
@@ -33,6 +34,7 @@ class KindRow(NamedTuple):
     `gaps` are those of the points from `first` on, `elsewhere` those of the healthy pair at all points; `edge_radius_m`
     is the mean of those that the damage of both teeth states, or else that of the options. Of a helical pair
     `position_m` is where the middle of the face is, `slice_missing_m` (points, n) what slices miss beside the lead.
+    `rough` (points, n): parts of slices that are rough land; None: none.
     """
 
     position_m: FloatArray
@@ -42,6 +44,7 @@ class KindRow(NamedTuple):
     rest: PairRest
     edge_radius_m: float
     slice_missing_m: FloatArray | None = None
+    rough: FloatArray | None = None
 
     def lead_at(self, chosen: IntArray, lead_m: FloatArray) -> FloatArray:
         """Return what slices miss at fine points (chosen, n), or (n,) where it is the same at all [m]."""
@@ -95,7 +98,21 @@ def kind_row(
     edge_radius = _edge_radius(chords, options)
     window = slice(0, points) if healthy is None else _window(pair, chords, position)
     gaps = face_gaps(pair, chords[0], chords[1], position[window])
-    return KindRow(position, gaps, window.start, gaps if healthy is None else healthy.elsewhere, rest, edge_radius)
+    elsewhere = gaps if healthy is None else healthy.elsewhere
+    rough = _rough(pair, pits, position[:, np.newaxis] + np.zeros(slices))
+    return KindRow(position, gaps, window.start, elsewhere, rest, edge_radius, rough=rough)
+
+
+def _rough(pair: GearPair, pits: tuple[Damage, Damage], place_m: FloatArray) -> FloatArray | None:
+    """Return the rough parts of slices at their places (k, n), None where both flanks are sound."""
+    if not any(pits):
+        return None
+    slices = place_m.shape[1]
+    pinion, gear = (
+        rough_land(pair.member(which), of_tooth, pair.face_width_m, slices)
+        for which, of_tooth in zip(("pinion", "gear"), pits, strict=True)
+    )
+    return rough_shares(pair, pinion, gear, place_m)
 
 
 def _edge_radius(chords: list[FlankChords], options: TableOptions) -> float:
@@ -121,10 +138,11 @@ def _helical_row(
         for which, of_tooth in zip(("pinion", "gear"), pits, strict=True)
     ]
     gaps, edge_radius = helical_gaps(pair, place, chords[0], chords[1]), _edge_radius(chords, options)
+    rough = _rough(pair, pits, place)
     if healthy is not None and healthy.slice_missing_m is not None:
-        return healthy._replace(gaps=gaps, edge_radius_m=edge_radius)
+        return healthy._replace(gaps=gaps, edge_radius_m=edge_radius, rough=rough)
     missing = helical_missing_m(pair, place, options.relief)
-    return KindRow(position, gaps, 0, gaps, helical_rest(pair, place, stiffness), edge_radius, missing)
+    return KindRow(position, gaps, 0, gaps, helical_rest(pair, place, stiffness), edge_radius, missing, rough)
 
 
 def _rest(
@@ -161,11 +179,13 @@ def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray) -
 
 
 def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
-    """Return at which fine points (points,) a kind differs from a healthy pair under the reference force."""
+    """Return at which fine points a kind is rough, or differs from a healthy pair under the reference force."""
     softer = not np.array_equal(row.rest.tooth_m_per_n, healthy.rest.tooth_m_per_n)
     # Slices of helical teeth differ as they do on healthy ones, which is nothing of the damage.
     uneven = row.rest.uneven is not None and row.rest.uneven is not healthy.rest.uneven
     found = np.full(row.position_m.size, softer or uneven)
+    if row.rough is not None:
+        found |= row.rough.any(axis=1)
     window = slice(row.first, row.first + len(row.gaps.left_m))
     left, right = row.gaps.left_m, row.gaps.right_m
     other = (left != row.elsewhere.left_m[window]) | (right != row.elsewhere.right_m[window])

@@ -45,6 +45,7 @@ def pair_faces(
     options: FaceOptions,
     lead_m: FloatArray | None = None,
     radii_m: FloatArray | None = None,
+    rough: FloatArray | None = None,
 ) -> list[FaceSlices]:
     """Return the slices at positions s (k,) [m].
 
@@ -61,6 +62,8 @@ def pair_faces(
         Missing material across the face, of any sign; None: none.
     radii_m : (k, n) or None
         Relative radii of curvature of the slices [m]; None: as in the middle.
+    rough : (k, n) or None
+        Parts of slices that are rough land; None: none.
 
     Raises
     ------
@@ -97,7 +100,7 @@ def pair_faces(
             right_m=here.right_m,
             notch_m=here.notch_m,
             floor_m=here.floor_m,
-            on_damage=here.on_damage,
+            rough=np.zeros(count) if rough is None else np.ascontiguousarray(rough[i]),
             covered=here.covered,
             lead_m=leads if leads.ndim == 1 else leads[i],
             face_m=face,

@@ -27,7 +27,7 @@ from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 FORCE, SLOPE, CARRYING, ROUGH, ACROSS, ACROSS_SLOPE, ENERGY = range(7)
-"""Values of the curves: force [N], its slope [N/m], carrying share of the face, share of the load on damage.
+"""Values of the curves: force [N], its slope [N/m], carrying share of the face, share of the load on rough land.
 
 Where gears tilt, for every ray of `tilt_rays`: W_r [N] and W_rr, both shares, W_p [J], W_pr and W [J]; without tilt W_r
 is F."""
@@ -92,6 +92,7 @@ def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceS
         None
         if solver.pair.helix_rad == 0.0
         else slice_radii_m(solver.pair, row.position_m[chosen], solver.lead_m.size),
+        None if row.rough is None else row.rough[chosen],
     )
 
 
@@ -113,7 +114,7 @@ def ray_curves(solver: TableSolver, row: KindRow, chosen: IntArray, rays: FloatA
             raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
     found = np.moveaxis(found, 0, 1)
     values = along_rays(rays, node, half_face, found)
-    parts = [values[0], values[1], found[tilt_rays.CARRYING] / solver.pair.face_width_m, found[tilt_rays.ON_DAMAGE]]
+    parts = [values[0], values[1], found[tilt_rays.CARRYING] / solver.pair.face_width_m, found[tilt_rays.ON_ROUGH]]
     parts += [values[2], values[3]] if solver.options.tilts else []
     count = TILTING_VALUES if solver.options.tilts else VALUES
     curves = np.zeros((chosen.size, solver.node_m.size, rays.size, count))

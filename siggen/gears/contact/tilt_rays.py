@@ -23,7 +23,7 @@ HALF_RAYS = (0.0, 0.3, 0.8, 1.5, 1.0 + 2.0**0.5)
 RAYS = np.array([-p for p in HALF_RAYS[:0:-1]] + list(HALF_RAYS))
 UPRIGHT = len(HALF_RAYS) - 1
 """Number of the ray without tilt."""
-FORCE, MOMENT, STIFFNESS, CROSS, TURNING, CARRYING, ON_DAMAGE = range(7)
+FORCE, MOMENT, STIFFNESS, CROSS, TURNING, CARRYING, ON_ROUGH = range(7)
 """Where answers of the solver stand in a `ForceCurve`."""
 
 

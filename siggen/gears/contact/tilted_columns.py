@@ -16,6 +16,7 @@ from siggen.gears.contact.table_columns import (
     ACROSS_SLOPE,
     ENERGY,
     FORCE,
+    ROUGH,
     SLOPE,
     TILTING_VALUES,
     TableSolver,
@@ -28,6 +29,8 @@ COARSEST = 16
 """Columns from one that is solved on all rays to the next, before halving."""
 BEND = 1e-2
 """Largest deviation of a ray's forces from its neighbours', of the force without tilt and a tenth of the largest."""
+ROUGH_BEND = 0.05
+"""Largest deviation of the share of the load on rough land from its neighbours'."""
 
 TILTED = [ray for ray in range(1, RAYS.size - 1) if ray != UPRIGHT]
 """Rays that are solved."""
@@ -49,8 +52,8 @@ def tilted_columns(solver: TableSolver, row: KindRow, chosen: IntArray, upright:
     counts = force / (force + 0.1 * force[-1])
 
     def bent(low: FloatArray, middle: FloatArray, high: FloatArray, weight: float) -> bool:
-        off = np.abs((1.0 - weight) * low + weight * high - middle)[: solver.reference + 1, :, FORCE]
-        return bool(np.any(off * counts > BEND))
+        off = np.abs((1.0 - weight) * low + weight * high - middle)[: solver.reference + 1]
+        return bool(np.any(off[:, :, FORCE] * counts > BEND) or np.any(off[:, :, ROUGH] > ROUGH_BEND))
 
     wanted = np.unique(np.append(np.arange(0, chosen.size, COARSEST), chosen.size - 1)).tolist()
     stations, shares = halved(wanted, solve, bent, 1)

@@ -143,9 +143,9 @@ def _covered(width: float, slices: int, pits: FloatArray) -> tuple[FloatArray, F
         for i in range(pits.shape[0]):
             low, high = max(_end(pits, i, -1.0), first), min(_end(pits, i, 1.0), last)
             if low < high:
-                filled = _insert(low, high, 0.0, 0.0, room, filled)
+                filled = insert_interval(low, high, 0.0, 0.0, room, filled)
         longest = 0.0
-        for k in range(_merge(room, filled, merged)):
+        for k in range(merge_intervals(room, filled, merged)):
             length = merged[1, k] - merged[0, k]
             covered[j] += length * slices / width
             if length > longest:
@@ -201,13 +201,15 @@ def _line_unions(lines: LineRows, pits: FloatArray, highest: float) -> tuple[Flo
             radius = pits[lines.row[j, k], EDGE_RADIUS]
             first, last = max(lines.low_m[j, k], 0.0), min(lines.high_m[j, k], highest)
             if last > first:
-                filled = _insert(first, last, radius, radius, room, filled)
-        merged[j] = _merge(room, filled, found[:, j])
+                filled = insert_interval(first, last, radius, radius, room, filled)
+        merged[j] = merge_intervals(room, filled, found[:, j])
     return found, merged
 
 
 @njit(cache=True)
-def _insert(low: float, high: float, low_radius: float, high_radius: float, room: FloatArray, filled: int) -> int:
+def insert_interval(
+    low: float, high: float, low_radius: float, high_radius: float, room: FloatArray, filled: int
+) -> int:
     """Insert an interval with the radii of its edges into a list (4, n) sorted by the low ends; return how many."""
     k = filled
     while k > 0 and room[0, k - 1] > low:
@@ -244,7 +246,7 @@ def _heights_on_line(face: float, pits: FloatArray, i: int) -> tuple[float, floa
 
 
 @njit(cache=True)
-def _merge(room: FloatArray, filled: int, out: FloatArray) -> int:
+def merge_intervals(room: FloatArray, filled: int, out: FloatArray) -> int:
     """Write the union of sorted intervals (4, n) as separate intervals and return their number."""
     count = 0
     for k in range(filled):

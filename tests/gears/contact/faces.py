@@ -49,7 +49,7 @@ def face(
     covered = gap.astype(float) if covered is None else covered
     gaps = FaceGaps(x1, x2, d, d, (x1 > 0.0) & (x2 > 0.0), covered, np.full((slices, 2), -NO_EDGE))
     return FaceSlices(
-        left_m=x1, right_m=x2, notch_m=d, floor_m=d, on_damage=((x1 > 0.0) & (x2 > 0.0)).astype(float),
+        left_m=x1, right_m=x2, notch_m=d, floor_m=d, rough=((x1 > 0.0) & (x2 > 0.0)).astype(float),
         covered=covered, tips_m=np.full((slices, 2), -NO_EDGE), spread=spread_of_cells(1.28),
         lead_m=lead, face_m=cell * (np.arange(slices) + 0.5) - 0.5 * WIDTH,
         kernel=line_kernel(kernel_family(slices, cell, DEPTH), DEPTH, 0.3, coupled=coupled),

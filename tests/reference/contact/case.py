@@ -62,7 +62,7 @@ def face_of(
         right_m=right_m,
         notch_m=depth_m,
         floor_m=depth_m,
-        on_damage=((left_m > 0.0) & (right_m > 0.0)).astype(np.float64),
+        rough=((left_m > 0.0) & (right_m > 0.0)).astype(np.float64),
         covered=covered,
         lead_m=none,
         face_m=cell * (np.arange(count) + 0.5) - 0.5 * FACE_M,
