@@ -79,6 +79,7 @@ def row(name: str, config: Config, state: str) -> str:
     first, last, length = contact_extent(config, state)
     area = flank_views(config, state=state)[0].area_mm2
     behind = loss[(degrees > last + 0.01) & (degrees < 32.7)].max(initial=0.0)
+    softer = np.nanmax(pitted.parts_m_per_n["contact"] - healthy.parts_m_per_n["contact"])
     relative = 100 * (loss / healthy.mesh_stiffness_n_per_m).max()
     cells = (
         f"{flank_damage_table(config, state=state).num_rows}",
@@ -89,6 +90,7 @@ def row(name: str, config: Config, state: str) -> str:
         f"{degrees[loss.argmax()]:.2f}",
         f"{first:.2f} to {last:.2f}",
         f"{behind / 1e6:.3f}",
+        f"{1e11 * softer:.3f}",
     )
     return f"| {name} | " + " | ".join(cells) + " |"
 
@@ -128,9 +130,10 @@ def main() -> None:
     save_flank_figure(flank_views(load_config(PAPER)), FIGURES / "gallery_flanks.png")
     print(
         "| case | pits | area [mm²] | largest lost contact length [mm] | largest ΔK [10⁶ N/m] | largest ΔK/K [%] "
-        "| largest ΔK at [°] | contact on pits [°] | largest ΔK behind them [10⁶ N/m] |"
+        "| largest ΔK at [°] | contact on pits [°] | largest ΔK behind them [10⁶ N/m] "
+        "| largest Δ(1/k) of the contact [10⁻¹¹ m/N] |"
     )
-    print("|---" * 9 + "|")
+    print("|---" * 10 + "|")
     for cases in GROUPS.values():
         for name, (config, state) in cases.items():
             print(row(name, config, state))

@@ -26,19 +26,37 @@ def energies(lines: np.ndarray) -> dict[str, float]:
     return {name: float(np.sqrt((lines[orders] ** 2).sum())) for name, orders in bands.items()}
 
 
-def main() -> None:
-    """Simulate the four states, print the energies and draw the spectra."""
-    config = load_config("configs/paper_a.yaml")
+def spectra(*overrides: str) -> dict[str, np.ndarray]:
+    """Return the amplitudes [m/s²] of the vertical acceleration of the pinion at shaft orders, by state."""
+    config = load_config("configs/paper_a.yaml", overrides)
     records = simulate_specimen(config, range(config.records_per_specimen))
     channel = "bearing_vertical"
-    lines = {r.labels["state"]: line_amplitudes(r.channels[channel].astype(float), config.fs_hz) for r in records}
+    return {r.labels["state"]: line_amplitudes(r.channels[channel].astype(float), config.fs_hz) for r in records}
+
+
+def print_mesh(title: str, lines: dict[str, np.ndarray]) -> None:
+    """Print acceleration and displacement of the mesh lines, and the strongest line of either."""
+    print(f"\n| {title} | 1 to 5 x mesh [m/s²] | [nm] | strongest line [m/s²], [nm] | all lines, rms [m/s²] |")
+    print("|---" * 5 + "|")
+    for state, amplitudes in lines.items():
+        hertz = SHAFT_HZ * np.arange(amplitudes.size)
+        moved = np.append(0.0, 1e9 * amplitudes[1:] / (2.0 * np.pi * hertz[1:]) ** 2)
+        cells = [", ".join(f"{values[h * TEETH]:.4g}" for h in range(1, 6)) for values in (amplitudes, moved)]
+        strongest = [f"{values[1:].max():.4g} at {hertz[1 + values[1:].argmax()]} Hz" for values in (amplitudes, moved)]
+        rms = np.sqrt(0.5 * (amplitudes[1:] ** 2).sum())
+        print(f"| {state} | {cells[0]} | {cells[1]} | {', '.join(strongest)} | {rms:.3g} |")
+
+
+def main() -> None:
+    """Simulate the four states, print their lines and draw the spectra."""
+    lines = spectra()
     table = {state: energies(amplitudes) for state, amplitudes in lines.items()}
     print("| [m/s²] | " + " | ".join(table) + " |")
     print("|---|" + "---|" * len(table))
     for band in next(iter(table.values())):
         print(f"| {band} | " + " | ".join(f"{values[band]:.2g}" for values in table.values()) + " |")
-    mesh = "; ".join(f"{h} x mesh " + ", ".join(f"{a[h * TEETH]:.4g}" for a in lines.values()) for h in (1, 2, 3))
-    print(f"\nmesh lines [m/s²]: {mesh}")
+    print_mesh("one pitted tooth", lines)
+    print_mesh("18 pitted teeth", spectra(*(f"states.{i}.damage.teeth={TEETH}" for i in (1, 2, 3)), "duration_s=2"))
     figure = Figure(figsize=(9, 8), layout="constrained")
     axes = figure.subplots(len(lines), 1, sharex=True, sharey=True)
     for axis, (state, amplitudes) in zip(axes, lines.items(), strict=True):
