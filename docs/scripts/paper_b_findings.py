@@ -35,7 +35,7 @@ CONSTANTS = [
     "housing.bolts.damping_ratio=0.04", "dynamics.mesh.structure_damping_ratio=0.04",
     "dynamics.mesh.film_damping_ratio=0.02", "dynamics.mesh.asperity_damping_ratio=0.055",
     "dynamics.friction.oil_temperature_c=50", "dynamics.friction.roughness_um=0.4",
-    "dynamics.friction.pit_roughness_um=2.0",
+    "dynamics.friction.pit_roughness_um=2.0", "dynamics.friction.boundary_friction=0.09",
 ]  # fmt: skip
 
 
@@ -261,6 +261,18 @@ def severity_sweep():
     figure.savefig(FIGURES / "paper_b_severity.png", dpi=110)
 
 
+def levels():
+    """Print the level of the casing by state at two more speeds, with rough land about damage and without."""
+    states, speeds = [HEALTHY, *PITTED, PARTIAL, THROUGH], [15.0, 35.0]
+    print("\n| casing, both axes [m/s² rms] | " + " | ".join(said(state["name"]) for state in states) + " |")
+    print("|---" * (len(states) + 1) + "|")
+    for title, overrides in (("", ()), (", lands as smooth as the flank", ("dynamics.friction.pit_roughness_um=0.4",))):
+        found = {(name, v): q for name, v, q in runs(states, speeds, 0.5, *overrides)}
+        for v in speeds:
+            both = (np.hypot(*(rms(found[state["name"], v][LID[axis]]) for axis in LID)) for state in states)
+            print(f"| {v:g} Hz{title} | " + " | ".join(f"{level:.3g}" for level in both) + " |")
+
+
 def friction_models():
     """Draw bearing force and casing by friction model, healthy and spalled; print their levels."""
     damped = "dynamics.mesh.damping=constant"
@@ -359,6 +371,6 @@ def lubrication():
 
 
 if __name__ == "__main__":
-    for part in (speed_sweep, severity_sweep, friction_models, lubrication):
+    for part in (speed_sweep, severity_sweep, levels, friction_models, lubrication):
         part()
     sys.exit(0)
