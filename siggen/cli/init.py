@@ -47,6 +47,10 @@ class RigNumbers:
     fs: Annotated[
         str, typer.Option("--fs", metavar="HZ", help="Sampling rate of your recordings; else ten mesh harmonics'.")
     ] = ""
+    shift: Annotated[
+        str,
+        typer.Option("--shift", metavar="X1,X2", help="Profile shift in modules; one number: the pinion's."),
+    ] = ""
 
 
 @grouped
@@ -55,6 +59,10 @@ def init(
     *,
     numbers: RigNumbers,
     sensors: Annotated[int, typer.Option("--sensors", help="Number of accelerometers on the casing.")] = 2,
+    damage: Annotated[
+        str, typer.Option("--damage", metavar="KIND", help="spalls: one that grows; pits: a cluster that grows.")
+    ] = "spalls",
+    severities: Annotated[int, typer.Option("--severities", metavar="N", help="Sizes of damage, 1 to 12.")] = 3,
     base: Annotated[str, typer.Option("--extends", help="Preset that gives everything else.")] = "bench",
 ) -> None:
     """Write a short configuration of your own gearbox; at a terminal it asks for what is missing.
@@ -83,7 +91,7 @@ def init(
         refuse_missing(missing_answers(answers))
     for option in missing_answers(answers):
         answers[option] = str(typer.prompt(QUESTIONS[option]))
-    rig, proposals = rig_of(answers, sensors)
+    rig, proposals = rig_of(answers, sensors, damage=damage, severities=severities)
     rig = replace(rig, accuracy_classes=covering_classes(rig))
     text = rig_text(rig, _name(out), base, proposals)
     config = load_config(inherited(parse_yaml(text, str(out))))  # what is refused is never written

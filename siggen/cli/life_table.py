@@ -107,9 +107,21 @@ def cost_summary(cost: LifeCost, summary: dict[str, Any], config: Config) -> dic
 
 
 def cost_text(found: dict[str, Any]) -> str:
-    """Return the CPU hours in words, with how they were estimated."""
+    """Return the CPU hours and what they take here in words, with how they were estimated."""
+    from siggen.engines.processes import default_workers
+    from siggen.errors import counted
+
+    workers = default_workers()
+    here = f"about {_duration(found['cpu_hours'])} of this processor, {_duration(found['cpu_hours'] / workers)} with "
+    here += counted(workers, "process", "processes")
+    if "signal_s" not in found:
+        return f"{here} (estimated from the trial)"
     of_each = f"{found['signal_s']:.2g} s per second of signal, {found['damage_s']:.2g} s more per inspection with pits"
-    return (
-        f"about {found['cpu_hours']:.2g} h of this processor (estimated from four records: {of_each}, "
-        f"{found['gearbox_s']:.2g} s per gearbox)"
-    )
+    return f"{here} (estimated from four records: {of_each}, {found['gearbox_s']:.2g} s per gearbox)"
+
+
+def _duration(hours: float) -> str:
+    """Return a time in the unit that suits it."""
+    if hours < 1.0 / 60.0:
+        return f"{3600 * hours:.0f} s"
+    return f"{60 * hours:.0f} min" if hours < 2.0 else f"{hours:,.3g} h"

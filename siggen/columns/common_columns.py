@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 LABEL_COLUMNS = in_role(
     Role.TARGET,
     Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
-    Column("severity", pa.string(), "", "healthy, slight, moderate or severe"),
+    Column("severity", pa.string(), "", "healthy, slight, moderate, severe, or a name of the configuration"),
     Column("faulty_gear", pa.string(), "", "gear with damage: none, pinion, gear, both, STAGE.pinion, ... or several"),
     Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
     Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),

@@ -271,7 +271,8 @@ def _words_text(words: Sequence[str], fault: str, kinds: Sequence[str]) -> str:
 
 
 def _growth_problems(milder: StateSection, state: StateSection, path: str) -> Iterator[Problem]:
-    if SEVERITIES.index(milder.severity) > SEVERITIES.index(state.severity):
+    known = all(one.severity in SEVERITIES for one in (milder, state))
+    if known and SEVERITIES.index(milder.severity) > SEVERITIES.index(state.severity):
         received = f"'{state.grows_from}', which is {milder.name} ({milder.severity}), for a {state.severity} state"
         yield Problem(f"{path}.grows_from", received, "allowed: a state that is not more severe, or none")
     for where, one in state.placed(path):

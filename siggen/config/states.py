@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -46,8 +46,8 @@ class StateSection(Section):
     fault: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), FAULT] = Field(
         description="default: what its kind of damage is called; healthy without damage and changes"
     )
-    severity: Literal["healthy", "slight", "moderate", "severe"] = Field(
-        description="default: the state's name if that is a severity; healthy without damage"
+    severity: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
+        description="default: the state's name; healthy without damage"
     )
     grows_from: str = Field(
         default="previous",
@@ -120,8 +120,8 @@ class StateSection(Section):
             labels["fault"] = default_word(value["damage"])
         elif not value.get("changes"):
             labels |= {"fault": HEALTHY, "severity": HEALTHY}
-        if "severity" not in labels and value.get("name") in SEVERITIES:
-            labels["severity"] = str(value["name"])
+        if "severity" not in labels and isinstance(value.get("name"), str):
+            labels["severity"] = value["name"]
         return {**labels, **value}
 
     @model_validator(mode="after")
@@ -150,7 +150,7 @@ class StateSection(Section):
             allowed = f"allowed: {WORDS[shown]}, or no {shown}"
             yield Problem("fault", f"healthy, with {shown}", allowed)
         if faulty and not self.sham and healthy[1]:
-            yield Problem("severity", f"healthy, with {shown}", f"allowed: slight, moderate or severe, or no {shown}")
+            yield Problem("severity", f"healthy, with {shown}", f"allowed: any other name, or no {shown}")
         if not faulty and self.grows_from not in RESERVED_NAMES:
             received = f"'{self.grows_from}', {'with sham: true' if self.sham else 'without damage'}"
             yield Problem("grows_from", received, "only a state with damage or changes grows from another one")

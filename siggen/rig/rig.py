@@ -17,9 +17,13 @@ LIMITS = {
     "bores": (1.0, 1000.0, "mm, diameters"),
     "pressure-angle": (14.5, 30.0, "degrees"),
     "fs": (100.0, 1e7, "Hz"),
+    "shift": (-1.0, 1.5, "modules"),
 }
 """Smallest, largest and unit of what `siggen init` takes."""
 LARGEST_SENSORS = 8
+DAMAGES = ("spalls", "pits")
+"""What `siggen init` writes: one spall that grows over the face, or a cluster of pits that grows in number."""
+MOST_SEVERITIES = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +43,12 @@ class Rig:
         Flank tolerance classes of ISO 1328-1, equally likely for each gear.
     fs_hz : float or None
         Sampling rate; None: what carries ten mesh harmonics.
+    shifts : (pinion, gear)
+        Profile shifts in modules.
+    damage : str
+        A key of `DAMAGES`.
+    severities : int
+        Sizes of damage.
     """
 
     teeth: tuple[int, int]
@@ -51,6 +61,9 @@ class Rig:
     bores_mm: Pair | None = None
     accuracy_classes: tuple[int, ...] = (5, 6, 7)
     fs_hz: float | None = None
+    shifts: Pair = (0.0, 0.0)
+    damage: str = "spalls"
+    severities: int = 3
 
     @property
     def hunting_turns(self) -> int:
@@ -74,17 +87,22 @@ def checked_rig(rig: Rig) -> Rig:
         "bores": rig.bores_mm or (),
         "pressure-angle": (rig.pressure_angle_deg,),
         "fs": () if rig.fs_hz is None else (rig.fs_hz,),
+        "shift": rig.shifts,
     }
     for name, values in given.items():
         low, high, unit = LIMITS[name]
         if not all(low <= value <= high for value in values):
             raise UsageError(f"--{name}: received {_listed(values)}; allowed: {low:g} to {high:g} {unit}")
-        if len(values) == 2 and name != "bores" and values[0] > values[1]:
+        if len(values) == 2 and name not in ("bores", "shift") and values[0] > values[1]:
             raise UsageError(f"--{name}: received {_listed(values)}; allowed: the lowest value first")
     if not all(5 <= z <= 1000 for z in rig.teeth):
         raise UsageError(f"--teeth: received {_listed(rig.teeth)}; allowed: 5 to 1000 teeth of pinion and gear")
     if not 1 <= rig.sensors <= LARGEST_SENSORS:
         raise UsageError(f"--sensors: received {rig.sensors}; allowed: 1 to {LARGEST_SENSORS}")
+    if rig.damage not in DAMAGES:
+        raise UsageError(f"--damage: received {rig.damage!r}; allowed: {' or '.join(DAMAGES)}")
+    if not 1 <= rig.severities <= MOST_SEVERITIES:
+        raise UsageError(f"--severities: received {rig.severities}; allowed: 1 to {MOST_SEVERITIES}")
     return rig
 
 

@@ -18,6 +18,7 @@ QUESTIONS = {
 """What has to be said, and how; face width and torque are proposed."""
 SPEED = "one speed in Hz, or the lowest and the highest with a comma between; also 1450rpm and 1450/60"
 ONE_OR_TWO = "one number, or the lowest and the highest with a comma between"
+SHIFTS = "one number, or two with a comma between, pinion first"
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _SPEED = re.compile(rf"({_NUMBER})(?:/({_NUMBER}))?\s*(hz|rpm)?", re.IGNORECASE | re.ASCII)
 
@@ -41,15 +42,20 @@ def refuse_missing(options: list[str]) -> None:
 
 
 def rig_of(
-    answers: Mapping[str, str], sensors: int = 2, pressure_angle_deg: float = 20.0
+    answers: Mapping[str, str],
+    sensors: int = 2,
+    pressure_angle_deg: float = 20.0,
+    *,
+    damage: str = "spalls",
+    severities: int = 3,
 ) -> tuple[Rig, dict[str, str]]:
     """Return the rig, and a sentence on each number that was proposed: how and from which source.
 
     Parameters
     ----------
     answers : mapping
-        Option of `siggen init`, without dashes -> what was written; `face-width`, `torque`, `bores` and `fs` may be
-        empty.
+        Option of `siggen init`, without dashes -> what was written; `face-width`, `torque`, `bores`, `fs` and
+        `shift` may be empty.
 
     Raises
     ------
@@ -71,7 +77,12 @@ def rig_of(
     rig = Rig(teeth, module_mm, width_mm, _speeds(answers["speed"]), (1.0, 1.0), sensors, pressure_angle_deg)
     bores, fs = answers.get("bores", ""), answers.get("fs", "")
     rig = replace(rig, bores_mm=_two("bores", bores) if bores else None, fs_hz=_one("fs", fs) if fs else None)
-    rig = checked_rig(rig)
+    shift = answers.get("shift", "")
+    shifts = _numbers("shift", shift, SHIFTS) if shift else []
+    if len(shifts) > 2:
+        raise _wrong("shift", shift, SHIFTS)
+    pinion, gear = (*shifts, 0.0, 0.0)[:2]
+    rig = checked_rig(replace(rig, shifts=(pinion, gear), damage=damage, severities=severities))
     torque = answers.get("torque", "")
     if not torque:
         rated = float(f"{rated_torque_nm(teeth, module_mm, width_mm, pressure_angle_deg):.3g}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from siggen.rig.rig import Pair, Rig
 from siggen.rig.rig_numbers import ASSUMED, RigNumbers, RotorNumbers, rig_numbers
@@ -15,6 +15,10 @@ BENCH_MODULE_MM, BENCH_FACE_MM = 3.0, 20.0
 SPREAD = (0.75, 1.33)
 """Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
 CLASSES_RULE = "the whole face carries at full load (ISO 6336-1: K_Hbeta up to 2)"
+NAMES = {1: ["severe"], 2: ["slight", "severe"], 3: ["slight", "moderate", "severe"]}
+"""Of so many sizes; of more, size_1, size_2 ..."""
+PIT_LAWS = {"semi_axis_face_mm": (0.3, 0.05, 0.2, 0.4), "semi_axis_profile_mm": (0.2, 0.05, 0.1, 0.3)}
+"""Mean, standard deviation and bounds at a module of 3 mm, as in the preset bench."""
 SECOND_STAGE_TEETH = range(17, 29)
 """Of a pinion on the gear's shaft: from the least without undercut at 20 degrees (assumed; a measured one had 21)."""
 
@@ -75,9 +79,13 @@ gears:
   module_mm: {_exact(rig.module_mm)}
   pressure_angle_deg: {_exact(rig.pressure_angle_deg)}
   face_width_mm: {_exact(rig.face_width_mm)}            # of both{_proposed(why, "face-width")}
-  pinion: {{teeth: {rig.teeth[0]}, bore_radius_mm: {bores[0]}}}     # {reason}
-  gear: {{teeth: {rig.teeth[1]}, bore_radius_mm: {bores[1]}}}
+  pinion: {{teeth: {rig.teeth[0]}, bore_radius_mm: {bores[0]}{_shift(rig.shifts[0])}}}     # {reason}
+  gear: {{teeth: {rig.teeth[1]}, bore_radius_mm: {bores[1]}{_shift(rig.shifts[1])}}}
 """
+
+
+def _shift(modules: float) -> str:
+    return f", profile_shift: {_exact(modules)}" if modules else ""
 
 
 def _manufacture(rig: Rig) -> str:
@@ -128,31 +136,70 @@ def _rotor(name: str, rotor: RotorNumbers) -> str:
 
 
 def _states(rig: Rig) -> str:
+    """Return healthy, healthy again, damage of growing size, and a sham of its middle size."""
+    first, size = {"spalls": _spall, "pits": _pits}[rig.damage](rig)
+    share = [k / (rig.severities - 1) for k in range(rig.severities)] if rig.severities > 1 else [1.0]
+    names = NAMES[rig.severities] if rig.severities in NAMES else [f"size_{k + 1}" for k in range(rig.severities)]
+    lines = [
+        f"states:                       # {rig.damage} on one tooth of the pinion; sizes grow with the module",
+        "  - name: healthy",
+        "  - name: healthy_again       # the same gearbox measured a second time: what a paired comparison starts from",
+        f"  - name: {names[0]}",
+        *(f"    {line}" for line in ("damage: &damage", *first, *(f"  {key}: {one}" for key, one in size(share[0])))),
+    ]
+    for name, part in zip(names[1:], share[1:], strict=True):
+        own = ", ".join(f"{key}: {one}" for key, one in size(part))
+        lines += [f"  - name: {name}", f"    damage: {{<<: *damage, {own}}}"]
+    own = ", ".join(f"{key}: {one}" for key, one in size(0.5))
+    lines += [
+        "  - name: sham                # its damage passes everywhere, with nothing removed: what finds it is a leak",
+        "    sham: true",
+        f"    damage: {{<<: *damage, {own}}}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _spall(rig: Rig) -> tuple[list[str], Callable[[float], list[tuple[str, str]]]]:
+    """Return a spall without its size, and the size at a share of the way from the smallest to the largest."""
     m = rig.module_mm
     skew = 0.15 * min(1.0, (m / rig.face_width_mm) / (BENCH_MODULE_MM / BENCH_FACE_MM))
-    skews = f"{{kind: uniform, low: {-skew:.3g}, high: {skew:.3g}}}"
-    radius = f"{{kind: uniform, low: {0.007 * m:.2g}, high: {min(0.07 * m, 0.2):.2g}}}"
-    return f"""\
-states:                       # on one tooth of the pinion; sizes grow with the module
-  - name: healthy
-  - name: healthy_again       # the same gearbox measured a second time: what a paired comparison starts from
-  - name: slight
-    damage: &spall
-      kind: irregular
-      gear: pinion
-      teeth: 1
-      profile_length_mm: {0.2 * m:.3g}
-      face_share: 0.25
-      edge_radius_mm: {radius}
-      skew_mm_per_10mm: {skews}
-  - name: moderate
-    damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
-  - name: severe
-    damage: {{<<: *spall, profile_length_mm: {0.5 * m:.3g}, face_share: 1.0}}
-  - name: sham                # its damage passes everywhere, with nothing removed: whatever finds it has found a leak
-    sham: true
-    damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
-"""
+    first = [
+        "  kind: irregular",
+        "  gear: pinion",
+        "  teeth: 1",
+        f"  edge_radius_mm: {{kind: uniform, low: {0.007 * m:.2g}, high: {min(0.07 * m, 0.2):.2g}}}",
+        f"  skew_mm_per_10mm: {{kind: uniform, low: {-skew:.3g}, high: {skew:.3g}}}",
+    ]
+    return first, lambda share: [
+        ("profile_length_mm", f"{_between(share, 0.2, 0.33, 0.5) * m:.3g}"),
+        ("face_share", f"{_between(share, 0.25, 0.6, 1.0):.3g}"),
+    ]
+
+
+def _pits(rig: Rig) -> tuple[list[str], Callable[[float], list[tuple[str, str]]]]:
+    """Return a cluster without its count, and the count; pits as of the preset bench, in proportion to the module."""
+    m = rig.module_mm / BENCH_MODULE_MM
+    first = [
+        "  kind: clustered",
+        "  gear: pinion",
+        "  teeth: 1",
+        "  centre_height_mm: pitch",
+        f"  spread_profile_mm: {0.3 * m:.3g}",
+        *(f"  {key}: {_normal(*(m * value for value in law))}" for key, law in PIT_LAWS.items()),
+        f"  depth_mm: {_range((0.1 * m, 0.4 * m))}",
+        "  floor: dish",
+    ]
+    wide = (rig.face_width_mm / BENCH_FACE_MM) / m  # so many pits cover the same share of the face
+    return first, lambda share: [("count", f"{12 * wide * 10.0**share:.0f}")]
+
+
+def _between(share: float, low: float, middle: float, high: float) -> float:
+    """Return a size at a share of the way, along two straight lines."""
+    return low + 2 * share * (middle - low) if share < 0.5 else middle + (2 * share - 1) * (high - middle)
+
+
+def _normal(mean: float, std: float, low: float, high: float) -> str:
+    return f"{{kind: normal, mean: {mean:.3g}, std: {std:.3g}, low: {low:.3g}, high: {high:.3g}}}"
 
 
 def _background(rig: Rig, numbers: RigNumbers) -> str:

@@ -1,4 +1,4 @@
-"""A trial of a configuration: a short record of every state of some gearboxes, and which share of them is lost.
+"""A trial of a configuration: a short record of every state of some gearboxes: what is lost, and what damage does.
 
 A record is lost where the motion leaves the model. It does so within the first turns: of three machines with 8
 gearboxes each, records of 8 and of 60 turns lost the same number in all 15 states, 0 to 5 of 8.
@@ -6,9 +6,11 @@ gearboxes each, records of 8 and of 60 turns lost the same number in all 15 stat
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, sqrt
+from statistics import median
 from typing import TYPE_CHECKING
 
 from siggen.columns.record import RecordFailure, non_finite
@@ -19,21 +21,45 @@ if TYPE_CHECKING:
     from siggen.columns.record import SimulatedRecord
     from siggen.config import Config
 
-GEARBOXES, RECORDS = 10, 50
-"""That are tried unless told otherwise: as many gearboxes as make so many records, at least two."""
+GEARBOXES, RECORDS = 10, 10
+"""That are tried unless told otherwise: as many gearboxes as make so many records, at least one."""
 TURNS = 8
 """Of the slower shaft that carries damage."""
+LONGER_S = 1.0
+"""By which a record is longer that tells what a second of signal costs."""
 NORMAL_95 = 1.96
+FOUND_LOSS, BESIDE_LOSS, FOUND_LENGTH_MM = 0.15, 0.03, 0.2
+"""Of the preset bench: what is found alone and what beside a healthy record (docs/understand/presets.md). Not through
+the face: 1 to 2 % of the mesh stiffness, AUC 0.50 to 0.53 alone and 0.68 to 0.90 beside; 4 %, 0.59 and 1.00; 20 %,
+0.99. Through the face: 0.1 mm along the profile, 0.61 and 1.00; 0.2 mm, 0.84."""
 
 
 @dataclass(frozen=True, slots=True)
 class StateTrial:
-    """What a trial found of one state: gearboxes tried, those that lost their record, and why the first one did."""
+    """What a trial found of one state.
+
+    Attributes
+    ----------
+    state : str
+    tried, lost : int
+        Gearboxes, and those that lost their record.
+    reason : str
+        Why the first one did.
+    stiffness_loss, area_share, profile_length_mm : float
+        Largest relative loss of mesh stiffness, damaged share of the flank, longest single damage: medians of
+        gearboxes.
+    through_face : bool
+        Whether damage takes the whole contact length, of any gearbox.
+    """
 
     state: str
     tried: int
     lost: int
     reason: str = ""
+    stiffness_loss: float = 0.0
+    area_share: float = 0.0
+    profile_length_mm: float = 0.0
+    through_face: bool = False
 
     @property
     def share(self) -> float:
@@ -48,16 +74,35 @@ class StateTrial:
         half = NORMAL_95 * sqrt(self.share * (1.0 - self.share) / n + 0.25 * z2 / n**2) / (1.0 + z2 / n)
         return max(middle - half, 0.0), min(middle + half, 1.0)
 
+    @property
+    def found(self) -> str:
+        """What is found at that size, in words; nothing of a state without pits or spalls."""
+        if self.area_share <= 0.0:
+            return ""
+        if self.through_face and self.profile_length_mm >= FOUND_LENGTH_MM:
+            return "yes"
+        if not self.through_face and self.stiffness_loss >= FOUND_LOSS:
+            return "yes"
+        if self.through_face or self.stiffness_loss >= BESIDE_LOSS:
+            return "beside a healthy record"
+        return "hardly"
+
+
+@dataclass(frozen=True, slots=True)
+class SetTrial:
+    """States in the order of the configuration, and what the whole set costs by proportion, CPU seconds."""
+
+    states: tuple[StateTrial, ...]
+    cpu_s: float
+
 
 def default_gearboxes(config: Config) -> int:
-    """Return how many gearboxes are tried: none where gears cannot tilt, which is what records are lost by."""
-    if config.dynamics.shafts is None:
-        return 0
-    return min(GEARBOXES, max(2, RECORDS // config.state_count), config.specimens)
+    """Return how many gearboxes are tried."""
+    return min(GEARBOXES, max(1, RECORDS // config.state_count), config.specimens)
 
 
-def trial(config: Config, gearboxes: int, progress: Callable[[int, int], None] | None = None) -> tuple[StateTrial, ...]:
-    """Return what short records of the first gearboxes of a set lose, by state.
+def trial(config: Config, gearboxes: int, progress: Callable[[int, int], None] | None = None) -> SetTrial:
+    """Return what short records of the first gearboxes of a set lose, what damage does, and what all records cost.
 
     Parameters
     ----------
@@ -70,13 +115,36 @@ def trial(config: Config, gearboxes: int, progress: Callable[[int, int], None] |
     short, tried = shortened(config), min(gearboxes, config.specimens)
     found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in config.state_names}
     total = tried * len(found)
+    contents.physics().simulate(short, _record_ids(short, 0)[:1])  # what is compiled here costs nothing later
+    spent_s = []
     for specimen in range(tried):
         if progress is not None:
             progress(specimen * len(found), total)
-        results = contents.physics().simulate(short, _record_ids(short, specimen))
+        begun_s = time.process_time()
+        results = list(contents.physics().simulate(short, _record_ids(short, specimen)))
+        spent_s.append(time.process_time() - begun_s)
         for name, result in zip(found, results, strict=False):  # a gearbox may fail before its last inspection
             found[name].append(result)
-    return tuple(_state_trial(name, results) for name, results in found.items() if results)
+    states = tuple(_state_trial(name, results) for name, results in found.items() if results)
+    return SetTrial(states, _set_cpu_s(config, short, median(spent_s)))
+
+
+def _set_cpu_s(config: Config, short: Config, gearbox_s: float) -> float:
+    """Return the CPU seconds of a whole set, where short records of all states of one gearbox took so long."""
+    longer = short.model_copy(update={"duration_s": short.duration_s + LONGER_S})
+    one = _record_ids(short, 0)[:1]
+    once_s, longer_s = _record_cpu_s(short, one), _record_cpu_s(longer, one)
+    signal_s = max(longer_s - once_s, 0.0) / LONGER_S
+    states, records = config.state_count, len(record_ids_of(config, 0))
+    record_s = max(gearbox_s - once_s, 0.0) / max(states - 1, 1)
+    more_s = records * (config.duration_s - short.duration_s) * signal_s
+    return config.specimens * (gearbox_s + (records - states) * record_s + more_s)
+
+
+def _record_cpu_s(config: Config, ids: Sequence[int]) -> float:
+    begun_s = time.process_time()
+    list(contents.physics().simulate(config, ids))
+    return time.process_time() - begun_s
 
 
 def shortened(config: Config) -> Config:
@@ -100,7 +168,18 @@ def _record_ids(config: Config, specimen: int) -> Sequence[int]:
 
 def _state_trial(name: str, results: Sequence[SimulatedRecord | RecordFailure]) -> StateTrial:
     reasons = [reason for result in results if (reason := _lost(result))]
-    return StateTrial(name, len(results), len(reasons), reasons[0] if reasons else "")
+    labels = [result.labels for result in results if not isinstance(result, RecordFailure)]
+
+    def middle(column: str) -> float:
+        return float(median([float(str(row.get(column, 0.0))) for row in labels] or [0.0]))
+
+    return StateTrial(
+        *(name, len(results), len(reasons), reasons[0] if reasons else ""),
+        stiffness_loss=middle("mesh_stiffness_loss"),
+        area_share=middle("damaged_area_share"),
+        profile_length_mm=middle("damage_profile_length_mm"),
+        through_face=any(bool(row.get("through_face", False)) for row in labels),
+    )
 
 
 def _lost(result: SimulatedRecord | RecordFailure) -> str:

@@ -127,6 +127,22 @@ def test_all_missing_options_are_said_at_once(tmp_path: Path) -> None:
     assert "--torque" not in made.stderr
 
 
+@pytest.mark.parametrize("damage", ["spalls", "pits"])
+@pytest.mark.parametrize("count", [1, 4])
+def test_any_number_of_sizes_of_pits_or_spalls_on_shifted_teeth(tmp_path: Path, damage: str, count: int) -> None:
+    file = tmp_path / "rig.yaml"
+    asked = ["--damage", damage, "--severities", str(count), "--shift", "0.3,-0.1"]
+    assert run(*RIGS["25/56"], *asked, "--out", str(file)).exit_code == 0
+    config = load_config(file)
+    assert (config.gears.pinion.profile_shift, config.gears.gear.profile_shift) == (0.3, -0.1)
+    sizes = [state for state in config.states if state.damaged]
+    assert [state.name for state in sizes] == (["severe"] if count == 1 else [f"size_{k}" for k in range(1, 5)])
+    assert [state.severity for state in sizes] == [state.name for state in sizes]
+    grown = [getattr(state.damages[0], {"spalls": "face_share", "pits": "count"}[damage]) for state in sizes]
+    assert grown == sorted(set(grown))
+    assert damage == "pits" or grown[-1] == 1.0
+
+
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
@@ -139,6 +155,10 @@ def test_all_missing_options_are_said_at_once(tmp_path: Path) -> None:
         (["--speed", "fast"], "--speed: received 'fast'; allowed: one speed in Hz"),
         (["--speed", "20/0"], "--speed: received '20/0'"),
         (["--sensors", "0"], "allowed: 1 to 8"),
+        (["--damage", "holes"], "--damage: received 'holes'; allowed: spalls or pits"),
+        (["--severities", "13"], "--severities: received 13; allowed: 1 to 12"),
+        (["--shift", "x"], "--shift: received 'x'; allowed: one number, or two"),
+        (["--shift", "3"], "--shift: received 3,0; allowed: -1 to 1.5 modules"),
         (["--extends", "nothing"], "allowed: a preset"),
     ],
 )

@@ -67,7 +67,7 @@ def test_words_beside_numbers_are_shown(schema):
 
 
 def test_damage_is_chosen_by_its_kind(schema):
-    damage = schema["$defs"]["State"]["properties"]["damage"]
+    damage = schema["$defs"]["StateSection"]["properties"]["damage"]
     found = [set(mapping) for mapping in _mappings(damage)]
     assert found
     assert all(kinds == set(BY_WORD) for kinds in found)

@@ -15,12 +15,12 @@ def test_a_trial_says_which_states_lose_records_and_why() -> None:
     with fake_physics(
         simulate_with_failures
     ):  # record 3 is gearbox 0 in slight, 8 and 10 gearbox 1 in slight, moderate
-        found = trial(fake_config(), 2, lambda done, total: told.append((done, total)))
+        found = trial(fake_config(), 2, lambda done, total: told.append((done, total))).states
     assert [(state.state, state.tried) for state in found] == [("healthy", 2), ("slight", 2), ("moderate", 2)]
     # gearboxes take the operating points in turn: gearbox 0 runs records 0, 2, 4, gearbox 1 runs 7, 9, 11
     assert [state.lost for state in found] == [0, 0, 0]
     with fake_physics(simulate_none):
-        found = trial(fake_config(), 99)
+        found = trial(fake_config(), 99).states
     assert [(state.lost, state.tried) for state in found] == [(5, 5)] * 3
     assert found[0].reason == "diverged (always)"
     assert told == [(0, 6), (3, 6)]
@@ -39,4 +39,22 @@ def test_records_of_a_trial_are_short_and_those_of_the_set() -> None:
     assert 8 <= short.duration_s * config.operating_points[0].speed_hz < 8.01
     assert planned_record(short, 3) == planned_record(config, 3)
     assert shortened(minimal(duration_s=0.1)).duration_s == 0.1
-    assert default_gearboxes(config) == 0
+    assert default_gearboxes(config) == 5  # of two states, ten records
+
+
+@pytest.mark.parametrize(
+    ("loss", "share", "length_mm", "through", "found"),
+    [  # area under the curve in bench, alone and beside a healthy record of the same gearbox:
+        (0.015, 0.021, 0.5, False, "hardly"),  # small pits, 0.53 and 0.68
+        (0.041, 0.07, 1.0, False, "beside a healthy record"),  # 40 % of the face, 0.59 and 1.00
+        (0.204, 0.14, 1.2, False, "yes"),  # 80 % of the face, 0.99
+        (1.0, 0.02, 0.13, True, "beside a healthy record"),  # whole face, 0.1 mm, 0.61 and 1.00
+        (1.0, 0.04, 0.25, True, "yes"),  # whole face, 0.2 mm, 0.84
+        (0.0, 0.0, 0.0, False, ""),  # no pits and no spall
+    ],
+)
+def test_what_is_found_follows_stiffness_and_length_as_in_bench(
+    loss: float, share: float, length_mm: float, through: bool, found: str
+) -> None:
+    tried = StateTrial("a", 3, 0, "", loss, share, length_mm, through)
+    assert tried.found == found
