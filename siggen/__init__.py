@@ -12,8 +12,11 @@ if TYPE_CHECKING:
     from siggen.checks.loading import load_config
     from siggen.dataset.reading import open
     from siggen.dataset.spreadsheet import write_csv
+    from siggen.gears.geometry.gear_pair import Gear, GearPair
+    from siggen.library.damage import BearingSpall, Chip, Crack, Damage, Pit, Spall, Wear, pits_in_layers, random_pits
     from siggen.library.gearbox import Gearbox, Point, State, draw
     from siggen.library.makers import single_stage
+    from siggen.library.pairs import Curve, flank_picture, mesh_stiffness
     from siggen.library.record import LineOrders, Record, Spectrum
     from siggen.library.running import Case, run, runs
     from siggen.planning.plan import plan
@@ -26,24 +29,38 @@ if TYPE_CHECKING:
     from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
 __all__ = [
+    "BearingSpall",
     "Case",
+    "Chip",
+    "Crack",
+    "Curve",
+    "Damage",
+    "Gear",
+    "GearPair",
     "Gearbox",
     "LineOrders",
+    "Pit",
     "Point",
     "Record",
+    "Spall",
     "Spectrum",
     "State",
+    "Wear",
     "draw",
     "extend",
+    "flank_picture",
     "generate",
     "generate_part",
     "load_config",
     "merge",
+    "mesh_stiffness",
     "mesh_stiffness_curves",
     "mesh_stiffness_meaning",
     "open",
+    "pits_in_layers",
     "plan",
     "publish",
+    "random_pits",
     "run",
     "runs",
     "simulate",
@@ -56,6 +73,21 @@ _NAMES = {
     "siggen.checks.loading": ("load_config",),
     "siggen.dataset.reading": ("open",),
     "siggen.dataset.spreadsheet": ("write_csv",),
+    "siggen.gears.geometry.gear_pair": (
+        "Gear",
+        "GearPair",
+    ),
+    "siggen.library.damage": (
+        "BearingSpall",
+        "Chip",
+        "Crack",
+        "Damage",
+        "Pit",
+        "Spall",
+        "Wear",
+        "pits_in_layers",
+        "random_pits",
+    ),
     "siggen.library.gearbox": (
         "Gearbox",
         "Point",
@@ -63,6 +95,11 @@ _NAMES = {
         "draw",
     ),
     "siggen.library.makers": ("single_stage",),
+    "siggen.library.pairs": (
+        "Curve",
+        "flank_picture",
+        "mesh_stiffness",
+    ),
     "siggen.library.record": (
         "LineOrders",
         "Record",

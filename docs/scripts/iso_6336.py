@@ -5,7 +5,7 @@ from math import cos, radians
 import numpy as np
 
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.helical import transverse_gear
+from siggen.gears.geometry.spur_gear import transverse_gear
 from siggen.gears.stiffness.compliance import axial_part
 from siggen.gears.stiffness.mesh_stiffness import pair_stiffness, rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions

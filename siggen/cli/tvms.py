@@ -36,6 +36,21 @@ class FurtherCurves:
     ] = False
 
 
+@dataclass(frozen=True, slots=True)
+class KeyStudy:
+    """A study of one key."""
+
+    vary: Annotated[
+        str,
+        typer.Option(
+            "--vary",
+            metavar="KEY=VALUES",
+            help="Curves of one state at values of a key, such as states.2.damage.first_height_mm=1,1.9,2.8, beside "
+            "the first state's. The state is that of the key, else the last; it grows from no other then.",
+        ),
+    ] = ""
+
+
 @grouped
 def tvms(
     config: Annotated[
@@ -46,6 +61,7 @@ def tvms(
     picture: PictureOptions,
     gearbox: GearboxChoice,
     further: FurtherCurves,
+    study: KeyStudy,
     torque_nm: Annotated[
         float | None,
         typer.Option(
@@ -63,11 +79,12 @@ def tvms(
     The curves begin one pitch before that angle. Where damage acts as geometry (dynamics.mesh.law: pairs)
     the stiffness is force over approach at rest, at a torque; then with sink and land of the damaged pair.
 
-    Example: siggen inspect tvms configs/paper_a.yaml --out tvms.csv --png tvms.png
+    Example: siggen inspect tvms paper_a --vary states.2.damage.first_height_mm=1,1.9,2.8 --png heights.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file
     from siggen.specimen.gears import model_notes
+    from siggen.views.key_variation import varied, varied_curves
     from siggen.views.stiffness_curves import (
         curve_table,
         static_torque_nm,
@@ -81,7 +98,14 @@ def tvms(
     with working("computing the mesh stiffness of every state"):
         usable = gearbox.of(load_config(config, overrides or ()))
         torque = static_torque_nm(usable, gearbox.specimen) if torque_nm is None else torque_nm
-        curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque)
+        if study.vary:
+            loaded = (
+                (label, gearbox.of(load_config(config, [*(overrides or ()), *changes])), state)
+                for label, changes, state in varied(study.vary, usable.state_names)
+            )
+            curves = varied_curves(loaded, gearbox.specimen, torque)
+        else:
+            curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque)
         meaning = stiffness_meaning(usable, torque)
     if out is not None:
         table = curve_table(curves, **asdict(further))

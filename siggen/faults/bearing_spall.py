@@ -11,7 +11,7 @@ import pyarrow as pa
 from pydantic import Field
 
 from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.bearings.bearing_spall import BearingSpall, in_bearings
+from siggen.dynamics.bearings.bearing_spall import RollingSpall, in_bearings
 from siggen.errors import Problem
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.fault import Fault, HitTeeth
@@ -103,9 +103,9 @@ class BearingSpalls(Fault):
     def _is_of(self, older: object) -> bool:
         return isinstance(older, BearingSpalls) and (older.bearing, older.element) == (self.bearing, self.element)
 
-    def _spall(self, bearing: BallBearing, turn: float) -> BearingSpall:
+    def _spall(self, bearing: BallBearing, turn: float) -> RollingSpall:
         """Return the drawn spall; those of what turns stand at a share of a turn."""
-        return BearingSpall(
+        return RollingSpall(
             place=self.bearing,
             element=self.element,
             length_m=MM * constant(self.length_mm),

@@ -13,7 +13,7 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import DAMAGED_GEAR, MM, MODULE, AnyGear
 from siggen.faults.growth import Growth
-from siggen.gears.damage.chip import Chip, corner_reach_pitches, keeps_contact, tooth_height_m
+from siggen.gears.damage.chip import WholeChip, corner_reach_pitches, keeps_contact, tooth_height_m
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.part_chip import PartChip, lost_outline
 from siggen.gears.geometry.gear_pair import GearPair
@@ -108,11 +108,11 @@ class ChippedTeeth(Fault):
         """Whether the same height may be lost over the whole face."""
         return _shares(self)[1] >= 1.0
 
-    def _on_tooth(self, pair: GearPair, tooth: int) -> Chip | PartChip:
+    def _on_tooth(self, pair: GearPair, tooth: int) -> WholeChip | PartChip:
         """Return the chip of drawn numbers on a tooth."""
         share, whole = _shares(self)[0], isinstance(self.height_mm, str)
         if self._may_take_the_face:
-            return Chip(self.gear, tooth, _heights_m(self)[0])
+            return WholeChip(self.gear, tooth, _heights_m(self)[0])
         gear, width_m = pair.member(self.gear), share * pair.face_width_m
         height_m = tooth_height_m(gear) if whole else _heights_m(self)[0]
         outline = lost_outline(gear, height_m, width_m)

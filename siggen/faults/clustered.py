@@ -26,7 +26,7 @@ from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, pit_place_pro
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.layouts import clustered_centres
 from siggen.gears.damage.part import Parts
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
@@ -65,7 +65,7 @@ class ClusteredPits(PitSize, Fault):
             remark = "a pit scattered to the end of the flank: "
             yield from pit_place_problems(pair, PitPlace(self.gear, height_m, middle_m, self, *keys, remark))
 
-    def _pits(self, growth: Growth, tooth: int) -> Iterator[Pit]:
+    def _pits(self, growth: Growth, tooth: int) -> Iterator[FlankPit]:
         present = sum(one.gear == self.gear and one.tooth == tooth for one in growth.before)
         for index, centre in enumerate(self._centres_m(growth, tooth, max(self.count - present, 0))):
             rng = growth.rng(f"{self.gear}.{tooth}.pit{index}")

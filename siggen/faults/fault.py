@@ -113,6 +113,15 @@ class Fault(Section):
         yield "teeth", getattr(self, "gear"), getattr(self, "teeth")  # noqa: B009 - keys of most kinds, not of all
 
     @property
+    def hit_gear(self) -> str:
+        """The gear that it is on, with the name of a further stage; empty for none."""
+        return str(getattr(self, "gear", ""))
+
+    def with_gears(self, name: Callable[[str], str]) -> Fault:
+        """Return the same on a gear of another name."""
+        return self.model_copy(update={"gear": name(self.hit_gear)}) if self.hit_gear else self
+
+    @property
     def word(self) -> str:
         """What a state with it is called by default."""
         return self.default_word(lambda key: getattr(self, key, None))

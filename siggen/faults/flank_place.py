@@ -34,6 +34,13 @@ AnyGear: TypeAlias = Annotated[
 ]
 """`either`: drawn per gearbox, the same for all of its states; before a dot the name of a further stage."""
 
+ListedGear: TypeAlias = Annotated[
+    str,
+    Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear)|sun|planet|ring)$"),
+    AllowedText("one of pinion, gear; of a further stage NAME.pinion, NAME.gear; of planetary sets sun, planet, ring",
+                ("pinion", "gear", "sun", "planet", "ring")),
+]  # fmt: skip
+
 DAMAGED_GEAR = (
     "damaged gear: pinion, gear, or either, drawn per gearbox; of a further stage slow.pinion; of a planetary set "
     "sun, ring, or planet, the first one"
@@ -72,6 +79,11 @@ PROBE_M = 1e-9
 
 GO_ON = {"contact": ", or dynamics.mesh.law: pairs"}
 """What else to do about a problem, by its name."""
+
+
+def mesh_of_gear(gear: str) -> str:
+    """Return the further stage in the name of a gear, or `ring`; empty for the first mesh and no gear."""
+    return gear if gear == "ring" else gear.rpartition(".")[0]
 
 
 def height_m_of(pair: GearPair, which: str, height_mm: float | str, reading: str) -> float:

@@ -49,7 +49,7 @@ from siggen.gears.damage.heights import flank_heights, initiation_height_m
 from siggen.gears.damage.irregular import STRIPS, WAVE_LIMIT, IrregularSpall, drawn_waves, grown_spall, stations_across
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.part import Parts
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.distributions import Uniform
@@ -134,7 +134,7 @@ class IrregularSpalls(Fault):
         along = read_m(gear, _heights_m(pair, self)[0], self.height_reading)
         half = 0.5 * MM * bounds(self.profile_length_mm)[1]
         heights = axial_m(gear, along - half, self.height_reading), axial_m(gear, along + half, self.height_reading)
-        return (Spall(self.gear, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
+        return (FlankSpall(self.gear, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
 
     @property
     def own_edge_radius(self) -> tuple[str, Number]:
@@ -284,7 +284,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
             )
             return
         heights = axial_m(gear, along - reach_m, reading), axial_m(gear, along + reach_m, reading)
-        spall = Spall(size.gear, 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
+        spall = FlankSpall(size.gear, 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
         for problem in single_problems(pair, (spall,)):
             if problem.name == "depth_m":
                 yield _depth_problem(size, in_mm(problem.received), allowed_text(problem.allowed))

@@ -27,7 +27,7 @@ from siggen.faults.growth import Growth
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
 from siggen.gears.damage.layouts import layered_centres
 from siggen.gears.damage.part import Parts
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import bounds
@@ -74,7 +74,7 @@ class LayeredPits(PitSize, Fault):
         height_m = heights_m(pair, self.gear, self.first_height_mm, self.height_reading)[0]
         return tuple(largest_pit(self.gear, 0, height_m, face_m, self) for face_m in self._row_faces_m(pair))
 
-    def _pits(self, growth: Growth, tooth: int) -> Iterator[Pit]:
+    def _pits(self, growth: Growth, tooth: int) -> Iterator[FlankPit]:
         for index, centre in enumerate(self._centres_m(growth, tooth)):
             rng = growth.rng(f"{self.gear}.{tooth}.pit{index}")
             yield drawn_pit(self, self.gear, growth.pair, tooth, centre, rng)

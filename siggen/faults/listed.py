@@ -16,17 +16,18 @@ from siggen.faults.flank_place import (
     MIDDLE_HEIGHT,
     MM,
     READING,
-    GearName,
     Height,
     HeightReading,
+    ListedGear,
     drawn_height_m,
     heights_m,
+    mesh_of_gear,
 )
 from siggen.faults.growth import Growth
 from siggen.faults.listed_irregular import ListedIrregular
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
 from siggen.gears.damage.part import Parts
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, Within, at, bounds
@@ -38,7 +39,7 @@ from siggen.keys.section import Whole
 class ListedPit(PitSize):
     """One pit at a given place."""
 
-    gear: GearName = Field(default="pinion", description="damaged gear")
+    gear: ListedGear = Field(default="pinion", description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(description=FACE_CENTRE)
@@ -59,6 +60,9 @@ class ListedPits(Fault):
     def _not_empty(self) -> ListedPits:
         if not (self.pits or self.outlines):
             raise refusal([Problem("pits", "no pits and no outlines", "allowed: at least 1 of either")])
+        if len({mesh_of_gear(gear) for gear in self._gears}) > 1:
+            allowed = "allowed: gears of one mesh; those of further meshes in a list of damages"
+            raise refusal([Problem("pits", ", ".join(self._gears), allowed)])
         return self
 
     @classmethod
@@ -70,6 +74,23 @@ class ListedPits(Fault):
     def own_words(self) -> tuple[str, ...]:
         """Whatever is listed may be called pitting, and with a spall spalling."""
         return self.words if self.outlines else ("pitting",)
+
+    @property
+    def hit_gear(self) -> str:
+        """The gear of the first entry: all are in one mesh."""
+        return self._gears[0]
+
+    @property
+    def _gears(self) -> tuple[str, ...]:
+        return (*(one.gear for one in self.pits), *(one.gear for one in self.outlines))
+
+    def with_gears(self, name: Callable[[str], str]) -> ListedPits:
+        """Return the same on gears of other names."""
+        lists = {
+            key: tuple(one.model_copy(update={"gear": name(one.gear)}) for one in getattr(self, key))
+            for key in ("pits", "outlines")
+        }
+        return self.model_copy(update=lists)
 
     def hit_teeth(self) -> HitTeeth:
         """Yield every listed tooth."""
@@ -123,7 +144,7 @@ class ListedPits(Fault):
             *(replace(one.spall(pair, self.height_reading), strip_depths_m=one.probe_depths_m) for one in outlined),
         )
 
-    def _pits(self, growth: Growth) -> Iterator[Pit]:
+    def _pits(self, growth: Growth) -> Iterator[FlankPit]:
         for index, pit in enumerate(self.pits):
             rng = growth.rng(f"list.pit{index}")
             height = drawn_height_m(pit.height_mm, self.height_reading, growth.pair, pit.gear, rng.random())

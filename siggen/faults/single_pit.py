@@ -23,7 +23,7 @@ from siggen.faults.flank_place import (
     height_m_of,
 )
 from siggen.gears.damage.heights import flank_heights
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import at, bounds
 from siggen.keys.section import Section
@@ -56,7 +56,7 @@ class PitPlace:
 
 def drawn_pit(
     size: PitSize, gear: str, pair: GearPair, tooth: int, centre_m: tuple[float, float], rng: np.random.Generator
-) -> Pit:
+) -> FlankPit:
     """Return a pit with its own sizes at a height and across the face [m].
 
     A centre that a random shift took off the flank is put on its edge.
@@ -65,7 +65,7 @@ def drawn_pit(
     semi_face, semi_profile, depth = (
         MM * at(n, rng.random()) for n in (size.semi_axis_face_mm, size.semi_axis_profile_mm, size.depth_mm)
     )
-    return Pit(
+    return FlankPit(
         gear=gear,
         tooth=tooth,
         height_m=min(max(centre_m[0], low), high),
@@ -93,11 +93,11 @@ def pit_place_problems(pair: GearPair, place: PitPlace) -> list[Problem]:
     return found_problems(pair, (deepest,), place.depth_key, place.remark)
 
 
-def _probe(place: PitPlace, height_m: float, face_m: float) -> Pit:
-    return Pit(place.gear, 0, height_m, face_m, PROBE_M, PROBE_M, PROBE_M, place.size.floor)
+def _probe(place: PitPlace, height_m: float, face_m: float) -> FlankPit:
+    return FlankPit(place.gear, 0, height_m, face_m, PROBE_M, PROBE_M, PROBE_M, place.size.floor)
 
 
-def largest_pit(gear: str, tooth: int, height_m: float, face_m: float, size: PitSize) -> Pit:
+def largest_pit(gear: str, tooth: int, height_m: float, face_m: float, size: PitSize) -> FlankPit:
     """Return a pit with its sizes at their upper bounds, without depth to speak of."""
     across_m, along_m = bounds(size.semi_axis_face_mm)[1] / 1e3, bounds(size.semi_axis_profile_mm)[1] / 1e3
-    return Pit(gear, tooth, height_m, face_m, across_m, along_m, PROBE_M, size.floor)
+    return FlankPit(gear, tooth, height_m, face_m, across_m, along_m, PROBE_M, size.floor)

@@ -31,7 +31,7 @@ from siggen.faults.flank_place import (
 )
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.outlines import Outline, rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds, constant
@@ -63,7 +63,7 @@ SPALL_KEYS = {
 """Key of the configuration that a problem of a spall is about."""
 
 
-def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> Spall:
+def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> FlankSpall:
     """Return a drawn spall on one tooth.
 
     Parameters
@@ -80,7 +80,7 @@ def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) ->
     TypeError
         If a number is still a distribution.
     """
-    return Spall(size.gear, tooth, _outline(pair, size, reading), MM * constant(size.depth_mm), size.floor)
+    return FlankSpall(size.gear, tooth, _outline(pair, size, reading), MM * constant(size.depth_mm), size.floor)
 
 
 def _outline(pair: GearPair, size: SpallSize, reading: str) -> Outline:
@@ -105,7 +105,7 @@ def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = 
                 yield Problem(prefix + key, in_mm(problem.received), allowed_text(problem.allowed))
 
 
-def largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> Spall:
+def largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> FlankSpall:
     """Return a spall with all its sizes at their upper and its place at its lower bounds, without depth to speak of."""
     largest = size.model_copy(update={key: bounds(getattr(size, key))[1] for key in SIZE_KEYS})
     spall = spall_on_tooth(pair, next(corners(largest)), reading, tooth)

@@ -13,7 +13,7 @@ from siggen.faults.flank_place import READING, HeightReading, size_that_adds_not
 from siggen.faults.growth import Growth
 from siggen.faults.single_spall import SIZE_KEYS, SpallSize, largest_spall, spall_on_tooth, spall_problems
 from siggen.gears.damage.part import Parts
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
@@ -58,7 +58,7 @@ class Spalls(SpallSize, Fault):
         """Return whether it is a rectangle, and whether it may go through the face."""
         return self.parallel(face_width_mm)
 
-    def _on_tooth(self, growth: Growth, tooth: int, index: int) -> Spall:
+    def _on_tooth(self, growth: Growth, tooth: int, index: int) -> FlankSpall:
         uniform, name = growth.place(self.gear, Spalls), f"spall.{self.gear}.{tooth}"
         stage = at(stage_of(self.stages, index), uniform(f"{name}.stages"))
         return spall_on_tooth(growth.pair, draw(self, uniform, name)._at_stage(stage), self.height_reading, tooth)

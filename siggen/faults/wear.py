@@ -14,7 +14,7 @@ from siggen.faults.flank_place import MODULE
 from siggen.faults.growth import Growth
 from siggen.gears.contact.table_options import reference_force_n
 from siggen.gears.damage.part import Parts
-from siggen.gears.damage.wear import LABEL_POINTS, Wear, worn_until
+from siggen.gears.damage.wear import LABEL_POINTS, WornFlanks, worn_until
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.column import MICROMETRE, Column, list_of
 from siggen.keys.drawing import draw
@@ -72,7 +72,7 @@ class FlankWear(Fault):
             COEFFICIENT_M2_PER_N,
             depth_m=1e-6 * constant(own.depth_um),
         )
-        return Wear("pinion", tuple(worn.pinion_m.tolist())), Wear("gear", tuple(worn.gear_m.tolist()))
+        return WornFlanks("pinion", tuple(worn.pinion_m.tolist())), WornFlanks("gear", tuple(worn.gear_m.tolist()))
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield wear that may go deeper than a share of the module."""

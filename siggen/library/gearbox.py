@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
+from siggen.checks.loading import load_config
 from siggen.config import Config, Pair
-from siggen.library.arguments import one_of, refused
+from siggen.config.planetary import RING
+from siggen.config.states import SEVERITIES
+from siggen.errors import UsageError
+from siggen.library.arguments import one_of, refused, saying
+from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
+from siggen.library.shape_fault import ShapeFault
+from siggen.planning.gear_pair import gear_pair
 from siggen.planning.gearbox import inspection_count
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.labels import gearbox_labels
+from siggen.specimen.planetary_numbers import planets_in_ring
 
 __all__ = ["Gearbox", "Point", "State", "draw"]
+
+UNSTATED = "moderate"
+"""Severity of states whose name is none; a record of them has no such label."""
 
 
 @dataclass(frozen=True)
@@ -23,9 +35,16 @@ class State:
     ----------
     name : str
         Lower-case letters, digits, - and _, beginning with a letter.
+    damages : tuple of Damage
+        What of gears and bearings is damaged. Of a state that `draw` returned it is left to the set, and empty here.
+    sham : bool
+        Whether its damage passes everywhere with nothing removed: what tells such a record from a healthy one is a
+        leak, not physics.
     """
 
     name: str
+    damages: tuple[Damage, ...] = ()
+    sham: bool = False
 
 
 @dataclass(frozen=True)
@@ -57,6 +76,7 @@ class Gearbox:
     states: tuple[State, ...]
     points: tuple[Point, ...]
     _config: Config
+    _added: tuple[State, ...] = ()
 
     def __repr__(self) -> str:
         """One line."""
@@ -92,6 +112,105 @@ class Gearbox:
         """
         one_of("state", name, tuple(state.name for state in self.states))
         return next(state for state in self.states if state.name == name)
+
+    @property
+    def gears(self) -> tuple[str, ...]:
+        """Names of its gears, for damages."""
+        return tuple(self._seats)
+
+    def with_(self, *more: State) -> Gearbox:
+        """Return this gearbox with further states.
+
+        Raises
+        ------
+        UsageError
+            If a state or its damage cannot be: names it, what came and what is allowed.
+        """
+        found = self
+        for one in more:
+            if not isinstance(one, State):
+                raise refused("more", repr(one), "objects of State")
+            found = found._with_state(one)
+        return found
+
+    def _with_state(self, state: State) -> Gearbox:
+        if state.name in {one.name for one in self.states}:
+            raise refused("State.name", repr(state.name), "a name that this gearbox has not yet")
+        if self._config.life is not None:
+            raise refused("more", repr(state), "no states for a gearbox that lives and fails by its set")
+        entry = self._entry(state)
+        canonical, number = self._config.canonical(), len(self._config.states)
+        key = f"states.{number}"
+        with saying(
+            {f"{key}.damage": f"damages of {state.name}", f"{key}.name": "State.name", key: f"state {state.name}"}
+        ):
+            config = load_config({**canonical, "states": [*canonical["states"], entry]})
+        made = replace(self, states=(*self.states, state), _config=config, _added=(*self._added, state))
+        for section in made._shapes(state):
+            for problem in section.place_problems(self._seat(section.damage).pair):
+                raise UsageError(f"{type(section.damage).__name__}.{problem}")
+        return made
+
+    def _entry(self, state: State) -> dict[str, Any]:
+        """Return a state as a file writes it, without damage of the user's own kinds."""
+        damage = entries(state.damages, self._seat)
+        entry: dict[str, Any] = {"name": state.name}
+        if damage:
+            entry |= {"damage": damage, "sham": state.sham}
+        if damage and not state.sham:
+            entry["grows_from"] = "none"
+            entry |= {} if state.name in SEVERITIES else {"severity": UNSTATED}
+        return entry
+
+    def _shapes(self, state: State) -> tuple[ShapeFault, ...]:
+        own = enumerate(one for one in state.damages if one.is_shape)
+        return tuple(ShapeFault(gear=self._seat(one).short or one.on, number=i, damage=one) for i, one in own)
+
+    def _with_shapes(self, config: Config) -> Config:
+        """Return a configuration of this gearbox with the damages of the user's own kinds in its states."""
+        states = list(config.states)
+        for state in self._added:
+            if shapes := self._shapes(state):
+                place = [one.name for one in states].index(state.name)
+                states[place] = states[place].model_copy(update={
+                    "damage": (*states[place].damages, *shapes), "sham": state.sham, "grows_from": "none",
+                    **({} if state.sham else {"fault": shapes[0].word, "severity": UNSTATED}),
+                })  # fmt: skip
+        return config.model_copy(update={"states": tuple(states)})
+
+    def _seat(self, damage: Damage) -> DamagedPlace:
+        if isinstance(damage, Wear):
+            return next(iter(self._seats.values()))
+        if isinstance(damage, BearingSpall):
+            word = self._bearings[one_of("on", damage.on, tuple(self._bearings))]
+            return next(iter(self._seats.values()))._replace(word=word)
+        return self._seats[one_of("on", damage.on, tuple(self._seats))]
+
+    @cached_property
+    def _seats(self) -> dict[str, DamagedPlace]:
+        """Name of every gear -> where it is."""
+        specimen, names = self._specimen, self._config.names
+        if specimen.planetary is not None:
+            outer, inner = planets_in_ring(specimen)
+            seats = (("sun", outer, "pinion"), ("planet", outer, "gear"), (RING, inner, "gear"))
+            return {name: DamagedPlace(one, which, name) for name, one, which in seats}
+        found = {}
+        for mesh, pair in zip(("", *(f"{one.name}." for one in specimen.stages)), self._pairs, strict=True):
+            for which in ("pinion", "gear"):
+                found[names.gear(mesh + which)] = DamagedPlace(
+                    gear_pair(pair), which, names.gear(mesh + which), mesh + which
+                )
+        return found
+
+    @property
+    def _bearings(self) -> dict[str, str]:
+        """Bearing of each of the first two shafts -> its word in a file."""
+        if self._specimen.planetary is not None:
+            return {}
+        shafts = self._config.names.shafts[:2]
+        if not shafts:
+            return {"input.bearing": "pinion_bearing", "output.bearing": "gear_bearing"}
+        return {f"{own}.bearing": f"{own}_bearing" for _, own in shafts}
 
     @cached_property
     def _specimen(self) -> Specimen:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from siggen.checks.face_accuracy import covering_classes
 from siggen.checks.loading import load_config
@@ -15,7 +15,9 @@ from siggen.rig.rating import bearable_torque_nm, proposed_face_width_mm, rated_
 from siggen.rig.rig import Rig, checked_rig
 from siggen.rig.rig_text import rig_text
 
-__all__ = ["single_stage"]
+__all__ = ["counts", "made", "single_stage"]
+
+Counts = TypeVar("Counts", tuple[int, int], tuple[int, int, int])
 
 KEYS = {
     "--teeth": "teeth", "--module": "module_mm", "--face-width": "face_width_mm", "--speed": "rated_hz",
@@ -66,7 +68,7 @@ def single_stage(
     UsageError
         If an argument cannot be, or the teeth cannot mesh: names it, what came and what is allowed.
     """
-    pair = _two_counts("teeth", teeth)
+    pair = counts("teeth", teeth, (23, 61))
     module = finite("module_mm", module_mm, "a number above 0", 1e-9)
     width = proposed_face_width_mm(module) if face_width_mm is None else face_width_mm
     width = finite("face_width_mm", width, "a number above 0", 1e-9)
@@ -82,15 +84,22 @@ def single_stage(
         rig = Rig(pair, module, width, (speed, speed), (torque, torque), pressure_angle_deg=angle)
         rig = replace(rig, accuracy_classes=covering_classes(checked_rig(rig)))
         raw = inherited(parse_yaml(rig_text(rig, "single_stage", "bench"), "single_stage"))
-        return _made({**raw, "states": [{"name": "healthy"}]}, number)
+        return made({**raw, "states": [{"name": "healthy"}]}, number)
 
 
-def _made(raw: dict[str, Any], number: int) -> Gearbox:
+def made(raw: Mapping[str, Any], number: int) -> Gearbox:
     """Return a gearbox without points of its own."""
     return replace(draw(load_config(raw), number), points=())
 
 
-def _two_counts(argument: str, values: object) -> tuple[int, int]:
-    if isinstance(values, Sequence) and len(values) == 2 and all(type(value) is int for value in values):
-        return values[0], values[1]
-    raise refused(argument, repr(values), "two whole numbers, such as (23, 61)")
+def counts(argument: str, values: object, example: Counts) -> Counts:
+    """Return whole numbers, as many as in an example.
+
+    Raises
+    ------
+    UsageError
+        If these are none.
+    """
+    if isinstance(values, Sequence) and len(values) == len(example) and all(type(value) is int for value in values):
+        return tuple(values)
+    raise refused(argument, repr(values), f"{len(example)} whole numbers, such as {example}")

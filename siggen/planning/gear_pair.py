@@ -6,7 +6,7 @@ import math
 
 from siggen.config import Pair, Wheel
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.helical import transverse_gear
+from siggen.gears.geometry.spur_gear import transverse_gear
 from siggen.keys.number import constant
 
 

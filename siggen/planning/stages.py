@@ -17,6 +17,7 @@ from siggen.config.planetary import RING, in_pair
 from siggen.config.short_form import mesh_alone
 from siggen.config.stages import turned
 from siggen.faults.fault import Fault
+from siggen.faults.flank_place import mesh_of_gear
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, bounds
 from siggen.planning.specimen import OperatingPoint, Specimen
@@ -121,8 +122,7 @@ def stage_point(point: OperatingPoint, turning: float) -> OperatingPoint:
 
 def stage_of(damage: Fault) -> str:
     """Return the name of the further stage that a damage is on, or `ring`; empty for the first mesh and no gear."""
-    gear = str(getattr(damage, "gear", ""))
-    return RING if gear == RING else gear.rpartition(DOT)[0]
+    return mesh_of_gear(damage.hit_gear)
 
 
 def _machine(config: Config, number: int) -> Machine | None:
@@ -148,9 +148,7 @@ def _own(state: StateSection, name: str) -> tuple[Fault, ...] | Fault | None:
 
 
 def _alone(damage: Fault) -> Fault:
-    gear = getattr(damage, "gear", None)
-    own = None if gear is None else in_pair(gear.rpartition(DOT)[2])
-    return damage if own == gear else damage.model_copy(update={"gear": own})
+    return damage.with_gears(lambda gear: in_pair(gear.rpartition(DOT)[2]))
 
 
 def _seed(seed: int, name: str) -> int:

@@ -13,7 +13,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
-from siggen.dynamics.bearings.bearing_spall import BearingSpall, in_bearings
+from siggen.dynamics.bearings.bearing_spall import RollingSpall, in_bearings
 from siggen.dynamics.bearings.cage_course import CageCourse, cage_course
 from siggen.dynamics.bearings.spalled_bearing import SpalledBearing, mean_zone
 from siggen.dynamics.drive.drive import Rotation
@@ -101,11 +101,11 @@ def _transmitted(specimen: Specimen, structure: Structure, shaft: str) -> FloatA
 
 def drawn_labels(config: Config, record: PlannedRecord, part: Part) -> dict[str, object]:
     """Return what a row of the table of damage tells of a part in this record alone: the slip of a spalled bearing."""
-    return {"slip_share": _slip_and_walk(config, record, part)[0]} if isinstance(part, BearingSpall) else {}
+    return {"slip_share": _slip_and_walk(config, record, part)[0]} if isinstance(part, RollingSpall) else {}
 
 
 def _slip_and_walk(
-    config: Config, record: PlannedRecord, spall: BearingSpall
+    config: Config, record: PlannedRecord, spall: RollingSpall
 ) -> tuple[float, float, np.random.Generator]:
     """Return slip and walk of a bearing's cage in a record, and the generator of its steps."""
     owner = record.specimen_id, record.state_id, record.operating_point_id, record.repeat
@@ -114,7 +114,7 @@ def _slip_and_walk(
     return slip, walk, rng
 
 
-def _cage(config: Config, record: PlannedRecord, rotation: Rotation, spall: BearingSpall, order: float) -> CageCourse:
+def _cage(config: Config, record: PlannedRecord, rotation: Rotation, spall: RollingSpall, order: float) -> CageCourse:
     slip, walk, rng = _slip_and_walk(config, record, spall)
     ends = rotation.angle_rad(np.array([-TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S]))
     return cage_course(spall.bearing, rng, slip, walk, (order * float(ends[0]), order * float(ends[1])))

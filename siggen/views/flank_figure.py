@@ -42,7 +42,7 @@ def flank_figure(views: Sequence[FlankView]) -> Figure:
         Normalize(0.0, max((depth for view in shown for depth in view.depths_mm), default=0.0) or 1.0), "YlOrRd"
     )
     for axis, view in zip(axes, shown, strict=False):
-        _draw(axis, view, colours)
+        draw_flank(axis, view, colours)
     for axis in axes[len(shown) :]:
         axis.set_axis_off()
     figure.colorbar(colours, ax=list(axes), label="depth [mm]", shrink=0.8, aspect=30)
@@ -51,7 +51,8 @@ def flank_figure(views: Sequence[FlankView]) -> Figure:
     return figure
 
 
-def _draw(axis: Axes, view: FlankView, colours: ScalarMappable) -> None:
+def draw_flank(axis: Axes, view: FlankView, colours: ScalarMappable) -> None:
+    """Draw one flank on axes."""
     import numpy as np
     from matplotlib.patches import Polygon, Rectangle
 

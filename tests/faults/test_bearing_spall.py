@@ -13,7 +13,7 @@ from scipy.signal import hilbert
 import siggen.faults.bearing_spall as bearing_spall
 from siggen.checks.physical_problems import physical_problems
 from siggen.config import Config, parse
-from siggen.dynamics.bearings.bearing_spall import BearingSpall
+from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -192,8 +192,8 @@ def test_a_grown_spall_takes_the_place_of_the_milder_one() -> None:
     slight, severe, both = (specimen_state(made, draw_specimen(made, 0), n).parts for n in (1, 2, 3))
     assert [len(parts) for parts in (slight, severe, both)] == [1, 1, 2]
     (before,), (after,) = slight, severe
-    assert isinstance(before, BearingSpall)
-    assert isinstance(after, BearingSpall)
+    assert isinstance(before, RollingSpall)
+    assert isinstance(after, RollingSpall)
     assert after.length_m > before.length_m
     assert after.place_rad == before.place_rad
     assert after.hides(before)

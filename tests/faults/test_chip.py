@@ -11,7 +11,7 @@ from siggen.checks.quantity_names import available_quantities
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.gears.damage.chip import Chip
+from siggen.gears.damage.chip import WholeChip
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.simulation import simulate
@@ -101,7 +101,7 @@ def test_what_cannot_be_is_refused_by_name(change: dict[str, Any], said: str) ->
 @pytest.mark.parametrize("share", [None, 1.0])
 def test_a_chip_over_all_of_the_face_is_the_one_without_a_share(share: float | None) -> None:
     config = config_with({**CHIP, "teeth": [4], "face_share": share})
-    assert damage_of(config, 1) == (Chip("pinion", 4, 1.5e-3),)
+    assert damage_of(config, 1) == (WholeChip("pinion", 4, 1.5e-3),)
 
 
 def test_rows_tell_how_much_of_the_face_is_lost_and_more_takes_the_place_of_less() -> None:

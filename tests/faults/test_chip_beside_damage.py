@@ -6,12 +6,12 @@ from typing import Any
 
 import pytest
 
-from siggen.gears.damage.chip import Chip
+from siggen.gears.damage.chip import WholeChip
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.outlines import Polygon
 from siggen.gears.damage.part_chip import PartChip, lost_outline
-from siggen.gears.damage.pit import Pit
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.pit import FlankPit
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.gears import gear_pair
@@ -44,7 +44,7 @@ FOUR = (ON_LOST, BELOW, ACROSS, OVER_THE_TIP)
 
 def left_of(*damages: dict[str, Any]) -> list[tuple[float, float]]:
     """Return the pits that the last state has, below the tip and across the face [mm]."""
-    found = [one for one in damage_of(config_with(*damages), len(damages)) if isinstance(one, Pit)]
+    found = [one for one in damage_of(config_with(*damages), len(damages)) if isinstance(one, FlankPit)]
     return [(round(tip_mm() - 1e3 * one.height_m, 6), round(1e3 * one.face_m, 6)) for one in found]
 
 
@@ -68,16 +68,16 @@ def test_no_pits_come_up_on_metal_that_is_gone(share: float | None) -> None:
 
 def test_more_of_a_chip_takes_the_place_of_less_and_less_height_over_more_of_the_face_comes_beside_it() -> None:
     part = {**CHIP, "face_share": 0.4}
-    assert damage_of(config_with(part, CHIP), 2) == (Chip("pinion", 3, 1.5e-3),)
+    assert damage_of(config_with(part, CHIP), 2) == (WholeChip("pinion", 3, 1.5e-3),)
     assert len(damage_of(config_with(part, {**CHIP, "height_mm": 1.0}), 2)) == 2
 
 
 def test_labels_count_what_stands_of_a_pit_that_a_chip_cuts() -> None:
     """Chip and pit unite: their area is the chip's and that of the half ellipse below its line, clipped by nothing."""
     height_m = 1.5e-3
-    lost = Chip("pinion", 3, height_m)
+    lost = WholeChip("pinion", 3, height_m)
     line_m = lost.outlined(PAIR)[0].outline.height_range_m[0]  # type: ignore[union-attr]
-    pit = Pit("pinion", 3, line_m, 0.4 * WIDTH, 1e-3, 0.05e-3, 0.2e-3)
+    pit = FlankPit("pinion", 3, line_m, 0.4 * WIDTH, 1e-3, 0.05e-3, 0.2e-3)
     (alone, cut), whole = (
         [damage_summary(PAIR, with_outlines(parts, PAIR)).union_area_m2 for parts in ((lost,), (lost, pit))],
         damage_summary(PAIR, (pit,)).union_area_m2,
@@ -99,6 +99,6 @@ def test_of_what_a_part_chip_cuts_only_the_rest_acts() -> None:
     assert lost.hides(_box(line_m + 1e-6, TIP_M))
 
 
-def _box(low_m: float, high_m: float) -> Spall:
+def _box(low_m: float, high_m: float) -> FlankSpall:
     corners = ((low_m, 2e-3), (low_m, 6e-3), (high_m, 6e-3), (high_m, 2e-3))
-    return Spall("pinion", 3, Polygon(corners, "rectangle"), 0.2e-3)
+    return FlankSpall("pinion", 3, Polygon(corners, "rectangle"), 0.2e-3)

@@ -10,7 +10,7 @@ import pytest
 from diagnostics.indicators.record import record_values
 from siggen.columns.record import SimulatedRecord
 from siggen.errors import ConfigError
-from siggen.gears.damage.wear import LABEL_POINTS, Wear
+from siggen.gears.damage.wear import LABEL_POINTS, WornFlanks
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
@@ -81,7 +81,7 @@ def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -
     config = config_with(WEAR)
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, 0)
-    layer = Wear("pinion", (5e-6,) * 9)
+    layer = WornFlanks("pinion", (5e-6,) * 9)
     teeth = state_teeth(config, specimen, 0, MadeGears(config, specimen)).tables
     worn = static_mesh(specimen.dynamics, state.pair, teeth, TABLE_POINTS, (layer,))
     force_n = worn.force_n(60.0)
@@ -133,4 +133,4 @@ def test_wear_needs_flanks_with_a_shape_and_a_state_more_wear_than_its_milder_on
         config_with(WEAR, law="linear")
     with pytest.raises(ConfigError, match=r"states\.2\.damage\.depth_um"):
         config_with(WEAR, {**WEAR, "depth_um": 15.0})
-    assert all(isinstance(one, Wear) for one in damage_of(config_with(WEAR), 1))
+    assert all(isinstance(one, WornFlanks) for one in damage_of(config_with(WEAR), 1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import radians
 
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 
 
@@ -26,7 +26,7 @@ def bare(pair):
 
 
 def pit(height_mm=1.9, face_mm=10.0, a_mm=0.3, b_mm=0.2, depth_mm=0.4, floor="flat", gear="pinion", tooth=0):
-    return Pit(gear, tooth, height_mm * 1e-3, face_mm * 1e-3, a_mm * 1e-3, b_mm * 1e-3, depth_mm * 1e-3, floor)
+    return FlankPit(gear, tooth, height_mm * 1e-3, face_mm * 1e-3, a_mm * 1e-3, b_mm * 1e-3, depth_mm * 1e-3, floor)
 
 
 def layers(count, per_layer, step_face_mm=1.0, step_height_mm=0.4, height_mm=1.9, stagger_mm=0.0, **sizes):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.geometry.gear_pair import GearPair
 
 
@@ -21,4 +21,4 @@ def chord_pit(pair, length_m, position_m, depth_m=1e-3, which="pinion", semi_fac
     centre = arc_of(pair, which, position_m)
     ends = [float(gear.height_m(sqrt(2.0 * (centre + sign * 0.5 * length_m) / gear.base_radius_m))) for sign in (-1, 1)]
     middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])
-    return Pit(which, 0, middle, 0.5 * pair.face_width_m, semi_face_m, half, depth_m, floor)
+    return FlankPit(which, 0, middle, 0.5 * pair.face_width_m, semi_face_m, half, depth_m, floor)

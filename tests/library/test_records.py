@@ -129,7 +129,7 @@ def test_what_is_shown_of_them_is_one_line_and_nothing_can_be_changed(
 
 BAD_DRAWINGS = [
     ({"teeth": (5, 6)}, r"teeth=\(5, 6\), pinion: received interference.*allowed: contact above the base circle"),
-    ({"teeth": 23}, r"teeth: received 23; allowed: two whole numbers"),
+    ({"teeth": 23}, r"teeth: received 23; allowed: 2 whole numbers"),
     ({"teeth": (3, 61)}, "teeth: received 3,61; allowed: 5 to 1000"),
     ({"module_mm": "2"}, "module_mm: received '2'; allowed: a number above 0"),
     ({"module_mm": 100}, "module_mm: received 100; allowed: 0.3 to 50 mm"),

@@ -10,7 +10,7 @@ import pytest
 from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.external_forces import turning_sense
 from siggen.dynamics.structure.structure import Structure
-from siggen.gears.damage.chip import Chip, tooth_height_m
+from siggen.gears.damage.chip import WholeChip, tooth_height_m
 from siggen.gears.damage.lost_mass import STEEL_KG_M3, lost_moment_kg_m
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.part_chip import PartChip, lost_outline
@@ -34,7 +34,7 @@ def test_a_sliver_of_the_tip_is_a_rectangle_at_the_tip_radius() -> None:
     sliver, land = 1e-6, 2.0 * PAIR.pinion.tip_half_thickness_m
     rectangle = STEEL_KG_M3 * WIDTH * land * sliver * (TIP - 0.5 * sliver)
     # 1 µm down a tooth is wider by 2 tan 30° µm at most: half of that over a land of 2.5 mm is 5e-4.
-    assert lost_moment_kg_m(PAIR.pinion, Chip("pinion", 0, sliver), WIDTH) == pytest.approx(rectangle, rel=5e-4)
+    assert lost_moment_kg_m(PAIR.pinion, WholeChip("pinion", 0, sliver), WIDTH) == pytest.approx(rectangle, rel=5e-4)
 
 
 def test_the_moment_is_a_sum_over_cells_inside_of_the_flanks_of_the_textbook() -> None:
@@ -53,14 +53,14 @@ def test_the_moment_is_a_sum_over_cells_inside_of_the_flanks_of_the_textbook() -
 
 
 def test_shares_of_the_face_add_up_and_a_whole_tooth_weighs_about_three_square_modules() -> None:
-    whole = lost_moment_kg_m(PAIR.pinion, Chip("pinion", 0, 2e-3), WIDTH)
+    whole = lost_moment_kg_m(PAIR.pinion, WholeChip("pinion", 0, 2e-3), WIDTH)
     parts = [lost_moment_kg_m(PAIR.pinion, part_chip(2e-3, share * WIDTH), WIDTH) for share in (0.3, 0.7)]
     assert sum(parts) == pytest.approx(whole, rel=1e-12)
-    gone = lost_moment_kg_m(PAIR.pinion, Chip("pinion", 0, inf), WIDTH)
+    gone = lost_moment_kg_m(PAIR.pinion, WholeChip("pinion", 0, inf), WIDTH)
     area = gone / (STEEL_KG_M3 * WIDTH * PITCH)
     # 2.25 modules high, half a pitch thick in the middle: 3.5 square modules, and the fillets' feet.
     assert area == pytest.approx(2.25 * pi / 2.0 * PAIR.pinion.module_m**2, rel=0.1)
-    assert gone == lost_moment_kg_m(PAIR.pinion, Chip("pinion", 0, tooth_height_m(PAIR.pinion)), WIDTH)
+    assert gone == lost_moment_kg_m(PAIR.pinion, WholeChip("pinion", 0, tooth_height_m(PAIR.pinion)), WIDTH)
 
 
 def machine() -> tuple[Structure, GearPair]:
@@ -78,7 +78,7 @@ def forces_n(parts: Parts, angle_rad: float) -> dict[str, np.ndarray]:
 
 
 def test_a_missing_tooth_pulls_with_m_r_omega_squared_and_its_opposite_cancels_it() -> None:
-    one, other = Chip("pinion", 0, inf), Chip("pinion", 9, inf)
+    one, other = WholeChip("pinion", 0, inf), WholeChip("pinion", 9, inf)
     force = forces_n((one,), 0.4)["pinion"]
     pair = machine()[1]
     expected = lost_moment_kg_m(pair.pinion, one, pair.face_width_m) * (60.0 * pi) ** 2
@@ -93,7 +93,7 @@ def test_missing_teeth_push_away_from_each_other_when_they_would_meet_at_the_pit
     alpha, number = radians(20.0), 5
     pitch_point = pair.pinion.pitch_radius_m * sin(alpha)
     angle = 2.0 * pi * (number + (pitch_point - pair.contact_start_m) / pair.base_pitch_m) / 18
-    pulls = forces_n((Chip("pinion", number, inf), Chip("gear", number, inf)), angle)
+    pulls = forces_n((WholeChip("pinion", number, inf), WholeChip("gear", number, inf)), angle)
     for which, teeth, side in (("pinion", 18, -1.0), ("gear", 47, 1.0)):
         place = f"{which}_bearing"
         sense = turning_sense(found, place)

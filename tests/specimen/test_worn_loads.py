@@ -10,7 +10,7 @@ import pytest
 from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
 from siggen.dynamics.mesh.static_stiffness import static_approaches_m
 from siggen.gears.damage.flank_loss import with_losses
-from siggen.gears.damage.wear import POINTS, Wear, Worn, worn_until
+from siggen.gears.damage.wear import POINTS, Worn, WornFlanks, worn_until
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import draw_specimen
@@ -56,7 +56,7 @@ def test_both_flanks_wear_as_by_hand() -> None:
 def test_mesh_harmonics_of_the_transmission_error_at_rest_are_those_by_hand(worn_depth: float) -> None:
     """Solved across the face, as records are; 20 µm on all teeth, and none."""
     parts = tuple(
-        Wear(which, tuple((worn_depth * depths).tolist()))
+        WornFlanks(which, tuple((worn_depth * depths).tolist()))
         for which, depths in (("pinion", worn().pinion_m), ("gear", worn().gear_m))
     )
     teeth = tooth_tables(DYNAMICS, PAIR, (), TEETH, TABLE_POINTS, 3.0 * FORCE_N)

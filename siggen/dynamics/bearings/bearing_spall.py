@@ -24,7 +24,7 @@ from siggen.gears.damage.sham import SHAM
 
 
 @dataclass(frozen=True, slots=True)
-class BearingSpall:
+class RollingSpall:
     """A spall of one bearing of a shaft.
 
     Parameters
@@ -64,12 +64,12 @@ class BearingSpall:
 
     def hides(self, other: Part) -> bool:
         """Return whether the other one is the same spall, no longer and no deeper."""
-        if not isinstance(other, BearingSpall):
+        if not isinstance(other, RollingSpall):
             return False
         same = (other.place, other.element, other.place_rad) == (self.place, self.element, self.place_rad)
         return same and other.length_m <= self.length_m and other.depth_m <= self.depth_m
 
-    def sham(self) -> BearingSpall:
+    def sham(self) -> RollingSpall:
         """Return a spall of no length and depth in its place."""
         return replace(self, length_m=0.0, depth_m=0.0, kind=SHAM)
 
@@ -114,6 +114,6 @@ class BearingSpall:
         return np.asarray(np.minimum(edge**2 / (radius + np.sqrt(radius**2 - edge**2)), self.depth_m))
 
 
-def in_bearings(parts: Iterable[Part]) -> tuple[BearingSpall, ...]:
+def in_bearings(parts: Iterable[Part]) -> tuple[RollingSpall, ...]:
     """Return the parts of a state's damage that act in bearings."""
-    return tuple(one for one in parts if isinstance(one, BearingSpall))
+    return tuple(one for one in parts if isinstance(one, RollingSpall))

@@ -19,7 +19,7 @@ from math import cos, pi
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.bearings.bearing_spall import BearingSpall
+from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.bearings.cage_course import CageCourse
 from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.excitation import Source
@@ -50,7 +50,7 @@ class SpalledBearing(Source):
     on_seat : place/axis -> (2,) force on the seat, per newton
     """
 
-    spall: BearingSpall
+    spall: RollingSpall
     zone: ZoneOfLoad
     cage: CageCourse
     order: float
@@ -117,7 +117,7 @@ class SpalledBearing(Source):
         return half > 0.0 and cos(spall.place_rad) > cos(min(reach, pi))
 
 
-def mean_zone(spall: BearingSpall, force_n: FloatArray) -> ZoneOfLoad:
+def mean_zone(spall: RollingSpall, force_n: FloatArray) -> ZoneOfLoad:
     """Return the zone of load under the mean force (2,) of the shaft on its seat, horizontal and vertical [N]."""
     size = float(np.hypot(force_n[0], force_n[1]))
     return ZoneOfLoad(float(np.arctan2(force_n[1], force_n[0])), spall.bearing.deflection_m(size))

@@ -15,6 +15,7 @@ from siggen.gears.contact.helical_slices import helical_gaps, helical_missing_m,
 from siggen.gears.contact.pair_rest import PairRest, pair_rest
 from siggen.gears.contact.table_options import TableOptions, face_slices, half_width, reference_force_n
 from siggen.gears.damage.flank_chords import FlankChords, flank_chords
+from siggen.gears.damage.lost_shape import shapes_touching_m
 from siggen.gears.damage.part_chip import standing_share
 from siggen.gears.damage.rough_land import rough_land, rough_shares
 from siggen.gears.damage.tooth_damage import Damage, acts_unevenly, goes_through, pits_of
@@ -33,7 +34,7 @@ class KindRow(NamedTuple):
 
     `gaps` are those of the points from `first` on, `elsewhere` those of the healthy pair at all points; `edge_radius_m`
     is the mean of those that the damage of both teeth states, or else that of the options. Of a helical pair
-    `position_m` is where the middle of the face is, `slice_missing_m` (points, n) what slices miss beside the lead.
+    `position_m` is where the middle of the face is; `slice_missing_m` (points, n): what slices miss beside the lead.
     `rough` (points, n): parts of slices that are rough land; None: none.
     """
 
@@ -96,11 +97,13 @@ def kind_row(
     else:
         rest = _rest(pair, stiffness, rolls, (acting[0], acting[1]), (standing[0], standing[1]), slices)
     edge_radius = _edge_radius(chords, options)
-    window = slice(0, points) if healthy is None else _window(pair, chords, position)
+    place = np.repeat(position[:, np.newaxis], slices, axis=1)
+    missing = shapes_touching_m(pair, pits, place)
+    window = slice(0, points) if healthy is None or missing is not None else _window(pair, chords, position)
     gaps = face_gaps(pair, chords[0], chords[1], position[window])
     elsewhere = gaps if healthy is None else healthy.elsewhere
-    rough = _rough(pair, pits, position[:, np.newaxis] + np.zeros(slices))
-    return KindRow(position, gaps, window.start, elsewhere, rest, edge_radius, rough=rough)
+    rough = _rough(pair, pits, place)
+    return KindRow(position, gaps, window.start, elsewhere, rest, edge_radius, missing, rough)
 
 
 def _rough(pair: GearPair, pits: tuple[Damage, Damage], place_m: FloatArray) -> FloatArray | None:
@@ -140,7 +143,9 @@ def _helical_row(
     gaps, edge_radius = helical_gaps(pair, place, chords[0], chords[1]), _edge_radius(chords, options)
     rough = _rough(pair, pits, place)
     if healthy is not None and healthy.slice_missing_m is not None:
-        return healthy._replace(gaps=gaps, edge_radius_m=edge_radius, rough=rough)
+        lost = shapes_touching_m(pair, pits, place)
+        missing = healthy.slice_missing_m if lost is None else healthy.slice_missing_m + lost
+        return healthy._replace(gaps=gaps, edge_radius_m=edge_radius, slice_missing_m=missing, rough=rough)
     missing = helical_missing_m(pair, place, options.relief)
     return KindRow(position, gaps, 0, gaps, helical_rest(pair, place, stiffness), edge_radius, missing, rough)
 
@@ -191,6 +196,9 @@ def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
     other = (left != row.elsewhere.left_m[window]) | (right != row.elsewhere.right_m[window])
     middle = carrying_middle_m(pair, row.position_m[window])
     reach = FELT_HALF_WIDTHS * half_width(pair, middle, reference_force_n(pair))
+    if row.slice_missing_m is not None and row.slice_missing_m is not healthy.slice_missing_m:
+        sound = 0.0 if healthy.slice_missing_m is None else healthy.slice_missing_m
+        found |= np.any(row.slice_missing_m != sound, axis=1)
     found[window] |= np.any(other & (-np.minimum(left, right) < reach[:, None]), axis=1)
     return found
 

@@ -38,7 +38,7 @@ PLACES = 4001
 
 
 @dataclass(frozen=True, slots=True)
-class Chip:
+class WholeChip:
     """A tooth without its tip, over the whole face.
 
     Parameters
@@ -96,9 +96,9 @@ class Chip:
         """
         if (other.gear, other.tooth) != (self.gear, self.tooth):
             return False
-        return self.whole_tooth or (isinstance(other, Chip) and other.height_m <= self.height_m)
+        return self.whole_tooth or (isinstance(other, WholeChip) and other.height_m <= self.height_m)
 
-    def sham(self) -> Chip:
+    def sham(self) -> WholeChip:
         """Return a tooth that has lost no height."""
         return replace(self, height_m=0.0, kind=SHAM)
 
@@ -147,7 +147,7 @@ def corner_reach_pitches(pair: GearPair, which: str, height_m: float) -> float:
     """
     pitch, start, end = pair.base_pitch_m, pair.contact_start_m, pair.contact_end_m
     place = np.linspace(start - pitch, end + pitch, PLACES)
-    chipped = Chip(which, 0, height_m)
+    chipped = WholeChip(which, 0, height_m)
     around = np.stack([place + pitch, place, place - pitch])
     gaps = np.stack([touching_gap_m(pair, "pinion", s) + touching_gap_m(pair, "gear", s) for s in around])
     gaps[1] += chipped.missing_m(pair, place)

@@ -14,7 +14,7 @@ from siggen.gears.damage.part import Part
 
 
 @dataclass(frozen=True, slots=True)
-class Pit(OnFlank):
+class FlankPit(OnFlank):
     """One pit of elliptical outline.
 
     Parameters

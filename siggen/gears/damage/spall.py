@@ -9,7 +9,7 @@ from siggen.gears.damage.outlines import Outline
 
 
 @dataclass(frozen=True, slots=True)
-class Spall(OnFlank):
+class FlankSpall(OnFlank):
     """One spall of any outline.
 
     Parameters

@@ -46,7 +46,7 @@ LoadAtRest = Callable[[FloatArray, FloatArray, FloatArray], AtRest]
 
 
 @dataclass(frozen=True, slots=True)
-class Wear:
+class WornFlanks:
     """Worn flanks of all teeth of one gear.
 
     Parameters
@@ -87,11 +87,11 @@ class Wear:
 
     def hides(self, other: Part) -> bool:
         """Return whether it is nowhere less deep than milder wear of the same gear."""
-        if not isinstance(other, Wear) or other.gear != self.gear:
+        if not isinstance(other, WornFlanks) or other.gear != self.gear:
             return False
         return bool(np.all(np.asarray(self.depths_m) >= np.asarray(other.depths_m)))
 
-    def sham(self) -> Wear:
+    def sham(self) -> WornFlanks:
         """Return wear of no depth."""
         return replace(self, depths_m=(0.0,) * len(self.depths_m), kind=SHAM)
 

@@ -11,18 +11,69 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import acos, atan, cos, isfinite, pi, radians, tan
 
+from siggen.errors import UsageError
 from siggen.gears.geometry.involute import inverse_involute, involute_function
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.geometry.spur_gear import SpurGear, transverse_gear
 
-__all__ = ["GearPair", "GeometryProblem", "SpurGear", "geometry_problems"]
+__all__ = ["Gear", "GearPair", "GeometryProblem", "SpurGear", "geometry_problems"]
 
 MIN_TEETH = 5
+ADDENDUM, CLEARANCE = 1.0, 0.25
+"""Of the basic rack, in modules (ISO 53, profile A)."""
+STEEL_PA, STEEL_POISSON = 206e9, 0.3
+WIDTH_MODULES, BORE_SHARE = 8.0, 0.4
+"""Of a pair of which a drawing says no more: face width in modules, bore over root circle (assumed)."""
 MAX_PRESSURE_ANGLE_RAD = radians(45.0)
 
 
 @dataclass(frozen=True, slots=True)
+class Gear:
+    """One gear as a drawing states it.
+
+    Attributes
+    ----------
+    teeth : int
+    module_m, face_width_m : float
+        Normal module and face width [m].
+    pressure_angle_rad, helix_rad : float
+        Of the normal section, and on the pitch cylinder, positive right-handed [rad].
+    shift : float
+        Of the profile, in modules.
+    bore_radius_m : float
+        [m].
+    """
+
+    teeth: int
+    module_m: float
+    face_width_m: float
+    pressure_angle_rad: float
+    helix_rad: float
+    shift: float
+    bore_radius_m: float
+
+    @property
+    def transverse(self) -> SpurGear:
+        """The gear of the transverse plane, with its radii and flank."""
+        normal = SpurGear(
+            self.teeth, self.module_m, self.pressure_angle_rad, self.shift, ADDENDUM, CLEARANCE, self.bore_radius_m
+        )
+        return transverse_gear(normal, self.helix_rad)
+
+    @property
+    def base_radius_m(self) -> float:
+        """Radius of the base circle [m]."""
+        return self.transverse.base_radius_m
+
+    @property
+    def pitch_height_m(self) -> float:
+        """Height of the pitch circle of the drawing above the base circle, along the tooth's axis [m]."""
+        gear = self.transverse
+        return float(gear.height_m(tan(gear.pressure_angle_rad)))
+
+
+@dataclass(frozen=True, slots=True)
 class GearPair:
-    """A driving pinion and a driven gear of equal face width and material.
+    """A driving pinion and a driven gear of equal face width and material; `of` makes one from a drawing.
 
     Parameters
     ----------
@@ -45,6 +96,68 @@ class GearPair:
     poisson_ratio: float
     centre_distance_m: float | None = None
     helix_rad: float = 0.0
+
+    @staticmethod
+    def of(
+        teeth: tuple[int, int],
+        module_mm: float,
+        face_width_mm: float | None = None,
+        *,
+        pressure_angle_deg: float = 20.0,
+        helix_deg: float = 0.0,
+        shifts: tuple[float, float] = (0.0, 0.0),
+        bores_mm: tuple[float, float] | None = None,
+    ) -> GearPair:
+        """Return the steel pair of a drawing, without backlash.
+
+        Parameters
+        ----------
+        teeth : (int, int)
+            Of the driving and the driven gear.
+        module_mm, face_width_mm : float
+            Normal module and face width; default 8 modules [mm].
+        pressure_angle_deg, helix_deg : float
+            Of the normal section, and on the pitch cylinder [degrees].
+        shifts : (float, float)
+            Of the profiles, in modules.
+        bores_mm : (float, float)
+            Diameters; default 0.4 of the root circles [mm].
+
+        Raises
+        ------
+        UsageError
+            If these teeth cannot be made or cannot mesh: says why.
+        """
+        width_m = 1e-3 * (WIDTH_MODULES * module_mm if face_width_mm is None else face_width_mm)
+        alpha, beta, bores_m = radians(pressure_angle_deg), radians(helix_deg), []
+        for i, count in enumerate(teeth):
+            root_mm = module_mm * (count / cos(beta) - 2.0 * (ADDENDUM + CLEARANCE - shifts[i]))
+            bores_m.append(0.5e-3 * (BORE_SHARE * root_mm if bores_mm is None else bores_mm[i]))
+        gears = [
+            Gear(count, 1e-3 * module_mm, width_m, alpha, beta, shift, bore_m).transverse
+            for count, shift, bore_m in zip(teeth, shifts, bores_m, strict=True)
+        ]
+        pair = GearPair(gears[0], gears[1], width_m, STEEL_PA, STEEL_POISSON, None, beta)
+        if problems := geometry_problems(pair):
+            lines = (f"{one.where}: received {one.name}, {one.received}; {one.allowed}" for one in problems)
+            raise UsageError(f"teeth={teeth} of module {module_mm} mm: " + "\n".join(lines))
+        return pair
+
+    @property
+    def driver(self) -> Gear:
+        """The driving gear as a drawing states it."""
+        return self._stated(self.pinion, self.helix_rad)
+
+    @property
+    def driven(self) -> Gear:
+        """The driven gear as a drawing states it."""
+        return self._stated(self.gear, -self.helix_rad)
+
+    def _stated(self, gear: SpurGear, helix_rad: float) -> Gear:
+        """Return a gear of the transverse plane by its normal section."""
+        share, alpha = cos(helix_rad), atan(tan(gear.pressure_angle_rad) * cos(helix_rad))
+        shift = gear.profile_shift / share
+        return Gear(gear.teeth, gear.module_m * share, self.face_width_m, alpha, helix_rad, shift, gear.bore_radius_m)
 
     @property
     def tight_pressure_angle_rad(self) -> float:

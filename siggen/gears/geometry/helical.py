@@ -24,21 +24,6 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 
 
-def transverse_gear(normal: SpurGear, helix_rad: float) -> SpurGear:
-    """Return the transverse section of a gear whose module, angle and coefficients are those of the normal section."""
-    if helix_rad == 0.0:
-        return normal
-    share = cos(helix_rad)
-    return replace(
-        normal,
-        module_m=normal.module_m / share,
-        pressure_angle_rad=atan(tan(normal.pressure_angle_rad) / share),
-        profile_shift=normal.profile_shift * share,
-        addendum_coefficient=normal.addendum_coefficient * share,
-        clearance_coefficient=normal.clearance_coefficient * share,
-    )
-
-
 @lru_cache(maxsize=64)
 def normal_pair(pair: GearPair) -> GearPair:
     """Return the spur pair whose teeth are the normal sections of a helical pair, as long as its teeth.

@@ -6,7 +6,7 @@ Equations: reference, standard literature (involute spur gears, ISO 21771 for pr
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import atan, cos, pi, sin, sqrt, tan
 
@@ -229,6 +229,21 @@ class SpurGear:
             )
         excess = (radius - self.base_radius_m) * (radius + self.base_radius_m)
         return np.sqrt(excess) / self.base_radius_m
+
+
+def transverse_gear(normal: SpurGear, helix_rad: float) -> SpurGear:
+    """Return the transverse section of a gear whose module, angle and coefficients are those of the normal section."""
+    if helix_rad == 0.0:
+        return normal
+    share = cos(helix_rad)
+    return replace(
+        normal,
+        module_m=normal.module_m / share,
+        pressure_angle_rad=atan(tan(normal.pressure_angle_rad) / share),
+        profile_shift=normal.profile_shift * share,
+        addendum_coefficient=normal.addendum_coefficient * share,
+        clearance_coefficient=normal.clearance_coefficient * share,
+    )
 
 
 def _span(values: FloatArray) -> str:

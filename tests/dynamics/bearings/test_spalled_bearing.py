@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.bearings.bearing_spall import BearingSpall
+from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.bearings.cage_course import cage_course
 from siggen.dynamics.bearings.spalled_bearing import SpalledBearing, mean_zone
 from siggen.dynamics.drive.drive import Drive
@@ -28,7 +28,7 @@ def spalled(
     element: str, *, slip: float = 0.0, walk: float = 0.0, load: np.ndarray = LOAD, balls: int = BALLS, **changed: float
 ) -> SpalledBearing:
     numbers = {"length_m": 1.5e-3, "depth_m": 0.1e-3, "place_rad": 0.2} | changed
-    spall = BearingSpall("pinion_bearing", element, bearing=bearing_of(balls), **numbers)
+    spall = RollingSpall("pinion_bearing", element, bearing=bearing_of(balls), **numbers)
     cage = cage_course(spall.bearing, np.random.default_rng(5), slip, walk, (0.0, 2.0 * math.pi * (TURNS + 1)))
     return SpalledBearing(spall, mean_zone(spall, load), cage, 1.0, np.eye(2), {})
 
@@ -88,7 +88,7 @@ def test_the_lost_load_is_that_of_all_balls_one_by_one(element: str, depth_m: fl
 def test_an_outer_race_under_constant_load_has_lines_at_whole_multiples_of_the_ball_pass_alone() -> None:
     # a bearing whose balls pass a whole number of times in the turns: κ = 1/5, FTF 0.4, BPFO 4
     bearing = BallBearing(10, 8e-3, 40e-3, 0.0, 8e-6)
-    spall = BearingSpall("pinion_bearing", "outer", 1.5e-3, 0.1e-3, bearing, 0.2)
+    spall = RollingSpall("pinion_bearing", "outer", 1.5e-3, 0.1e-3, bearing, 0.2)
     cage = cage_course(bearing, np.random.default_rng(5), 0.0, 0.0, (0.0, 2.0 * math.pi * (TURNS + 1)))
     source = SpalledBearing(spall, mean_zone(spall, LOAD), cage, 1.0, np.eye(2), {})
     orders, lines = orders_and_lines(force_of(source)[:, 0])

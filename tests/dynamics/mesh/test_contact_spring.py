@@ -13,7 +13,7 @@ from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_columns import node_places_m
 from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.body_coupling import body_coupling
@@ -30,7 +30,7 @@ def spall() -> Damage:
     pair = gear_pair()
     height = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
     outline = rectangle((height - 0.4e-3, height + 0.4e-3), (-5e-3, 25e-3))
-    return (Spall("pinion", 5, outline, 0.2e-3, "flat"),)
+    return (FlankSpall("pinion", 5, outline, 0.2e-3, "flat"),)
 
 
 def made(damage: Damage, *, coupled: bool = False) -> tuple[ContactTable, PairLaw]:

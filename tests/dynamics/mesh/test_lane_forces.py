@@ -32,7 +32,7 @@ from siggen.dynamics.time.exponential_scheme import NODES
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -54,7 +54,7 @@ def spalled(seed: int, *, tilts: bool, coupled: bool = True, **other: Any) -> Pa
     for tooth in range(0, 18, 3):
         along = height + rng.uniform(-0.8e-3, 0.8e-3) + np.array([-1.0, 1.0]) * rng.uniform(2e-4, 6e-4)
         outline = rectangle(tuple(along), (-1e-3, rng.uniform(5e-3, 25e-3)))
-        damage.append(Spall("pinion", tooth, outline, rng.uniform(2e-5, 3e-4), "flat"))
+        damage.append(FlankSpall("pinion", tooth, outline, rng.uniform(2e-5, 3e-4), "flat"))
     options = TableOptions(3000.0, tilts=tilts)
     slices = face_slices(pair, options)
     lead = 2e-6 * ((np.arange(slices) + 0.5) / slices - 0.5)

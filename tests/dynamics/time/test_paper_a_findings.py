@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.structure.structure import Structure
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -21,7 +21,9 @@ SPEEDS = (30.0, 15.0, 37.3)
 def pits(layers: int, per_layer: int) -> Damage:
     """Return layers of pits 1 mm apart across the face, 0.4 mm apart up the tooth from 1.9 mm."""
     return tuple(
-        Pit("pinion", 0, 1.9e-3 + 0.4e-3 * layer, 10e-3 + 1e-3 * (i - 0.5 * (per_layer - 1)), 0.3e-3, 0.2e-3, 0.4e-3)
+        FlankPit(
+            "pinion", 0, 1.9e-3 + 0.4e-3 * layer, 10e-3 + 1e-3 * (i - 0.5 * (per_layer - 1)), 0.3e-3, 0.2e-3, 0.4e-3
+        )
         for layer in range(layers)
         for i in range(per_layer)
     )

@@ -14,7 +14,7 @@ from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -98,7 +98,7 @@ def test_power_is_balanced_over_the_hunting_period(length_m: float, allowed_w: f
 def test_power_is_balanced_with_the_contact_across_the_face_and_coupled_bodies() -> None:
     pair, teeth, points = gear_pair(), StiffnessOptions(), 1025
     height = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
-    spall = Spall("pinion", 5, rectangle((height - 0.7e-3, height + 0.7e-3), (-5e-3, 25e-3)), 0.2e-3, "flat")
+    spall = FlankSpall("pinion", 5, rectangle((height - 0.7e-3, height + 0.7e-3), (-5e-3, 25e-3)), 0.2e-3, "flat")
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     face = law(
         with_errors(missing_material(pair, RELIEF)),

@@ -22,7 +22,7 @@ from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import TipRelief, missing_material
 from siggen.gears.stiffness.body_coupling import body_coupling
@@ -43,7 +43,7 @@ def one_sided() -> Damage:
     """A spall over a third of the face, at one end of it."""
     pair = gear_pair()
     height = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
-    return (Spall("pinion", 5, rectangle((height - 0.5e-3, height + 0.5e-3), (-1e-3, 7e-3)), 0.2e-3, "flat"),)
+    return (FlankSpall("pinion", 5, rectangle((height - 0.5e-3, height + 0.5e-3), (-1e-3, 7e-3)), 0.2e-3, "flat"),)
 
 
 @cache

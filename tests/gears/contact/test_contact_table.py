@@ -23,7 +23,7 @@ from siggen.gears.contact.table_columns import (
 from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon, rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.hertz import weber_banaschek_compliance
@@ -49,13 +49,13 @@ def pitch_height() -> float:
 
 def through_the_face() -> Damage:
     heights = (pitch_height() - 0.4e-3, pitch_height() + 0.4e-3)
-    return (Spall("pinion", 3, rectangle(heights, (-5e-3, 25e-3)), 0.2e-3, "flat"),)
+    return (FlankSpall("pinion", 3, rectangle(heights, (-5e-3, 25e-3)), 0.2e-3, "flat"),)
 
 
 def skewed() -> Damage:
     low, high, slant = pitch_height() - 0.4e-3, pitch_height() + 0.4e-3, 0.3e-3
     corners = ((low, 4e-3), (low + slant, 16e-3), (high + slant, 16e-3), (high, 4e-3))
-    return (Spall("pinion", 3, Polygon(corners), 0.2e-3, "flat"),)
+    return (FlankSpall("pinion", 3, Polygon(corners), 0.2e-3, "flat"),)
 
 
 @cache

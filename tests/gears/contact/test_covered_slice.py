@@ -11,7 +11,7 @@ from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.two_edges import gap_sink
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from tests.gears.builders import pair_18_47
 from tests.gears.contact.faces import (
     BENDING,
@@ -79,7 +79,7 @@ def test_slices_know_which_part_of_them_damage_covers() -> None:
     pair, slices = pair_18_47(), 50
     width = pair.face_width_m / slices
     ends = 10.25 * width, 20.75 * width
-    spall = Spall("pinion", 0, rectangle((1.6e-3, 2.4e-3), ends), 0.15e-3)
+    spall = FlankSpall("pinion", 0, rectangle((1.6e-3, 2.4e-3), ends), 0.15e-3)
     chords = flank_chords(pair.pinion, (spall,), pair.face_width_m, slices)
     expected = np.zeros(slices)
     expected[11:20], expected[10], expected[20] = 1.0, 0.75, 0.75

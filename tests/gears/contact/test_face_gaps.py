@@ -13,12 +13,12 @@ from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_f
 from siggen.gears.contact.pair_rest import rigid_rest
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47(module_m=3e-3)
 SLICES = 60
-SPALL = Spall("pinion", 0, rectangle((1.6e-3, 2.4e-3), (4e-3, 12e-3)), 0.15e-3)
+SPALL = FlankSpall("pinion", 0, rectangle((1.6e-3, 2.4e-3), (4e-3, 12e-3)), 0.15e-3)
 
 
 def flanks(pinion=(), gear=()):
@@ -55,7 +55,7 @@ def test_teeth_end_at_their_tips():
 
 def test_a_gap_open_at_the_tip_has_no_edge_there():
     tip = float(PAIR.pinion.height_m(PAIR.pinion.tip_roll_rad))
-    open_spall = Spall("pinion", 0, rectangle((tip - 1e-3, tip + 0.2e-3), (4e-3, 12e-3)), 0.15e-3)
+    open_spall = FlankSpall("pinion", 0, rectangle((tip - 1e-3, tip + 0.2e-3), (4e-3, 12e-3)), 0.15e-3)
     gaps = face_gaps(PAIR, *flanks((open_spall,)), np.array([PAIR.contact_end_m - 0.5e-3]))
     row = gaps.on_damage[0] > 0.0
     assert row.any()

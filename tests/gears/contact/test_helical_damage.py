@@ -11,7 +11,7 @@ from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.kind_row import kind_row
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.gears.geometry.test_helical import helical_pair
 
@@ -20,7 +20,7 @@ OPTIONS, STIFFNESS, POINTS = TableOptions(1000.0), StiffnessOptions(), 801
 
 def spall(pair, face_m):
     pitch = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
-    return Spall("pinion", 3, rectangle((pitch - 0.3e-3, pitch + 0.3e-3), face_m), 0.2e-3, "flat")
+    return FlankSpall("pinion", 3, rectangle((pitch - 0.3e-3, pitch + 0.3e-3), face_m), 0.2e-3, "flat")
 
 
 def on_damage(pair, face_m):

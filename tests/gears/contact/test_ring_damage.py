@@ -9,7 +9,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair, ring_round
 from siggen.gears.stiffness.damage_summary import damage_summary
@@ -26,13 +26,13 @@ def planet_in_ring() -> InternalPair:
 
 def spalled(
     pair: InternalPair, position_m: float, across_m: float = 20e-3, half_m: float = HALF_M
-) -> tuple[Spall, ...]:
+) -> tuple[FlankSpall, ...]:
     """Return a spall of a ring's tooth about the contact at a position."""
     height = float(pair.gear.height_m((position_m - pair.line_of_action_m) / pair.gear.base_radius_m))
-    return (Spall("gear", 3, rectangle((height - half_m, height + half_m), (0.0, across_m)), 1e-4),)
+    return (FlankSpall("gear", 3, rectangle((height - half_m, height + half_m), (0.0, across_m)), 1e-4),)
 
 
-def sink_of_outlines_m(pair: InternalPair, position_m: float, spall: Spall) -> float:
+def sink_of_outlines_m(pair: InternalPair, position_m: float, spall: FlankSpall) -> float:
     """Return by how much the planet turns until its flank meets the ring's beside a spall, along the line of action.
 
     From points of both involutes round the ring's centre; nothing is shared with the contact's own geometry.

@@ -15,7 +15,7 @@ from siggen.gears.contact.table_columns import row_faces, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.contact.tilt_rays import RAYS
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import TipRelief, missing_material
 from siggen.gears.stiffness.mesh_tables import pair_kinds
@@ -36,7 +36,7 @@ SHARES_OF_APPROACH = np.array([-0.9, -0.5, -0.1, 0.1, 0.5, 1.0])
 
 def one_end() -> Damage:
     heights = (pitch_height() - 0.5e-3, pitch_height() + 0.5e-3)
-    return (Spall("pinion", 3, rectangle(heights, (-1e-3, 7e-3)), 0.2e-3, "flat"),)
+    return (FlankSpall("pinion", 3, rectangle(heights, (-1e-3, 7e-3)), 0.2e-3, "flat"),)
 
 
 def lead_m(slices: int) -> np.ndarray:

@@ -17,9 +17,9 @@ from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.static_stiffness import static_approaches_m
-from siggen.gears.damage.chip import MARGIN_PITCHES, Chip, corner_reach_pitches, keeps_contact
+from siggen.gears.damage.chip import MARGIN_PITCHES, WholeChip, corner_reach_pitches, keeps_contact
 from siggen.gears.damage.flank_loss import on_back_flanks, reach_pitches, turned, with_losses
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.geometry.back_flanks import back_flanks, driven_pair
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, missing_material
@@ -31,7 +31,7 @@ from tests.gears.damage.rigid_gears import RigidGears
 PAIR = pair_18_47()
 GAP = 2.0 - PAIR.contact_ratio
 BACKLASH_M, NEXT_TO_NOTHING_N = 80e-6, 0.01
-GONE = Chip("pinion", 5, inf)
+GONE = WholeChip("pinion", 5, inf)
 
 
 @cache
@@ -39,7 +39,7 @@ def tables() -> MeshTables:
     return mesh_tables(PAIR, (), StiffnessOptions(), points=TABLE_POINTS)
 
 
-def law(*chips: Chip) -> PairLaw:
+def law(*chips: WholeChip) -> PairLaw:
     whole = missing_material(PAIR, points=TABLE_POINTS, reach_pitches=reach_pitches(PAIR, chips))
     mesh = MeshConstants(PAIR.line_of_action_m, 1.0, BACKLASH_M)
     return pair_law(tables(), with_losses(whole, PAIR, chips), mesh, damping_ratio=0.0)
@@ -55,7 +55,7 @@ def test_teeth_that_are_all_chipped_alike_are_those_of_a_lower_addendum(which: s
     teeth = PAIR.member(which)
     lower = replace(PAIR, **{which: replace(teeth, addendum_coefficient=0.8)})
     whole = missing_material(PAIR, points=2001, reach_pitches=0.2)
-    chipped = with_losses(whole, PAIR, tuple(Chip(which, tooth, height_m) for tooth in range(teeth.teeth)))
+    chipped = with_losses(whole, PAIR, tuple(WholeChip(which, tooth, height_m) for tooth in range(teeth.teeth)))
     position = np.linspace(whole.start_m, whole.end_m, 2001)
     rows = getattr(chipped, which)
     # The corner's gap is a difference of angles of 0.1 rad: rounding of 1e-17 rad times the base radius.
@@ -67,12 +67,12 @@ def test_teeth_that_are_all_chipped_alike_are_those_of_a_lower_addendum(which: s
 def test_the_less_is_lost_the_less_is_missing_and_nothing_takes_nothing() -> None:
     position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 501)
     heights = [1e-9, 0.2e-3, 0.8e-3, 2e-3]
-    found = [Chip("pinion", 0, height).missing_m(PAIR, position) for height in heights]
+    found = [WholeChip("pinion", 0, height).missing_m(PAIR, position) for height in heights]
     assert found[0].max() < 1e-15
     assert all(np.all(more >= less) for less, more in pairwise(found))
-    assert all(Chip("pinion", 0, more).hides(Chip("pinion", 0, less)) for less, more in pairwise(heights))
-    assert not GONE.hides(Chip("pinion", 4, 1e-3))
-    assert GONE.hides(Pit("pinion", 5, 1.9e-3, 10e-3, 0.3e-3, 0.2e-3, 0.4e-3, "flat"))
+    assert all(WholeChip("pinion", 0, more).hides(WholeChip("pinion", 0, less)) for less, more in pairwise(heights))
+    assert not GONE.hides(WholeChip("pinion", 4, 1e-3))
+    assert GONE.hides(FlankPit("pinion", 5, 1.9e-3, 10e-3, 0.3e-3, 0.2e-3, 0.4e-3, "flat"))
 
 
 def test_corners_are_followed_as_far_as_they_carry() -> None:
@@ -126,7 +126,7 @@ def test_the_back_flank_of_a_chipped_tooth_is_chipped_where_a_misplaced_one_is_m
     places = teeth.offset_m.copy()
     places[tooth] = 1e-6
     misplaced = getattr(back_flanks(replace(whole, **{which: replace(teeth, offset_m=places)}), PAIR), which)
-    chip = Chip(which, tooth, 0.2 * PAIR.pinion.module_m)
+    chip = WholeChip(which, tooth, 0.2 * PAIR.pinion.module_m)
     back = getattr(on_back_flanks(back_flanks(whole, PAIR), driven, (chip,)), which)
     sound = getattr(back_flanks(whole, PAIR), which).profile_m[0]
     chipped = np.abs(back.profile_m[back.kind_of_tooth] - sound).max(axis=1) > 0.0

@@ -30,7 +30,7 @@ from siggen.gears.damage.irregular import (
     stations_across,
 )
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.sections import contact_length_loss, union_area_m2
@@ -117,7 +117,7 @@ def test_straight_edges_and_a_smooth_floor_are_the_rectangle(span: tuple[float, 
     waves = drawn_waves(np.random.default_rng(1)), drawn_waves(np.random.default_rng(2))
     ends = span[0] * WIDTH, span[1] * WIDTH
     one = spall(1e-3, *ends, waves, floor=floor)
-    box = Spall("pinion", 0, rectangle((1.5e-3, 2.5e-3), ends), 2e-4, floor)
+    box = FlankSpall("pinion", 0, rectangle((1.5e-3, 2.5e-3), ends), 2e-4, floor)
     assert one.outline.vertices_m == box.outline.vertices_m
     rows, others = pit_rows([one]), pit_rows([box])
     assert np.array_equal(rows[:, :-1], others[:, :-1])
@@ -132,7 +132,7 @@ def test_a_strip_of_its_own_for_every_station_takes_the_same_land_and_area() -> 
     """Independent of the strips: the outline as one polygon, cut at the heights of its corners."""
     rng = np.random.default_rng(5)
     one = spall(1e-3, 2e-3, 17e-3, (drawn_waves(rng), drawn_waves(rng)), (0.02, -0.01), 0.15, rough=0.0)
-    whole = Spall("pinion", 0, one.outline, 2e-4)
+    whole = FlankSpall("pinion", 0, one.outline, 2e-4)
     assert len(one.stations_m) > 40
     height = np.linspace(*one.outline.height_range_m, 503)
     assert contact_length_loss([one], WIDTH, height) == pytest.approx(
@@ -165,7 +165,7 @@ def test_the_sink_rests_on_the_radius_of_its_own_edge() -> None:
     rng = np.random.default_rng(3)
     one = spall(1e-3, 0.0, WIDTH, (drawn_waves(rng), drawn_waves(rng)))
     rounder = IrregularSpall(one.gear, one.tooth, one.stations_m, one.strip_depths_m, 2e-4)
-    box = Spall("pinion", 0, one.outline, 2e-4)
+    box = FlankSpall("pinion", 0, one.outline, 2e-4)
     tables = [
         contact_table(PAIR, (damage,), StiffnessOptions(), TableOptions(4e3, edge_radius_m=radius), 257)
         for damage, radius in ((rounder, 1e-4), (box, 2e-4), (box, 1e-4))

@@ -17,7 +17,7 @@ from siggen.gears.contact.pair_rest import bending_length_m, strip_factor
 from siggen.gears.contact.table_columns import row_faces, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.part_chip import PartChip, lost_outline, standing_share
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 from siggen.gears.damage.sham import Sham
 from siggen.gears.damage.tooth_damage import ToothDamage
 from siggen.gears.stiffness.body_coupling import ring_torsion
@@ -133,7 +133,7 @@ def test_a_strip_is_a_tooth_of_its_width() -> None:
 def test_what_lies_on_lost_metal_is_hidden_and_nothing_else() -> None:
     lost = chip(0.5 * TOOTH_M, 0.5 * WIDTH)
     tip = float(GEAR.height_m(GEAR.tip_roll_rad))
-    pit = Pit("pinion", 0, tip - 0.5e-3, 0.2 * WIDTH, 0.3e-3, 0.2e-3, 0.4e-3, "flat")
+    pit = FlankPit("pinion", 0, tip - 0.5e-3, 0.2 * WIDTH, 0.3e-3, 0.2e-3, 0.4e-3, "flat")
     assert lost.hides(pit)
     assert not lost.hides(replace(pit, face_m=0.8 * WIDTH))
     assert not lost.hides(replace(pit, height_m=0.2 * tip))

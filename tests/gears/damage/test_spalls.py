@@ -14,7 +14,7 @@ from siggen.gears.damage.flank_damage import damage_problems, pit_rows
 from siggen.gears.damage.heights import profile_arc_m
 from siggen.gears.damage.kinks import section_kinks
 from siggen.gears.damage.outlines import Polygon, rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.stiffness.beams import involute_integrals
 from siggen.gears.stiffness.compliance import section_breaks, tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
@@ -37,17 +37,17 @@ STAR = tuple((h * MM, w * MM) for h, w in ((1.0, 4.0), (2.6, 6.0), (1.6, 8.0), (
 
 
 def box(low=1.5, high=2.5, left=6.0, right=11.0, depth=0.2, floor="flat"):
-    return Spall("pinion", 0, rectangle((low * MM, high * MM), (left * MM, right * MM)), depth * MM, floor)
+    return FlankSpall("pinion", 0, rectangle((low * MM, high * MM), (left * MM, right * MM)), depth * MM, floor)
 
 
 def v(low=1.2, high=2.8, face=9.0, lower=0.0, upper=6.0, depth=0.25, floor="flat"):
     corners = [(low, face - lower / 2), (low, face + lower / 2), (high, face + upper / 2), (high, face - upper / 2)]
     outline = Polygon(tuple(dict.fromkeys((h * MM, w * MM) for h, w in corners)))
-    return Spall("pinion", 0, outline, depth * MM, floor)
+    return FlankSpall("pinion", 0, outline, depth * MM, floor)
 
 
 def star(depth=0.15, floor="flat"):
-    return Spall("pinion", 0, Polygon(STAR), depth * MM, floor)
+    return FlankSpall("pinion", 0, Polygon(STAR), depth * MM, floor)
 
 
 floors = st.sampled_from(["flat", "dish"])
@@ -170,7 +170,7 @@ def ring(scale: float, shift_mm: float = 0.0, corners: int = 7, depth: float = 0
     """Return a spall of many corners about one middle: several trapezoids, none of which holds another ring."""
     angle = 2.0 * pi * np.arange(corners) / corners + 0.3
     heights, faces = 2.5 + 0.8 * scale * np.sin(angle), 9.0 + shift_mm + 4.0 * scale * np.cos(angle)
-    return Spall(
+    return FlankSpall(
         "pinion", 0, Polygon(tuple(zip((heights * MM).tolist(), (faces * MM).tolist(), strict=True))), depth * MM
     )
 
@@ -188,7 +188,7 @@ def ring(scale: float, shift_mm: float = 0.0, corners: int = 7, depth: float = 0
     ids=str,
 )
 def test_impossible_polygons_are_named(outline, received):
-    problems = damage_problems(PAIR, (pit(), Spall("pinion", 0, outline, 1e-4)))
+    problems = damage_problems(PAIR, (pit(), FlankSpall("pinion", 0, outline, 1e-4)))
     assert [(problem.index, problem.name) for problem in problems] == [(1, "vertices_m")]
     assert received in problems[0].received
     assert str(problems[0]).startswith("spall 1: ")

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from siggen.arrays import FloatArray
 from siggen.gears.damage.flank_loss import with_losses
 from siggen.gears.damage.part import Refusal
-from siggen.gears.damage.wear import POINTS, AtRest, Wear, turn_factors, worn_until
+from siggen.gears.damage.wear import POINTS, AtRest, WornFlanks, turn_factors, worn_until
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import TipRelief, missing_material
 from tests.gears.builders import pair_18_47
@@ -78,7 +78,7 @@ def test_the_other_gear_as_driver_wears_the_same() -> None:
 
 def test_worn_flanks_miss_their_depth_on_all_teeth_and_two_of_them_the_deeper() -> None:
     relieved = missing_material(PAIR, TipRelief(8e-6, 2e-3), points=1025)
-    deep, flat = Wear("pinion", (4e-6, 0.0, 1e-6)), Wear("pinion", (2e-6,) * 3)
+    deep, flat = WornFlanks("pinion", (4e-6, 0.0, 1e-6)), WornFlanks("pinion", (2e-6,) * 3)
     assert with_losses(relieved, PAIR, ()) is relieved
     worn = with_losses(relieved, PAIR, (deep, flat))
     places = np.linspace(relieved.start_m, relieved.end_m, 1025)
@@ -90,15 +90,15 @@ def test_worn_flanks_miss_their_depth_on_all_teeth_and_two_of_them_the_deeper() 
 
 
 def test_wear_without_depth_and_without_end_is_refused() -> None:
-    assert [one.name for one in Wear("gear", (0.0, 0.0)).own_problems()] == ["depths_m"]
-    assert isinstance(next(Wear("gear", (0.0, np.nan)).own_problems()), Refusal)
-    assert not list(Wear("gear", (0.0, 1e-6)).own_problems())
+    assert [one.name for one in WornFlanks("gear", (0.0, 0.0)).own_problems()] == ["depths_m"]
+    assert isinstance(next(WornFlanks("gear", (0.0, np.nan)).own_problems()), Refusal)
+    assert not list(WornFlanks("gear", (0.0, 1e-6)).own_problems())
     with pytest.raises(ValueError, match="a finite depth or turns"):
         worn_until(PAIR, rigid, COEFFICIENT)
 
 
 def test_depths_in_the_table_run_from_the_root_to_the_tip_of_either_gear() -> None:
-    pinion, gear = (Wear(name, (4e-6, 1e-6, 2e-6)).table_row()["wear_depths_um"] for name in ("pinion", "gear"))
+    pinion, gear = (WornFlanks(name, (4e-6, 1e-6, 2e-6)).table_row()["wear_depths_um"] for name in ("pinion", "gear"))
     # The path of contact begins at the pinion's root and ends at that of the gear.
     assert [pinion[0], pinion[len(pinion) // 2], pinion[-1]] == pytest.approx([4.0, 1.0, 2.0])
     assert gear == pytest.approx(pinion[::-1])

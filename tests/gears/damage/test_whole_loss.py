@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.row_columns import COLUMNS
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.damage.union import _depth_crossings, lengths_covered
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from tests.gears.builders import pair_18_47, pit
@@ -83,9 +83,9 @@ def test_leaning_edges_close_the_face_only_where_they_reach_the_other_flank(edge
     at = {which: float(height_mm(which, PAIR.pitch_point_m)) for which in ("pinion", "gear")}
     low, high = at["pinion"] - 0.2, at["pinion"] + 0.2
     corners = tuple((h * 1e-3, w * 1e-3) for h, w in ((low, 0.0), (low, 9.0), (high, 11.0), (high, 0.0)))
-    leaning = Spall("pinion", 0, Polygon(corners), 0.2e-3)
+    leaning = FlankSpall("pinion", 0, Polygon(corners), 0.2e-3)
     across = ((at["gear"] - 0.6) * 1e-3, (at["gear"] + 0.6) * 1e-3), (edge_mm * 1e-3, WIDTH_MM * 1e-3)
-    straight = Spall("gear", 0, rectangle(*across), 0.2e-3)
+    straight = FlankSpall("gear", 0, rectangle(*across), 0.2e-3)
     assert takes_whole_contact(PAIR, pit_rows([leaning]), pit_rows([straight])) == whole
 
 

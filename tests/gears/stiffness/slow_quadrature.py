@@ -14,7 +14,7 @@ from math import asin, cos, pi, sin, sqrt, tan
 import numpy as np
 from scipy.integrate import quad
 
-from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.pit import FlankPit
 
 
 class Outline:
@@ -51,8 +51,8 @@ def spall_intervals(spall, x):
 
 def depth_integrals(pits, x, h, face_width):
     """S0, S1, S2 of one section: the face is cut at every outline, then adaptive quadrature of the largest depth."""
-    present = [p for p in pits if isinstance(p, Pit) and abs(x - p.height_m) < p.semi_axis_profile_m]
-    spalls = [(interval, d) for s in pits if not isinstance(s, Pit) for interval, d in spall_intervals(s, x)]
+    present = [p for p in pits if isinstance(p, FlankPit) and abs(x - p.height_m) < p.semi_axis_profile_m]
+    spalls = [(interval, d) for s in pits if not isinstance(s, FlankPit) for interval, d in spall_intervals(s, x)]
     if not present and not spalls:
         return 0.0, 0.0, 0.0
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.stiffness.damage_summary import DamageSummary, damage_summary, flank_arc_m
 from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -50,7 +50,7 @@ def test_area_adds_over_teeth_and_the_share_is_the_most_damaged_flanks():
 
 def test_through_face_means_that_no_contact_length_remains_somewhere():
     band = (1.7e-3, 2.1e-3)
-    whole = Spall("pinion", 0, rectangle(band, (0.0, 20e-3)), 0.1e-3)
+    whole = FlankSpall("pinion", 0, rectangle(band, (0.0, 20e-3)), 0.1e-3)
     nearly = replace(whole, outline=rectangle(band, (0.0, 19.99e-3)))
     rest = replace(whole, outline=rectangle((1.9e-3, 1.95e-3), (19.9e-3, 21e-3)))
     assert damage_summary(PAIR, (whole,)).through_face is True
@@ -72,7 +72,7 @@ def test_sagitta_is_that_of_the_longest_arc_at_its_middle():
     line, base = PAIR.line_of_action_m, PAIR.pinion.base_radius_m
     middle = s * s / (2 * base)  # arc of the pitch point
     ends = [float(PAIR.pinion.height_m(np.sqrt(2 * (middle + side * 0.75e-3) / base))) for side in (-1, 1)]
-    spall = Spall("pinion", 3, rectangle(tuple(ends), (5e-3, 9e-3)), 0.1e-3)
+    spall = FlankSpall("pinion", 3, rectangle(tuple(ends), (5e-3, 9e-3)), 0.1e-3)
     summary = damage_summary(PAIR, (pit(4.5), spall))
     assert summary.largest_profile_length_m == pytest.approx(1.5e-3, rel=1e-12)
     assert summary.sagitta_m == pytest.approx(1.5e-3**2 / (8 * s * (line - s) / line), rel=1e-12)

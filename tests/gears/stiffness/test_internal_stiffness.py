@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import RingGear, ring_round
 from siggen.gears.stiffness.compliance import tooth_compliance
@@ -81,7 +81,7 @@ def test_ring_tooth_against_slow_quadrature_of_its_outline():
 
 def spalled(pair, depth_m, heights_m=(2.0e-3, 3.0e-3)):
     """Return a spall across the face between two heights of a ring's tooth, which grow towards its root."""
-    return (Spall("gear", 0, rectangle(heights_m, (0.0, pair.face_width_m)), depth_m),)
+    return (FlankSpall("gear", 0, rectangle(heights_m, (0.0, pair.face_width_m)), depth_m),)
 
 
 def test_a_spall_across_the_face_leaves_a_tapered_beam_that_is_thinner_by_its_depth():

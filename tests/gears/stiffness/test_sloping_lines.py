@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.pit import Pit
-from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.pit import FlankPit
+from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.damage_summary import damage_summary
@@ -28,13 +28,13 @@ GROOVE, NARROW = (-5e-3, 25e-3), (4e-3, 10e-3)
 TOOTH = 3
 
 
-def spall(pair: GearPair, face_m: tuple[float, float], half_m: float = 0.3e-3) -> Spall:
+def spall(pair: GearPair, face_m: tuple[float, float], half_m: float = 0.3e-3) -> FlankSpall:
     pitch = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
-    return Spall("pinion", TOOTH, rectangle((pitch - half_m, pitch + half_m), face_m), 0.2e-3, "flat")
+    return FlankSpall("pinion", TOOTH, rectangle((pitch - half_m, pitch + half_m), face_m), 0.2e-3, "flat")
 
 
 @cache
-def slow_line(pair: GearPair, position_m: float, one: Spall | None) -> tuple[float, float, float]:
+def slow_line(pair: GearPair, position_m: float, one: FlankSpall | None) -> tuple[float, float, float]:
     """Return stiffness, lost and whole length of one line, place by place across the face."""
     across = pair.face_width_m * (np.arange(FINE) + 0.5) / FINE
     place = position_m + (across - 0.5 * pair.face_width_m) * tan(pair.base_helix_rad)
@@ -58,7 +58,7 @@ def slow_line(pair: GearPair, position_m: float, one: Spall | None) -> tuple[flo
     return float((1.0 / (contact + teeth)).sum() / FINE), lost.sum() * cell, on.sum() * cell
 
 
-def slow_losses(pair: GearPair, one: Spall) -> np.ndarray:
+def slow_losses(pair: GearPair, one: FlankSpall) -> np.ndarray:
     """Return losses (k,) of the mesh as the damaged pair passes through contact, PER_PITCH a pitch."""
     count = int(pair.total_contact_ratio * PER_PITCH)
     step = pair.base_pitch_m / PER_PITCH
@@ -103,7 +103,7 @@ def test_length_and_whole_loss_are_those_of_lines() -> None:
 def test_labels_of_no_helix_are_those_of_spur_teeth(options: StiffnessOptions) -> None:
     near, spur = helical_pair(1e-6), helical_pair(0.0)
     # Of spalls all slices are exact; the round ends of pits are seen on the middle lines of slices, where they overlap.
-    pits = tuple(Pit("pinion", TOOTH, 1.9e-3, place, 0.3e-3, 0.2e-3, 0.2e-3) for place in (5e-3, 9e-3, 9.4e-3))
+    pits = tuple(FlankPit("pinion", TOOTH, 1.9e-3, place, 0.3e-3, 0.2e-3, 0.2e-3) for place in (5e-3, 9e-3, 9.4e-3))
     for damage, near_enough in (((spall(spur, NARROW),), 1e-6), ((spall(spur, GROOVE),), 1e-6), (pits, 1e-4)):
         labels = [largest_stiffness_loss(pair, damage, options) for pair in (near, spur)]
         assert labels[0] == pytest.approx(labels[1], rel=near_enough)

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.helical import transverse_gear
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.geometry.spur_gear import SpurGear, transverse_gear
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.reference.finite_elements.extruded_body import face_line

@@ -1,0 +1,227 @@
+"""A pair of gears with damage: its mesh stiffness over the angle, and pictures of its flanks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import pi
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from siggen.arrays import FloatArray
+from siggen.config import Dynamics
+from siggen.config.states import StateSection
+from siggen.errors import ConfigError, Problem
+from siggen.faults.growth import Growth
+from siggen.faults.registry import DamageSections
+from siggen.gears.damage.flank_loss import with_outlines
+from siggen.gears.damage.heights import flank_heights
+from siggen.gears.damage.lost_shape import POINTS, LostShape
+from siggen.gears.damage.part import Parts
+from siggen.gears.damage.tooth_damage import on_teeth, pits_of
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness as by_potential_energy
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
+from siggen.gears.stiffness.stiffness_options import TOOTH_MODELS, StiffnessOptions
+from siggen.keys.drawing import draw
+from siggen.keys.problems import section_problems
+from siggen.library.arguments import finite, one_of, refused, saying
+from siggen.library.axes import drawing, legend_above, new_axes
+from siggen.library.damage import Damage, DamagedPlace, entries
+from siggen.library.shape_fault import ShapeFault
+from siggen.rig.rating import bearable_torque_nm, rated_torque_nm
+from siggen.specimen.contact import tooth_tables
+from siggen.specimen.static_mesh import static_mesh
+from siggen.specimen.worn_loads import load_at_rest
+from siggen.views.flank_figure import draw_flank
+from siggen.views.flank_views import flank_view
+from siggen.views.stiffness_curves import damaged_engagements
+
+__all__ = ["Curve", "flank_picture", "mesh_stiffness"]
+
+LAWS = ("pairs", "linear")
+GEARS = ("pinion", "gear")
+
+
+@dataclass(frozen=True, repr=False)
+class Curve:
+    """Mesh stiffness over the angle of the driving gear.
+
+    Attributes
+    ----------
+    angle_rad : (points,)
+        From one pitch before the first damaged tooth enters contact, at 0, to two pitches after the last one does.
+    stiffness_n_per_m : (points,)
+    law : str
+        As `mesh_stiffness` was told.
+    """
+
+    angle_rad: FloatArray
+    stiffness_n_per_m: FloatArray
+    law: str
+
+    def __repr__(self) -> str:
+        """One line."""
+        low, high = self.stiffness_n_per_m.min(), self.stiffness_n_per_m.max()
+        return f"Curve({self.angle_rad.size} points, {low:.3g} to {high:.3g} N/m, law {self.law})"
+
+    def plot(self, ax: Any = None, *, label: str = "") -> Any:
+        """Draw it and return the axes; None: those that are current, or of a new figure."""
+        with drawing() as plt:
+            ax = (plt.gca() if plt.get_fignums() else new_axes(plt)) if ax is None else ax
+            ax.plot(np.degrees(self.angle_rad), self.stiffness_n_per_m / 1e8, label=label or None)
+            ax.set(xlabel="angle of the driving gear [°]", ylabel="mesh stiffness [10⁸ N/m]")
+            ax.margins(x=0)
+            if label:
+                legend_above(ax)
+        return ax
+
+
+def mesh_stiffness(
+    pair: GearPair,
+    damages: Iterable[Damage] = (),
+    *,
+    law: str = "pairs",
+    torque_nm: float | None = None,
+    tooth: str = "calibrated",
+    points: int = 800,
+) -> Curve:
+    """Return the mesh stiffness of a pair with damage on its teeth.
+
+    Parameters
+    ----------
+    pair : GearPair
+        Its gears are `pinion` and `gear`.
+    damages : iterable of Damage
+        On teeth of these.
+    law : str
+        'pairs': force over approach at rest under a torque, the contact solved across the face. 'linear': by potential
+        energy, the contact as long as damage leaves it (paper A, section 2.2).
+    torque_nm : float
+        On the driving gear, for `pairs` [N m]; default what the pair is rated for (ISO 6336-5, case-hardened).
+    tooth : str
+        The tooth that bends: 'calibrated' (finite elements), 'base_circle' (paper A), 'root_circle', 'rack_trochoid'.
+    points : int
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    UsageError
+        If an argument or a damage cannot be: names it, what came and what is allowed.
+    """
+    one_of("law", law, LAWS)
+    finite("points", points, "2 to 100000", 2, 100_000)
+    options = StiffnessOptions(one_of("tooth", tooth, TOOTH_MODELS), coupling="body" if law == "pairs" else "none")
+    damages = tuple(damages)
+    dynamics = draw(Dynamics(), lambda _: 0.5, "dynamics")
+    parts = _parts(pair, damages, law, partial(load_at_rest, dynamics, pair, options))
+    on_tooth = on_teeth(parts)
+    first, last = damaged_engagements(pair, tuple(with_outlines(parts, pair)) or on_tooth)
+    pitches = np.linspace(-1.0, last - first + 2.0, points)
+    angle = pitches * 2.0 * pi / pair.pinion.teeth
+    if law == "linear":
+        try:
+            stiffness = by_potential_energy(pair, angle + first * 2.0 * pi / pair.pinion.teeth, options, on_tooth)
+        except ValueError as error:
+            raise refused("damages", str(error), "pits that leave contact and section, or law='pairs'") from None
+        return Curve(angle, stiffness, law)
+    sizes = (pair.pinion.teeth, pair.gear.teeth), 1e3 * pair.driver.module_m, 1e3 * pair.face_width_m
+    most = bearable_torque_nm(*sizes)
+    torque = rated_torque_nm(*sizes) if torque_nm is None else torque_nm
+    torque = finite("torque_nm", torque, f"above 0 up to {most:.4g}, which the teeth bear", 1e-9, most)
+    force = torque / pair.pinion.base_radius_m
+    tables = tooth_tables(dynamics, pair, on_tooth, options, TABLE_POINTS, force)
+    static = static_mesh(dynamics, pair, tables, TABLE_POINTS, parts)
+    return Curve(angle, static.stiffness_n_per_m(torque, pitches + first), law)
+
+
+def flank_picture(pair: GearPair, damages: Iterable[Damage], ax: Any = None, *, on: str = "", tooth: int = -1) -> Any:
+    """Draw a damaged flank to scale, with pitch line and zones of contact, and return the axes.
+
+    Parameters
+    ----------
+    pair : GearPair
+    damages : iterable of Damage
+        On teeth of its gears.
+    ax : axes of matplotlib; None: those of a new figure
+    on, tooth : str, int
+        Which flank; default that of the first damage.
+
+    Raises
+    ------
+    UsageError
+        If a damage cannot be, or matplotlib is missing.
+    """
+    parts = with_outlines(_parts(pair, tuple(damages), "pairs", None), pair)
+    on = on or next((one.gear for one in parts), GEARS[0])
+    tooth = next((one.tooth for one in parts if one.gear == on), 0) if tooth < 0 else tooth
+    own = pits_of(parts, one_of("on", on, GEARS), tooth)
+    view = flank_view(pair, "", on, tooth, own)
+    with drawing() as plt:
+        if ax is None:
+            height = view.tip_mm - view.foot_mm
+            size = 1.5 + 6.0, 1.2 + 6.0 * height / view.face_width_mm
+            ax = plt.subplots(figsize=size, layout="constrained")[1]
+        shades = plt.cm.ScalarMappable(plt.Normalize(0.0, max(view.depths_mm, default=0.0) or 1.0), "YlOrRd")
+        draw_flank(ax, view, shades)
+        shapes = [one for one in own if isinstance(one, LostShape)]
+        if shapes:
+            _draw_shapes(ax, pair, shapes, shades)
+        ax.set_title(
+            f"{on}, tooth {tooth}: union of outlines {view.area_mm2:.2f} mm² ({view.area_share:.1%})"
+            if view.area_mm2
+            else f"{on}, tooth {tooth}"
+        )
+        ax.figure.colorbar(shades, ax=ax, label="depth [mm]", shrink=0.8)
+    return ax
+
+
+def _draw_shapes(ax: Any, pair: GearPair, shapes: Sequence[LostShape], shades: Any) -> None:
+    gear, slices = pair.member(shapes[0].gear), 200
+    depth_mm = 1e3 * np.max([one.depths_m(pair, slices) for one in shapes], axis=0)
+    roll = gear.roll_at_height(np.linspace(*flank_heights(gear), POINTS))
+    face_mm = 1e3 * pair.face_width_m / slices * (np.arange(slices) + 0.5)
+    shades.set_clim(0.0, max(shades.norm.vmax if shades.norm.vmax != 1.0 else 0.0, float(depth_mm.max())))
+    ax.pcolormesh(face_mm, 500.0 * gear.base_radius_m * roll**2, np.ma.masked_less(depth_mm, 1e-4),
+                  cmap=shades.cmap, norm=shades.norm, shading="nearest", rasterized=True)  # fmt: skip
+
+
+def _parts(pair: GearPair, damages: Sequence[Damage], law: str, loads: Any) -> Parts:
+    """Return damages on the teeth of a pair."""
+    for one in damages:
+        if isinstance(one, Damage) and one.on not in GEARS:
+            raise refused("on", repr(one.on), ", ".join(GEARS))
+    with saying({"damage.": "damages."}):
+        sections = _sections(entries(damages, lambda one: DamagedPlace(pair, one.on, one.on)))
+        shapes = [one for one in damages if one.is_shape]
+        sections += tuple(ShapeFault(gear=one.on, number=i, damage=one) for i, one in enumerate(shapes))
+        problems = [
+            Problem(f"damage.{i}.{problem.path}", problem.received, problem.allowed)
+            for i, section in enumerate(sections)
+            for problem in section.place_problems(pair)
+        ]
+        if problems:
+            raise ConfigError(problems)
+    if law == "linear" and any(one.needs_pairs for one in sections):
+        raise refused("law", "'linear' with damage that is a shape of the flank", "pairs")
+    growth = Growth(0, 0, 0, pair) if loads is None else Growth(0, 0, 0, pair, load_at_rest=loads)
+    found = [part for section in sections for part in section.drawn(growth)]
+    return tuple(found)
+
+
+def _sections(listed: list[dict[str, Any]]) -> tuple[Any, ...]:
+    if not listed:
+        return ()
+    try:
+        return tuple(TypeAdapter(DamageSections).validate_python(listed))
+    except ValidationError as error:
+        problems = section_problems(StateSection, error.errors(include_url=False), ("damage",))
+        raise ConfigError(
+            [Problem(f"damages{one.path.removeprefix('damage')}", one.received, one.allowed) for one in problems]
+        ) from None

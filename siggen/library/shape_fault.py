@@ -1,0 +1,51 @@
+"""Damage of a user's own kind as a section of a state: it is passed in, and no file names it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from siggen.errors import Problem
+from siggen.faults.fault import Fault, HitTeeth
+from siggen.faults.growth import Growth
+from siggen.gears.damage.lost_shape import LostShape
+from siggen.gears.damage.part import Parts
+from siggen.gears.geometry.gear_pair import Gear, GearPair
+from siggen.library.damage import Damage
+
+
+class ShapeFault(Fault):
+    """A depth of any shape on one flank."""
+
+    words: ClassVar[tuple[str, ...]] = ("damage",)
+    needs_pairs: ClassVar[bool] = True
+
+    kind: Literal["shape"] = "shape"
+    gear: str = Field(description="damaged gear")
+    number: int = Field(description="place in its state")
+    damage: Any = Field(exclude=True, description="what the user passed in")
+
+    def drawn(self, growth: Growth) -> Parts:
+        """Return the shape on its tooth."""
+        return (self._on(growth.pair),)
+
+    def _on(self, pair: GearPair) -> LostShape:
+        return shape_of(self.damage, pair.driver if self.gear == "pinion" else pair.driven, self.gear)
+
+    def place_problems(self, pair: GearPair) -> Iterator[Problem]:
+        """Yield what is wrong with its depths."""
+        for name, received, allowed in self._on(pair).place_problems(pair):
+            yield Problem(name, received, f"allowed: {allowed}")
+
+    def hit_teeth(self) -> HitTeeth:
+        """Yield its tooth."""
+        yield "tooth", self.gear, (self.damage.tooth,)
+
+
+def shape_of(damage: Damage, gear: Gear, which: str) -> LostShape:
+    """Return a damage of a user's own kind on 'pinion' or 'gear', as contacts know it."""
+    shape: Callable[..., Any] = partial(damage.missing_m, gear)
+    return LostShape(which, damage.tooth, shape, type(damage).__name__.lower())

@@ -1,0 +1,45 @@
+"""Curves of one state over values of one key: a study of places or sizes, as paper A makes in sections 3.3 and 3.4."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from siggen.config import Config
+from siggen.errors import UsageError
+from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
+
+
+def varied(text: str, states: Sequence[str]) -> Iterator[tuple[str, list[str], int]]:
+    """Yield label, overrides and state of every value of `KEY=1,1.9,2.8`.
+
+    Raises
+    ------
+    UsageError
+        If the text is none, or names a state that there is not.
+    """
+    key, _, listed = text.partition("=")
+    values = [value.strip() for value in listed.split(",") if value.strip()]
+    if not key or len(values) < 2:
+        allowed = "KEY=VALUES with at least two values, such as states.2.damage.first_height_mm=1,1.9,2.8"
+        raise UsageError(f"--vary: received '{text}'; allowed: {allowed}")
+    own = re.match(r"states\.(\d+)\.", key)
+    state = int(own[1]) if own else len(states) - 1
+    if state >= len(states):
+        raise UsageError(f"--vary: received state {state}; allowed: 0 to {len(states) - 1} ({', '.join(states)})")
+    alone = [f"states.{state}.grows_from=none"] if own else []
+    for value in values:
+        yield f"{key.rpartition('.')[2]}_{value}", [*alone, f"{key}={value}"], state
+
+
+def varied_curves(
+    loaded: Iterable[tuple[str, Config, int]], specimen_id: int, torque_nm: float
+) -> list[StiffnessCurve]:
+    """Return the curve of the first state, then that of the varied state at each value, under its label."""
+    found: list[StiffnessCurve] = []
+    for label, config, state in loaded:
+        curves = stiffness_curves(config, specimen_id, torque_nm=torque_nm)
+        found += [] if found else [curves[0]]
+        found.append(replace(curves[state], state=label))
+    return found
