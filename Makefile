@@ -54,7 +54,7 @@ pages: $(STAMP)
 
 # The pages that are printed by a script; tests compare them with what it prints.
 reference: $(STAMP)
-	for page in yaml:yaml command:commands column:columns; do \
+	for page in yaml:yaml command:commands column:columns python:python; do \
 		$(BIN)/python docs/scripts/$${page%%:*}_reference.py > docs/reference/$${page##*:}.md || exit 1; \
 	done
 

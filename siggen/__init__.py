@@ -15,10 +15,12 @@ if TYPE_CHECKING:
     from siggen.gears.geometry.gear_pair import Gear, GearPair
     from siggen.library.damage import BearingSpall, Chip, Crack, Damage, Pit, Spall, Wear, pits_in_layers, random_pits
     from siggen.library.gearbox import Gearbox, Point, State, draw
+    from siggen.library.machines import machine, planetary
     from siggen.library.makers import single_stage
     from siggen.library.pairs import Curve, flank_picture, mesh_stiffness
     from siggen.library.record import LineOrders, Record, Spectrum
     from siggen.library.running import Case, run, runs
+    from siggen.library.sensors import Channel, Reading, Sensor
     from siggen.planning.plan import plan
     from siggen.publication.publish import publish
     from siggen.record.simulation import simulate
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BearingSpall",
     "Case",
+    "Channel",
     "Chip",
     "Crack",
     "Curve",
@@ -41,7 +44,9 @@ __all__ = [
     "LineOrders",
     "Pit",
     "Point",
+    "Reading",
     "Record",
+    "Sensor",
     "Spall",
     "Spectrum",
     "State",
@@ -52,6 +57,7 @@ __all__ = [
     "generate",
     "generate_part",
     "load_config",
+    "machine",
     "merge",
     "mesh_stiffness",
     "mesh_stiffness_curves",
@@ -59,6 +65,7 @@ __all__ = [
     "open",
     "pits_in_layers",
     "plan",
+    "planetary",
     "publish",
     "random_pits",
     "run",
@@ -94,6 +101,10 @@ _NAMES = {
         "State",
         "draw",
     ),
+    "siggen.library.machines": (
+        "machine",
+        "planetary",
+    ),
     "siggen.library.makers": ("single_stage",),
     "siggen.library.pairs": (
         "Curve",
@@ -109,6 +120,11 @@ _NAMES = {
         "Case",
         "run",
         "runs",
+    ),
+    "siggen.library.sensors": (
+        "Channel",
+        "Reading",
+        "Sensor",
     ),
     "siggen.planning.plan": ("plan",),
     "siggen.publication.publish": ("publish",),

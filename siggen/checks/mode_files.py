@@ -12,7 +12,7 @@ from siggen.dynamics.structure.planetary import SEATS_OF_SET
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 from siggen.sensing.inputs import MOTION
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 from siggen.specimen.mode_table import BASE, DRIVE, ModesRefusal, ModeTable, mode_table, seats_of, shape_column
 
 KEY = "housing.modes"
@@ -69,7 +69,7 @@ def mode_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
             yield Problem(KEY, f"no column {column}", f"{allowed}{nearest(column, present)}")
 
 
-def _needed(sensors: tuple[Sensor, ...], seats: tuple[str, ...]) -> dict[str, str]:
+def _needed(sensors: tuple[SensorBase, ...], seats: tuple[str, ...]) -> dict[str, str]:
     """Return the columns of seats and sensors, and what they are for."""
     found = dict.fromkeys(map(shape_column, seats), "the bearing forces")
     for sensor in sensors:

@@ -19,7 +19,7 @@ from siggen.keys.drawing import corners
 from siggen.keys.number import Number, bounds
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.modal_housing import given_modes
 from siggen.specimen.rotors import disc_inertia_kg_m2, disc_mass_kg
@@ -104,7 +104,7 @@ def missing(config: Config) -> Iterator[str]:
     noises = [s.noise_floor is not None or any(one.broad for one in s.sources) for s in config.sensors]
     if not any(noises) and config.background is None:
         yield "sensors: no noise at all: any damage is trivially found"
-    seen: list[Sensor] = []
+    seen: list[SensorBase] = []
     for sensor, noisy in zip(config.sensors, noises, strict=True):
         nameless = sensor.model_copy(update={"name": "any"})
         if not (noisy or sensor.drawn_by_name) and nameless in seen:

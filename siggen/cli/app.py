@@ -26,6 +26,7 @@ from siggen.cli.publish import publish
 from siggen.cli.schema import schema
 from siggen.cli.show import show
 from siggen.cli.simulate import simulate
+from siggen.cli.spectrum import spectrum
 from siggen.cli.tvms import tvms
 from siggen.cli.verify import verify
 from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
@@ -41,6 +42,7 @@ INSPECTED: dict[str, Callable[..., None]] = {
     "errors": errors,
     "modes": modes,
     "path": path,
+    "spectrum": spectrum,
     "life": life,
 }
 """What `siggen inspect` shows of one gearbox or of its life."""
@@ -57,7 +59,7 @@ for command in COMMANDS:
     app.command()(command)
 
 inspect = typer.Typer(
-    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path, life.",
+    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path, spectrum, life.",
     no_args_is_help=True,
     rich_markup_mode="rich",
     epilog="Begin with: siggen inspect tvms quickstart --open",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rich.table import Table
     from rich.text import Text
 
-    from siggen.columns.record import Channel
+    from siggen.columns.record import ChannelColumn
     from siggen.dataset.reading import Dataset
 
 
@@ -52,7 +52,7 @@ def show(
         console.print(_damage(dataset, found))
 
 
-def _channel(dataset: Dataset, name: str | None) -> Channel:
+def _channel(dataset: Dataset, name: str | None) -> ChannelColumn:
     from siggen.errors import UsageError
 
     known = {channel.name: channel for channel in dataset.channels}

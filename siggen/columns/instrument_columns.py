@@ -12,15 +12,15 @@ from siggen.sensing.inputs import MOTION
 
 if TYPE_CHECKING:
     from siggen.config import Config
-    from siggen.sensors.sensor import Sensor
+    from siggen.sensors.sensor import SensorBase
 
 
-def channel_columns(sensor: Sensor, channel: str, *, gives_way: bool) -> Iterator[Column]:
+def channel_columns(sensor: SensorBase, channel: str, *, gives_way: bool) -> Iterator[Column]:
     """Yield the columns that describe path and disturbances of one channel: those of parts that its sensor has."""
     yield from in_role(Role.PROVENANCE, *_parts(sensor, channel, gives_way=gives_way), section="sensors")
 
 
-def _parts(sensor: Sensor, channel: str, *, gives_way: bool) -> Iterator[Column]:
+def _parts(sensor: SensorBase, channel: str, *, gives_way: bool) -> Iterator[Column]:
     if sensor.through is not None or (gives_way and MOTION in sensor.reads):
         yield from path_columns(channel, is_family=getattr(sensor.through, "is_family", False))
     for source in sensor.sources:

@@ -29,7 +29,7 @@ BEFORE_QUANTITIES = "acceleration"
 
 
 @dataclass(frozen=True, slots=True)
-class Channel:
+class ChannelColumn:
     """One axis of one sensor and the column that holds its signal, a `quantity` in a `unit`."""
 
     name: str
@@ -97,10 +97,10 @@ TACHO_COLUMN = Column(
 )
 
 
-def channels(config: Config) -> tuple[Channel, ...]:
+def channels(config: Config) -> tuple[ChannelColumn, ...]:
     """Return the channels of a configuration in the order of its sensors and their axes."""
     return tuple(
-        Channel(
+        ChannelColumn(
             name=name,
             sensor=sensor.name,
             place=config.names.place(sensor.place),
@@ -172,7 +172,7 @@ def schema_metadata(config: Config) -> dict[str, str]:
     }
 
 
-def channel_metadata(channel: Channel, fs_hz: float) -> dict[str, str]:
+def channel_metadata(channel: ChannelColumn, fs_hz: float) -> dict[str, str]:
     """Return what a file says about the column of a channel."""
     return {
         "sensor": channel.sensor,
@@ -184,7 +184,7 @@ def channel_metadata(channel: Channel, fs_hz: float) -> dict[str, str]:
     }
 
 
-def _signal_field(config: Config, channel: Channel) -> pa.Field:
+def _signal_field(config: Config, channel: ChannelColumn) -> pa.Field:
     step = next(sensor.converter_step for sensor in config.sensors if sensor.name == channel.sensor)
     metadata = {**channel_metadata(channel, config.fs_hz), "converter_step": repr(step), "role": Role.SIGNAL}
     signal = list_of(pa.float32(), config.samples)
@@ -201,7 +201,7 @@ def listed_columns(schema: pa.Schema) -> list[dict[str, str]]:
     ]
 
 
-def signal_channels(schema: pa.Schema) -> tuple[Channel, ...]:
+def signal_channels(schema: pa.Schema) -> tuple[ChannelColumn, ...]:
     """Return the channels that a file's schema describes, in column order."""
     found = []
     for field in schema:
@@ -209,7 +209,7 @@ def signal_channels(schema: pa.Schema) -> tuple[Channel, ...]:
         if pa.types.is_fixed_size_list(field.type) and "sensor" in facts:
             place = facts["sensor"], facts["place"], facts["axis"]
             quantity = facts.get("quantity", BEFORE_QUANTITIES)
-            found.append(Channel(f"{place[0]}_{place[2]}", *place, facts["unit"], field.name, quantity))
+            found.append(ChannelColumn(f"{place[0]}_{place[2]}", *place, facts["unit"], field.name, quantity))
     return tuple(found)
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, SkipValidation
 
-from siggen.columns.record import Channel, RecordFailure
+from siggen.columns.record import ChannelColumn, RecordFailure
 from siggen.dataset.id_ranges import Range
 from siggen.dataset.object_name import object_name
 from siggen.keys.column import Role
@@ -143,7 +143,7 @@ class Inventory:
     duration_s: Quantity
     splits: dict[Split, ListedSplit]
     rows_per_group: Annotated[int, Field(ge=1, le=LARGEST)]
-    channels: tuple[Channel, ...]
+    channels: tuple[ChannelColumn, ...]
     environments: tuple[Environment, ...]
     failures: tuple[RecordFailure, ...]
     columns: tuple[ListedColumn, ...] = ()

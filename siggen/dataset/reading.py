@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import yaml
 
-from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
+from siggen.columns.record import TACHO_COLUMN, ChannelColumn, signal_channels, signal_matrix
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
 from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
 from siggen.dataset.object_name import CHECKSUMS
@@ -85,7 +85,7 @@ class Dataset:
         self._groups: OrderedDict[tuple[str, int], pa.Table] = OrderedDict()
         self.config: dict[str, Any] = self._read_config()
         self.splits: tuple[str, ...] = tuple(s for s in SPLITS if s in self.inventory.splits)
-        self.channels: tuple[Channel, ...] = self.inventory.channels
+        self.channels: tuple[ChannelColumn, ...] = self.inventory.channels
         self.fs_hz: float = self.inventory.fs_hz
         self.duration_s: float = self.inventory.duration_s
         self.internal_columns: tuple[Column, ...] = tuple(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,13 +13,16 @@ from siggen.config import Config, Pair
 from siggen.config.planetary import RING
 from siggen.config.states import SEVERITIES
 from siggen.errors import UsageError
-from siggen.library.arguments import one_of, refused, saying
+from siggen.library.arguments import finite, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
+from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
 from siggen.library.shape_fault import ShapeFault
 from siggen.planning.gear_pair import gear_pair
 from siggen.planning.gearbox import inspection_count
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.labels import gearbox_labels
+from siggen.sensing.inputs import Input
+from siggen.sensors.places import PLATE_OF
 from siggen.specimen.planetary_numbers import planets_in_ring
 
 __all__ = ["Gearbox", "Point", "State", "draw"]
@@ -77,6 +81,7 @@ class Gearbox:
     points: tuple[Point, ...]
     _config: Config
     _added: tuple[State, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
 
     def __repr__(self) -> str:
         """One line."""
@@ -95,7 +100,12 @@ class Gearbox:
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of what its sensors record."""
-        return self._config.channels
+        return (*self._config.channels, *(one.name for one in self._passed))
+
+    @property
+    def readable(self) -> tuple[str, ...]:
+        """What sensors of the user's own may read: places, bearings, couplings and gears."""
+        return tuple(self._words)
 
     @property
     def labels(self) -> Mapping[str, object]:
@@ -118,19 +128,25 @@ class Gearbox:
         """Names of its gears, for damages."""
         return tuple(self._seats)
 
-    def with_(self, *more: State) -> Gearbox:
-        """Return this gearbox with further states.
+    def with_(self, *more: State | Sensor) -> Gearbox:
+        """Return this gearbox with further states and sensors.
 
         Raises
         ------
         UsageError
-            If a state or its damage cannot be: names it, what came and what is allowed.
+            If a state, its damage or a sensor cannot be: names it, what came and what is allowed.
         """
         found = self
         for one in more:
-            if not isinstance(one, State):
-                raise refused("more", repr(one), "objects of State")
-            found = found._with_state(one)
+            if isinstance(one, State):
+                found = found._with_state(one)
+            elif callable(getattr(one, "channels", None)):
+                found = replace(found, sensors=(*found.sensors, one))
+                again = [name for name in found.channels if found.channels.count(name) > 1]
+                if again:
+                    raise refused("Channel.name", repr(again[0]), "a name that this gearbox has not yet")
+            else:
+                raise refused("more", repr(one), "objects of State, or sensors, which have a method channels")
         return found
 
     def _with_state(self, state: State) -> Gearbox:
@@ -166,8 +182,64 @@ class Gearbox:
         own = enumerate(one for one in state.damages if one.is_shape)
         return tuple(ShapeFault(gear=self._seat(one).short or one.on, number=i, damage=one) for i, one in own)
 
-    def _with_shapes(self, config: Config) -> Config:
-        """Return a configuration of this gearbox with the damages of the user's own kinds in its states."""
+    @cached_property
+    def _passed(self) -> tuple[PassedSensor, ...]:
+        """The channels of the user's own sensors."""
+        return tuple(self._channel(one) for sensor in self.sensors for one in sensor.channels(self))
+
+    def _channel(self, channel: Channel) -> PassedSensor:
+        if not isinstance(channel, Channel):
+            raise refused("channels", repr(channel), "objects of Channel")
+        if not (isinstance(channel.name, str) and re.fullmatch("[a-z][a-z0-9_]{0,199}", channel.name)):
+            raise refused(
+                "Channel.name", repr(channel.name), "lower-case letters, digits and _, beginning with a letter"
+            )
+        finite("Channel.floor", channel.floor, "at least 0", 0.0)
+        found: dict[Input, float] = {}
+        plates = []
+        for reading in channel.reads:
+            what, word = self._words[one_of("Reading.of", reading.of, self.readable)]
+            directions = () if what in {"coupling", "gear"} else self._directions(word, what, reading.order)
+            if directions:
+                one_of("Reading.along", reading.along, directions)
+            elif reading.order != 0:
+                raise refused("Reading.order", repr(reading.order), f"0 of a {what}")
+            plates += [word] if word in PLATE_OF else []
+            one = reading_input(reading, channel.name, word, what)
+            found[one] = found.get(one, 0.0) + finite("Reading.weight", reading.weight, "a number")
+        if not found or len(set(plates)) > 1:
+            received = f"{len(channel.reads)} readings of {', '.join(one.of for one in channel.reads) or 'nothing'}"
+            raise refused("Channel.reads", received, "one reading or more, of at most one place of the housing")
+        place = plates[0] if plates else "bearing"
+        return PassedSensor(name=channel.name, place=place, channel=channel, inputs=tuple(found.items()))
+
+    def _directions(self, word: str, what: str, order: int) -> tuple[str, ...]:
+        """Return the directions in which a place moves, or a bearing presses."""
+        places = self._config.places
+        if order not in ((0, 2) if what == "bearing" else (2,)):
+            raise refused("Reading.order", repr(order), "0 for the force in a bearing, 2 for an acceleration")
+        along = word in (places.pressed_along if order == 0 else places.moved_along)
+        return (*DIRECTIONS[:2], *(("axial",) if along else ()))
+
+    @cached_property
+    def _words(self) -> dict[str, tuple[str, str]]:
+        """What can be read -> its kind, and its word in the short form of files."""
+        places, names = self._config.places, self._config.names
+        shafts = dict(names.shafts) or {"pinion": "input", "gear": "output"}
+        bearings = {
+            f"{shafts.get(short, short)}.bearing": short
+            for short in (b.removesuffix("_bearing") for b in places.bearings)
+        }
+        return {
+            **{one: ("place", one) for one in places.motions if one not in (*places.bearings, "casing")},
+            **{own: ("bearing", f"{short}_bearing") for own, short in bearings.items()},
+            **{one.replace("_", "."): ("coupling", one) for one in places.couplings},
+            **{names.gear(one): ("gear", one) for one in places.gears if places.shafts},
+        }
+
+    def _with_passed(self, config: Config) -> Config:
+        """Return a configuration of this gearbox with what the user passed in: kinds of damage and sensors."""
+        config = config.model_copy(update={"sensors": (*config.sensors, *self._passed)})
         states = list(config.states)
         for state in self._added:
             if shapes := self._shapes(state):

@@ -154,7 +154,7 @@ def _config_of(
     if truth:
         changes["internals"] = {"quantities": [truth] if isinstance(truth, str) else list(truth)}
     with saying(KEYS):
-        return gearbox._with_shapes(load_config({**base.canonical(), **changes}))
+        return gearbox._with_passed(load_config({**base.canonical(), **changes}))
 
 
 def _rate_hz(gearbox: Gearbox, fs_hz: float | None, teeth: float, highest_hz: float) -> float:

@@ -17,7 +17,7 @@ from siggen.config import BLOCK, Config, Splits
 from siggen.planning.gearbox import inspection_count, pair_of
 from siggen.seeding import Stage, generator
 from siggen.sensors.converter import FROM_NOISE
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 
 SPLITS = ("train", "validation", "test")
 
@@ -271,7 +271,7 @@ def estimated_bytes(config: Config) -> int:
     return plan(config).count * _row_bytes(config) * sum(percents) // 100 + internals
 
 
-def _disk_percent(sensor: Sensor) -> int:
+def _disk_percent(sensor: SensorBase) -> int:
     if sensor.bits == FROM_NOISE:
         return NOISE_SHARE_PERCENT
     return UNQUANTISED_SHARE_PERCENT if sensor.bits is None or sensor.bits > 16 else DISK_SHARE_PERCENT

@@ -12,7 +12,7 @@ from siggen.planning.gearbox import gearbox_config
 from siggen.planning.housing_numbers import PlateNumbers, drawn_housing
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_uniforms
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Specimen:
     stiffness: Stiffness
     dynamics: Dynamics
     housing: PlateNumbers | ModalHousing | RigidHousing
-    sensors: tuple[Sensor, ...]
+    sensors: tuple[SensorBase, ...]
     bearing_point: OperatingPoint | None = None
     stages: tuple[Stage, ...] = ()
     planetary: Planetary | None = None

@@ -22,7 +22,7 @@ from siggen.sensing.sensor_response import high_pass_response, resonance_respons
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
 from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity
-from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
+from siggen.sensors.sensor import SIZE, AxisDraws, SensorBase
 
 
 class Resonance(Section):
@@ -47,7 +47,7 @@ class NoiseFloor(Section):
     )
 
 
-class Accelerometer(SourceKeys, Sensor):
+class Accelerometer(SourceKeys, SensorBase):
     """An accelerometer with up to three axes.
 
     Horizontal and vertical are meant as in the model: across from pinion to gear without, from gear to pinion with a

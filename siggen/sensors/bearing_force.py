@@ -13,10 +13,10 @@ from siggen.keys.section import Real
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.places import AT_BEARINGS, Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, SensorBase
 
 
-class ForceWasher(Sensor):
+class ForceWasher(SensorBase):
     """Washers under both bearings of a shaft: their force on the housing, mean included."""
 
     quantity: ClassVar[Quantity] = Quantity("bearing force", "force", "N", "n")

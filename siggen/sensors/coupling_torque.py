@@ -13,10 +13,10 @@ from siggen.keys.section import Real
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, SensorBase
 
 
-class TorqueSensor(Sensor):
+class TorqueSensor(SensorBase):
     """A torque flange in a coupling: stiffness times twist and damping times its rate, mean included."""
 
     quantity: ClassVar[Quantity] = Quantity("torque", "torque", "N m", "nm")

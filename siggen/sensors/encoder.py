@@ -19,7 +19,7 @@ from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
 from siggen.sensors.converter import BITS_TEXT, Bits
 from siggen.sensors.places import TURNING, Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, SensorBase
 from siggen.sensors.transducer import Running, Transducer
 
 FEWEST_PULSES = 2
@@ -30,7 +30,7 @@ LARGEST_PITCH_ERROR = 3.0
 """Standard deviations beyond which no mark is off; so marks of 0.1 rms never change places."""
 
 
-class Encoder(Sensor):
+class Encoder(SensorBase):
     """An incremental encoder on a shaft, as a counter stores it: the mean angular speed over each sampling interval."""
 
     quantity: ClassVar[Quantity] = Quantity("angular speed", "speed", "rad/s", "rad_s", "rotation")

@@ -5,8 +5,8 @@ from siggen.sensors.bearing_force import ForceWasher
 from siggen.sensors.coupling_torque import TorqueSensor
 from siggen.sensors.encoder import Encoder
 from siggen.sensors.motor_current import MotorCurrent
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 from siggen.sensors.transmission_error import TransmissionError
 
-KINDS: list[type[Sensor]] = [Accelerometer, Encoder, TransmissionError, TorqueSensor, ForceWasher, MotorCurrent]
+KINDS: list[type[SensorBase]] = [Accelerometer, Encoder, TransmissionError, TorqueSensor, ForceWasher, MotorCurrent]
 """The first is what an entry without `kind` is."""

@@ -18,7 +18,7 @@ from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.stator_current import InductionMotor, active_current, phase_current
 from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, SensorBase
 from siggen.sensors.transducer import Running, Transducer
 
 PHASES = ("phase_a", "phase_b", "phase_c")
@@ -32,7 +32,7 @@ MAGNETISING_OVER_ACTIVE = 0.5
 """Amplitude of the magnetising current over the active one at the rated torque: a power factor of 0.89 (assumed)."""
 
 
-class MotorCurrent(Sensor):
+class MotorCurrent(SensorBase):
     """Clamps about the phases of an induction motor at a line frequency that does not change within a record."""
 
     quantity: ClassVar[Quantity] = Quantity("current", "current", "A", "a")

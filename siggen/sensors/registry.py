@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 from pydantic import BeforeValidator, Field
 
 from siggen.sensors.kinds import KINDS
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 
 DEFAULT_KIND = KINDS[0].kind_word()
 
@@ -21,7 +21,7 @@ def with_kind(entry: Any) -> Any:
 
 
 if TYPE_CHECKING:
-    SensorSection: TypeAlias = Sensor
+    SensorSection: TypeAlias = SensorBase
 elif len(KINDS) == 1:
     SensorSection = Annotated[KINDS[0], BeforeValidator(with_kind)]
 else:

@@ -59,7 +59,7 @@ class AxisDraws:
         return self.named(f"{self.path}.{name}")
 
 
-class Sensor(Section):
+class SensorBase(Section):
     """Base of the sections of sensors; its field `kind` is a Literal of one word.
 
     Numbers of the sensor belong to the gearbox, those of noise to the record. A kind names its range and the sizes of
@@ -204,14 +204,18 @@ class Sensor(Section):
         """Yield what does not go with how often shafts turn in the slowest record, by shaft."""
         yield from ()
 
-    def beside_problems(self, others: Mapping[str, Sensor], places: Places) -> Iterator[Problem]:  # noqa: ARG002
+    def beside_problems(self, others: Mapping[str, SensorBase], places: Places) -> Iterator[Problem]:  # noqa: ARG002
         """Yield what does not go with the other sensors of the set, by name."""
         yield from ()
+
+    def channel_name(self, axis: str) -> str:
+        """Return the name of the channel of an axis."""
+        return f"{self.name}_{axis}"
 
     @property
     def channels(self) -> tuple[tuple[str, str], ...]:
         """Channel name and axis of each channel."""
-        return tuple((f"{self.name}_{axis}", axis) for axis in self.axes)
+        return tuple((self.channel_name(axis), axis) for axis in self.axes)
 
     @property
     def gains(self) -> tuple[Number, ...]:
@@ -249,6 +253,6 @@ def _is_drawn(value: object) -> bool:
     return any(map(_is_drawn, value)) if isinstance(value, tuple) else isinstance(value, DRAWN)
 
 
-def needs(sensors: tuple[Sensor, ...], kind: str) -> bool:
+def needs(sensors: tuple[SensorBase, ...], kind: str) -> bool:
     """Return whether a sensor reads a kind of `Input`, such as bearing forces."""
     return any(kind in sensor.reads for sensor in sensors)

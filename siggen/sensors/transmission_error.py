@@ -16,7 +16,7 @@ from siggen.sensors.converter import BITS_TEXT, Bits
 from siggen.sensors.encoder import Encoder
 from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, SensorBase
 from siggen.sensors.transducer import Running, Transducer
 
 LARGEST_UM = 1e6
@@ -24,7 +24,7 @@ MICROMETRES = 1e6
 ENCODER = "name of an encoder of the set on its pinion or the motor in front, and on its gear or the load behind"
 
 
-class TransmissionError(Sensor):
+class TransmissionError(SensorBase):
     """R_b1 θ_1 - R_b2 θ_2 of the angles that two encoders of the set count, about its mean (standard literature).
 
     Encoders count from where they began: the mean error under load is in no record.
@@ -50,7 +50,7 @@ class TransmissionError(Sensor):
         """Yield nothing: its encoders say what the model has not."""
         yield from ()
 
-    def beside_problems(self, others: Mapping[str, Sensor], places: Places) -> Iterator[Problem]:
+    def beside_problems(self, others: Mapping[str, SensorBase], places: Places) -> Iterator[Problem]:
         """Yield names that are none of encoders on both sides of one mesh, that of the pinion's encoder."""
         turning = {name: one.place for name, one in others.items() if isinstance(one, Encoder)}
         ends = places.ends_of_meshes

@@ -20,7 +20,7 @@ from siggen.sensing.block_filter import TOGETHER, BlockGrid, block_grid, limited
 from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input
 from siggen.sensing.spectral_filter import frequencies
 from siggen.sensors.path import MeasuredPath
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, SensorBase
 from siggen.sensors.transducer import Transducer
 from siggen.specimen.background import (
     SpecimenBackground,
@@ -84,7 +84,7 @@ class ChannelInstrument:
     """
 
     name: str
-    sensor: Sensor
+    sensor: SensorBase
     gain: float
     seen: Mapping[Input, float]
     accelerance: ComplexArray | None
@@ -149,7 +149,7 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     for sensor in specimen.sensors:
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
-            channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, paths)
+            channel, ways[sensor.channel_name(axis)] = _channel(sensor, axis, constant(gain), draw, paths)
             channels.append(channel)
     if config.turns_in_housing:
         through = forces_through_housing(config, specimen, ways, grid)
@@ -209,7 +209,7 @@ class _Paths:
 
 
 def _channel(
-    sensor: Sensor, axis: str, gain: float, draw: AxisDraws, paths: _Paths
+    sensor: SensorBase, axis: str, gain: float, draw: AxisDraws, paths: _Paths
 ) -> tuple[ChannelInstrument, ChannelWay]:
     """Return a channel and what it sees of forces that the model does not make."""
     housing, grid, shown = paths.housing, paths.grid, sensor.shows(axis, draw)
@@ -226,7 +226,7 @@ def _channel(
         entries = housing.shown_accelerance(motions, tuple(housing.entries), grid, others)
         accelerance = beyond + housing.shown_accelerance(motions, forces, grid, coupled)
     channel = ChannelInstrument(
-        name=f"{sensor.name}_{axis}",
+        name=sensor.channel_name(axis),
         sensor=sensor,
         gain=gain,
         seen=_of_model(shown, housing, paths.along),
@@ -257,14 +257,14 @@ def _of_model(
     }
 
 
-def path_number(sensor: Sensor, uniform: Callable[[str], float]) -> int:
+def path_number(sensor: SensorBase, uniform: Callable[[str], float]) -> int:
     """Return which file of a measured path a gearbox drew, from 0; sensors with as many files have the same."""
     family = sensor.through.family if isinstance(sensor.through, MeasuredPath) else ()
     return min(int(uniform("path.number") * len(family)), len(family) - 1) if len(family) > 1 else 0
 
 
 def _measured(
-    sensor: Sensor, weights: Mapping[str, float], draw: AxisDraws, paths: _Paths
+    sensor: SensorBase, weights: Mapping[str, float], draw: AxisDraws, paths: _Paths
 ) -> tuple[tuple[str, ...], ComplexArray]:
     """Return bearing forces, and the accelerance (forces, k) from them that was measured."""
     assert isinstance(sensor.through, MeasuredPath)

@@ -32,7 +32,7 @@ from siggen.keys.number import at, constant
 from siggen.planning.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing_layout import specimen_layout
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS, BoltMotions, SpecimenHousing, second_stage
@@ -120,7 +120,7 @@ def _seats(box: Box, modes: BoxModes, shafts: Shafts | None, *, located: bool) -
 
 
 def _sensors(
-    box: Box, modes: BoxModes, sensors: tuple[Sensor, ...], uniform: Callable[[str], float]
+    box: Box, modes: BoxModes, sensors: tuple[SensorBase, ...], uniform: Callable[[str], float]
 ) -> dict[str, Motion]:
     """Return the motions of all sensors on plates, along all axes."""
     found = {}
@@ -132,7 +132,7 @@ def _sensors(
     return found
 
 
-def sensor_place(box: Box, sensor: Sensor, uniform: Callable[[str], float]) -> tuple[str, float, float]:
+def sensor_place(box: Box, sensor: SensorBase, uniform: Callable[[str], float]) -> tuple[str, float, float]:
     """Return the plate and where on it a sensor stands: about its middle, or about a bolt."""
     if sensor.plate == "floor":
         bolt = box.bolts[-1]

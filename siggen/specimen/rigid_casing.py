@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from siggen.config import RigidHousing
 from siggen.dynamics.structure.body import Bolts, Casing, Point
 from siggen.keys.number import Number, constant
-from siggen.sensors.sensor import Sensor
+from siggen.sensors.sensor import SensorBase
 
 CASING_GYRATION = 1.15
 """Radius of gyration of a casing over the distance of its axes: a box of even wall round the gears (derived)."""
 
 
-def casing_numbers(section: RigidHousing, extent_m: float, sensors: Sequence[Sensor]) -> Casing:
+def casing_numbers(section: RigidHousing, extent_m: float, sensors: Sequence[SensorBase]) -> Casing:
     """Return a drawn casing in SI; the extent [m] is that of its outermost axes, the first pinion at one end."""
     bolts, inertia = section.bolts, section.inertia_kg_m2
     mass, gyration_m = constant(section.mass_kg), CASING_GYRATION * extent_m

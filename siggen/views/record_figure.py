@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from siggen.columns.record import Channel
+    from siggen.columns.record import ChannelColumn
 
 HARMONICS = 3
 SIDEBANDS = 5
@@ -37,7 +37,7 @@ def amplitude_spectrum(signal: np.ndarray, fs_hz: float) -> tuple[np.ndarray, np
     return np.fft.rfftfreq(len(signal), 1.0 / fs_hz), amplitude
 
 
-def record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float) -> Figure:
+def record_figure(record: Mapping[str, Any], channel: ChannelColumn, fs_hz: float) -> Figure:
     """Return the figure of one channel of one record, as `Dataset.record` gives it."""
     from matplotlib.figure import Figure
 
@@ -57,7 +57,7 @@ def record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float) -> 
     return figure
 
 
-def _title(record: Mapping[str, Any], channel: Channel) -> str:
+def _title(record: Mapping[str, Any], channel: ChannelColumn) -> str:
     damage = (
         f"{counted(record['damage_count'], 'damage')} on {record['faulty_gear']}, {record['damaged_area_mm2']:.3g} mm²"
     )
@@ -109,7 +109,7 @@ def _shafts(record: Mapping[str, Any]) -> list[tuple[str, str, str]]:
     return known or [(name, *style) for name, style in zip(own, OWN, strict=False)]
 
 
-def save_record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float, path: Path) -> None:
+def save_record_figure(record: Mapping[str, Any], channel: ChannelColumn, fs_hz: float, path: Path) -> None:
     """Draw a record into a file.
 
     Raises

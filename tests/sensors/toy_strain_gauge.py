@@ -12,13 +12,13 @@ from siggen.keys.number import Number, Within
 from siggen.keys.section import Real
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.quantity import Quantity
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import AxisDraws, SensorBase
 
 STRAIN_PER_FORCE = 1e6 / (2.06e11 * 4e-4)
 """Of a seat of steel with a section of 4 cm² [um/m per N]."""
 
 
-class ToyStrainGauge(Sensor):
+class ToyStrainGauge(SensorBase):
     """What a user writes about it."""
 
     quantity: ClassVar[Quantity] = Quantity("strain", "strain", "um/m", "um_m")
