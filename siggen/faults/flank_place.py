@@ -157,7 +157,9 @@ def axial_heights_m(gear: SpurGear, values_m: FloatArray, reading: str) -> Float
 def in_mm(text: str) -> str:
     """Return a text with its lengths in mm, the unit of the configuration."""
     text = re.sub(r"\b([a-z_]+)_m (?=[-\d])", r"\1 ", text)
-    return re.sub(r"(-?\d[\d.]*(?:e[-+]?\d+)?) m\b", lambda found: f"{float(found[1]) * 1e3:.6g} mm", text)
+    number = r"-?\d[\d.]*(?:e[-+]?\d+)?"
+    text = re.sub(rf"({number}) to (?={number} m\b)", lambda found: f"{float(found[1]) * 1e3:.6g} to ", text)
+    return re.sub(rf"({number}) m\b", lambda found: f"{float(found[1]) * 1e3:.6g} mm", text)
 
 
 def allowed_text(text: str) -> str:
