@@ -11,7 +11,6 @@ from typing import Any
 from siggen.checks.loading import load_config
 from siggen.config import Config, Pair
 from siggen.config.planetary import RING
-from siggen.config.states import SEVERITIES
 from siggen.errors import UsageError
 from siggen.library.arguments import finite, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
@@ -26,9 +25,6 @@ from siggen.sensors.places import PLATE_OF
 from siggen.specimen.planetary_numbers import planets_in_ring
 
 __all__ = ["Gearbox", "Point", "State", "draw"]
-
-UNSTATED = "moderate"
-"""Severity of states whose name is none; a record of them has no such label."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +171,6 @@ class Gearbox:
             entry |= {"damage": damage, "sham": state.sham}
         if damage and not state.sham:
             entry["grows_from"] = "none"
-            entry |= {} if state.name in SEVERITIES else {"severity": UNSTATED}
         return entry
 
     def _shapes(self, state: State) -> tuple[ShapeFault, ...]:
@@ -246,7 +241,7 @@ class Gearbox:
                 place = [one.name for one in states].index(state.name)
                 states[place] = states[place].model_copy(update={
                     "damage": (*states[place].damages, *shapes), "sham": state.sham, "grows_from": "none",
-                    **({} if state.sham else {"fault": shapes[0].word, "severity": UNSTATED}),
+                    **({} if state.sham else {"fault": shapes[0].word, "severity": state.name}),
                 })  # fmt: skip
         return config.model_copy(update={"states": tuple(states)})
 

@@ -194,9 +194,7 @@ def _record(gearbox: Gearbox, config: Config, found: SimulatedRecord) -> Record:
     channels = {name: np.asarray(values, dtype=np.float64) for name, values in found.channels.items()}
     truth = {name: np.asarray(values, dtype=np.float64) for name, values in (found.internals or {}).items()}
     speed_hz, torque_nm = (float(str(found.labels[name])) for name in ("speed_hz", "torque_nm"))
-    unstated = {"severity"} if str(found.labels["state"]) in {one.name for one in gearbox._added} else set()
-    labels = {name: value for name, value in found.labels.items() if name not in unstated}
-    return Record(str(found.labels["state"]), speed_hz, torque_nm, config.fs_hz, channels, units, labels,
+    return Record(str(found.labels["state"]), speed_hz, torque_nm, config.fs_hz, channels, units, dict(found.labels),
                   np.asarray(found.tacho_s, dtype=np.float64), truth, _lines(gearbox))  # fmt: skip
 
 

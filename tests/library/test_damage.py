@@ -142,7 +142,7 @@ def test_kinds_of_damage_act_on_a_gearbox_as_states_of_it() -> None:
         loss = float(str(record.labels["mesh_stiffness_loss_as_simulated"]))
         assert (loss > 0.0) == (state.name not in {"rough", "sham"})
         assert not any(np.array_equal(record.channels[one], values) for one, values in healthy.channels.items())
-        assert "severity" not in record.labels
+        assert record.labels["severity"] == ("healthy" if state.sham else state.name)
     assert words == {
         "pitted": "pitting", "cracked": "crack", "chipped": "chip", "worn": "wear", "spalled": "spalling",
         "rough": "bearing", "dented": "damage", "sham": "healthy",
