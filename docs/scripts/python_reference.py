@@ -46,7 +46,7 @@ HEADED = re.compile(r"\* `[^`]*`( \(.*\))?")
 def entry(name: str, value: Any, level: str = "###") -> str:
     """Return heading, signature and docstring of a name, of a class with those of its public methods."""
     owner = f"siggen.{name}"
-    parts = [f"{level} `{owner}`", f"```python\n{signature(name, value)}\n```", described(inspect.getdoc(value) or "")]
+    parts = [f"{level} `{owner}`", f"```text\n{signature(name, value)}\n```", described(inspect.getdoc(value) or "")]
     if inspect.isclass(value):
         parts += [member(method, one) for method, one in vars(value).items() if not method.startswith("_")]
     return "\n\n".join(part for part in parts if part)

@@ -69,9 +69,12 @@ def test_plan_says_what_limits_shafts() -> None:
 
 @pytest.mark.parametrize("helix_deg", [0.0, 12.0, -12.0])
 def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
-    # The closed form of the check against the static state of the assembled gearbox.
+    # The closed form of the check against the static state of the assembled gearbox. Without friction, which takes some
+    # 0.3 % of the torque off the load and which the check leaves out.
     uneven = with_shafts(gear_position=0.42, bearing_span_mm=120.0)
-    healthy = {"gears": {**uneven["gears"], "helix_deg": helix_deg}, "states": [{"name": "healthy"}]}
+    smooth = {**uneven["dynamics"], "friction": {"model": "off"}}
+    gears = {**uneven["gears"], "helix_deg": helix_deg}
+    healthy = {"gears": gears, "dynamics": smooth, "states": [{"name": "healthy"}]}
     config = load_config(uneven | healthy)
     config = load_config(config.canonical() | {"operating_points": [{"speed_hz": 20.0, "torque_nm": 45.0}]})
     specimen = draw_specimen(config, 0)

@@ -166,10 +166,10 @@ def test_an_audit_keeps_the_names_of_states(made: Path) -> None:
 
 def test_a_message_repeats_what_the_file_says(made: Path) -> None:
     wrong = made / "wrong.yaml"
-    wrong.write_text((made / "mill.yaml").read_text().replace("severity: severe", "severity: pinion_rough"))
+    wrong.write_text((made / "mill.yaml").read_text().replace("severity: severe", "severity: Pinion rough"))
     done = command("siggen", "plan", str(wrong))
     assert done.returncode == 2
-    assert "received the text 'pinion_rough'" in done.stderr
+    assert "received the text 'Pinion rough'" in done.stderr
 
 
 @pytest.mark.slow

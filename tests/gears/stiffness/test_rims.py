@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.helical import transverse_gear
+from siggen.gears.geometry.spur_gear import transverse_gear
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.gears.builders import bare
