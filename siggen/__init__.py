@@ -8,6 +8,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from siggen.uncollected import uncollected
+
 if TYPE_CHECKING:
     from siggen.checks.loading import load_config
     from siggen.dataset.reading import open
@@ -31,118 +33,37 @@ if TYPE_CHECKING:
     from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
 __all__ = [
-    "BearingSpall",
-    "Case",
-    "Channel",
-    "Chip",
-    "Crack",
-    "Curve",
-    "Damage",
-    "Gear",
-    "GearPair",
-    "Gearbox",
-    "LineOrders",
-    "Pit",
-    "Point",
-    "Reading",
-    "Record",
-    "Sensor",
-    "Spall",
-    "Spectrum",
-    "State",
-    "Wear",
-    "draw",
-    "extend",
-    "flank_picture",
-    "generate",
-    "generate_part",
-    "load_config",
-    "machine",
-    "merge",
-    "mesh_stiffness",
-    "mesh_stiffness_curves",
-    "mesh_stiffness_meaning",
-    "open",
-    "pits_in_layers",
-    "plan",
-    "planetary",
-    "publish",
-    "random_pits",
-    "run",
-    "runs",
-    "simulate",
-    "single_stage",
-    "write_csv",
-    "write_recorded_set",
-]
+    "BearingSpall", "Case", "Channel", "Chip", "Crack", "Curve", "Damage", "Gear", "GearPair", "Gearbox",
+    "LineOrders", "Pit", "Point", "Reading", "Record", "Sensor", "Spall", "Spectrum", "State", "Wear", "draw",
+    "extend", "flank_picture", "generate", "generate_part", "load_config", "machine", "merge", "mesh_stiffness",
+    "mesh_stiffness_curves", "mesh_stiffness_meaning", "open", "pits_in_layers", "plan", "planetary", "publish",
+    "random_pits", "run", "runs", "simulate", "single_stage", "write_csv", "write_recorded_set",
+]  # fmt: skip
 
 _NAMES = {
-    "siggen.checks.loading": ("load_config",),
-    "siggen.dataset.reading": ("open",),
-    "siggen.dataset.spreadsheet": ("write_csv",),
-    "siggen.gears.geometry.gear_pair": (
-        "Gear",
-        "GearPair",
-    ),
-    "siggen.library.damage": (
-        "BearingSpall",
-        "Chip",
-        "Crack",
-        "Damage",
-        "Pit",
-        "Spall",
-        "Wear",
-        "pits_in_layers",
-        "random_pits",
-    ),
-    "siggen.library.gearbox": (
-        "Gearbox",
-        "Point",
-        "State",
-        "draw",
-    ),
-    "siggen.library.machines": (
-        "machine",
-        "planetary",
-    ),
-    "siggen.library.makers": ("single_stage",),
-    "siggen.library.pairs": (
-        "Curve",
-        "flank_picture",
-        "mesh_stiffness",
-    ),
-    "siggen.library.record": (
-        "LineOrders",
-        "Record",
-        "Spectrum",
-    ),
-    "siggen.library.running": (
-        "Case",
-        "run",
-        "runs",
-    ),
-    "siggen.library.sensors": (
-        "Channel",
-        "Reading",
-        "Sensor",
-    ),
-    "siggen.planning.plan": ("plan",),
-    "siggen.publication.publish": ("publish",),
-    "siggen.record.simulation": ("simulate",),
-    "siggen.sets.extension": ("extend",),
-    "siggen.sets.generation": ("generate",),
-    "siggen.sets.parts": (
-        "generate_part",
-        "merge",
-    ),
-    "siggen.sets.recorded_set": ("write_recorded_set",),
-    "siggen.views.stiffness_curves": (
-        "mesh_stiffness_curves",
-        "mesh_stiffness_meaning",
-    ),
+    "siggen.checks.loading": "load_config",
+    "siggen.dataset.reading": "open",
+    "siggen.dataset.spreadsheet": "write_csv",
+    "siggen.gears.geometry.gear_pair": "Gear GearPair",
+    "siggen.library.damage": "BearingSpall Chip Crack Damage Pit Spall Wear pits_in_layers random_pits",
+    "siggen.library.gearbox": "Gearbox Point State draw",
+    "siggen.library.machines": "machine planetary",
+    "siggen.library.makers": "single_stage",
+    "siggen.library.pairs": "Curve flank_picture mesh_stiffness",
+    "siggen.library.record": "LineOrders Record Spectrum",
+    "siggen.library.running": "Case run runs",
+    "siggen.library.sensors": "Channel Reading Sensor",
+    "siggen.planning.plan": "plan",
+    "siggen.publication.publish": "publish",
+    "siggen.record.simulation": "simulate",
+    "siggen.sets.extension": "extend",
+    "siggen.sets.generation": "generate",
+    "siggen.sets.parts": "generate_part merge",
+    "siggen.sets.recorded_set": "write_recorded_set",
+    "siggen.views.stiffness_curves": "mesh_stiffness_curves mesh_stiffness_meaning",
 }
 """Module -> public names that it defines."""
-_HOMES = {name: module for module, names in _NAMES.items() for name in names}
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> Any:
@@ -151,7 +72,8 @@ def __getattr__(name: str) -> Any:
         return import_module("siggen.sources").installed_version()
     if name not in _HOMES:
         raise AttributeError(f"siggen has no {name!r}; it has {', '.join(__all__)}")
-    return getattr(import_module(_HOMES[name]), name)
+    with uncollected():
+        return getattr(import_module(_HOMES[name]), name)
 
 
 def __dir__() -> list[str]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, TypeAlias, get_args
 
-from pydantic import Field, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field
 
 from siggen.errors import Problem
+from siggen.keys.parser import Parser
 from siggen.keys.problems import nearest_word, received_text, refusal
 
 OilName: TypeAlias = Literal[
@@ -18,10 +18,11 @@ OIL_NAMES: tuple[str, ...] = get_args(OilName)
 OilValue = str | tuple[str, ...]
 
 
-class OilParser:
+class OilParser(Parser):
     """Parser of `oil`: a name, or a list of different names."""
 
     allowed_text = f"one of {', '.join(OIL_NAMES)}, or a list of some, from which each gearbox draws"
+    documented: Any = OilName | Annotated[list[OilName], Field(min_length=1)]
 
     def parse(self, value: object) -> OilValue:
         """Return a name or several, or raise a refusal."""
@@ -33,13 +34,6 @@ class OilParser:
                 return tuple(names)
         meant = nearest_word(value, OIL_NAMES)
         raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}{meant}")])
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Parse with `parse`; the schema for readers of the file shows both forms."""
-        documented: Any = OilName | Annotated[list[OilName], Field(min_length=1)]
-        return core_schema.no_info_plain_validator_function(
-            self.parse, json_schema_input_schema=handler.generate_schema(documented)
-        )
 
 
 Oil = Annotated[OilValue, OilParser()]

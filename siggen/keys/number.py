@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias, Union
 
-from pydantic import Field, GetCoreSchemaHandler, ValidationError
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic import Field, ValidationError
+from pydantic_core import PydanticCustomError
 
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN, KINDS, Changed, Distribution
+from siggen.keys.parser import Parser
 from siggen.keys.problems import MISSING, nearest, received_text, refusal, refused_problems, section_problems
 from siggen.keys.wording import range_text
 
@@ -48,7 +49,7 @@ def number_text(number: Number) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Within:
+class Within(Parser):
     """Range of a physical number, and the parser of every field of this kind.
 
     Parameters
@@ -127,17 +128,13 @@ class Within:
             and (self.most is None or value <= self.most)
         )
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Parse with `parse`; the schema for readers of the file shows the alternatives."""
+    @property
+    def documented(self) -> Any:
+        """A number, a distribution, a list of them and the words."""
         limits = Field(gt=self.above, ge=self.least, lt=self.below, le=self.most)
-        documented: Any = Annotated[float, limits] | Annotated[Distribution, Field(discriminator="kind")]
-        if self.many:
-            documented = documented | list[documented]
-        described = [handler.generate_schema(documented)]
-        described += [core_schema.none_schema() if w is None else core_schema.literal_schema([w]) for w in self.words]
-        return core_schema.no_info_plain_validator_function(
-            self.parse, json_schema_input_schema=core_schema.union_schema(list(described))
-        )
+        number: Any = Annotated[float, limits] | Annotated[Distribution, Field(discriminator="kind")]
+        either = number | list[number] if self.many else number
+        return Union[either, *(word if word is None else Literal[word] for word in self.words)]
 
 
 def _distribution(value: Mapping[object, object]) -> Distribution:

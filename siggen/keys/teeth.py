@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import Field, GetCoreSchemaHandler, ValidationError
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field, ValidationError
 
 from siggen.errors import Problem, counted
 from siggen.keys.distributions import Choice
 from siggen.keys.number import Number, Within
+from siggen.keys.parser import Parser
 from siggen.keys.problems import received_text, refusal, section_problems
 
 TeethValue = int | tuple[int, ...] | Choice
@@ -22,13 +22,14 @@ DAMAGED_TEETH = (
 )
 
 
-class TeethParser:
+class TeethParser(Parser):
     """Parser of `teeth`: a whole number from 1, a choice of such numbers, or a list of different indices from 0."""
 
     allowed_text = (
         "how many neighbouring teeth (a whole number from 1, or kind: choice of such numbers), or a list of different "
         "tooth indices such as [0, 1]"
     )
+    documented: Any = Annotated[int, Field(ge=1)] | list[Annotated[int, Field(ge=0)]] | Choice
 
     def parse(self, value: object) -> TeethValue:
         """Return the number of teeth, a choice of it, or their indices, or raise a refusal."""
@@ -57,13 +58,6 @@ class TeethParser:
         if not all(number >= 1.0 and number.is_integer() for number in choice.values):
             raise refusal([Problem("values", str(choice), "allowed: whole numbers from 1")])
         return choice
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Parse with `parse`; the schema for readers of the file shows all forms."""
-        documented: Any = Annotated[int, Field(ge=1)] | list[Annotated[int, Field(ge=0)]] | Choice
-        return core_schema.no_info_plain_validator_function(
-            self.parse, json_schema_input_schema=handler.generate_schema(documented)
-        )
 
 
 def most_teeth(teeth: TeethValue) -> int | tuple[int, ...]:

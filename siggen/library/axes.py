@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from siggen.errors import UsageError, how_to_install
+from siggen.uncollected import uncollected
 from siggen.views.figure_style import figure_style
 
 
@@ -20,7 +21,8 @@ def drawing() -> Iterator[Any]:
         If matplotlib is missing.
     """
     try:
-        import matplotlib.pyplot as plt
+        with uncollected():
+            import matplotlib.pyplot as plt
     except ImportError:
         raise UsageError(f"drawing needs matplotlib: {how_to_install('diagnostics')}") from None
     with plt.rc_context(figure_style()):

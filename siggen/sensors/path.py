@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, JsonValue
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field, JsonValue
 
 from siggen.errors import Problem
+from siggen.keys.parser import Parser
 from siggen.keys.problems import received_text, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -16,10 +16,11 @@ DIRECTIONS = ("vertical", "horizontal", "axial")
 """Directions along which a sensor on the casing may look."""
 
 
-class TextParser:
+class TextParser(Parser):
     """Parser of a text, or of a list of some."""
 
     allowed_text = "a text, or a list of at least one"
+    documented: Any = str | Annotated[list[str], Field(min_length=1)] | None
 
     def parse(self, value: object) -> str | tuple[str, ...] | None:
         """Return the text, the texts or None, or raise a refusal."""
@@ -29,13 +30,6 @@ class TextParser:
         if texts and isinstance(value, (list, tuple)) and len(texts) == len(value):
             return texts
         raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Parse with `parse`; the schema for readers of the file shows both forms."""
-        documented: Any = str | Annotated[list[str], Field(min_length=1)] | None
-        return core_schema.no_info_plain_validator_function(
-            self.parse, json_schema_input_schema=handler.generate_schema(documented)
-        )
 
 
 OneOrMore = Annotated[str | tuple[str, ...], TextParser()]

@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from siggen.arrays import FloatArray
-from siggen.compiled import entry
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
+from siggen.uniform_spline import UniformSpline
 
 COARSEST_HZ = 2000.0
 LARGEST_ERROR = 1e-6
@@ -45,7 +44,7 @@ class SampledExcitation:
         self._excitation, self._drive = excitation, drive
         self._last_s, self._finest_hz, self._window_s = last_s, finest_hz, window_s
         self._rate_hz, self._until_s = COARSEST_HZ, -np.inf
-        self._spline: CubicSpline | None = None
+        self._spline: UniformSpline | None = None
         if window_s is None:
             self._cover(first_s, last_s)
 
@@ -55,7 +54,7 @@ class SampledExcitation:
             self._cover(time_s[0], min(max(time_s[0] + self._window_s, time_s[-1]), self._last_s))
         if self._spline is None:
             return self._excitation.inputs(time_s, drive)
-        return _evaluated(self._spline.x, self._spline.c, np.ascontiguousarray(time_s))
+        return self._spline(time_s)
 
     def seat_force_rows(self, places: Sequence[str]) -> FloatArray:
         """Return the forces (places, m) on seats per unit of the inputs, as `Excitation`."""
@@ -68,7 +67,7 @@ class SampledExcitation:
         while self._rate_hz < self._finest_hz and self._excitation.sharp_turn_rad == 0.0:
             knots = _knots(first_s, last_s, self._rate_hz)
             values = self._values(knots, coarser)
-            spline = CubicSpline(knots, values)
+            spline = UniformSpline(knots[0], 1.0 / self._rate_hz, values)
             if self._is_close(spline, knots):
                 self._spline = spline
                 return
@@ -85,32 +84,12 @@ class SampledExcitation:
         values[::2] = coarser[MARGIN // 2 :][: values[::2].shape[0]]
         return values
 
-    def _is_close(self, spline: CubicSpline, knots: FloatArray) -> bool:
+    def _is_close(self, spline: UniformSpline, knots: FloatArray) -> bool:
         """Return whether the spline errs little half an interval from knots."""
         chosen = np.linspace(MARGIN, knots.size - MARGIN - 2, CHECKED).astype(np.int64)
         middle = 0.5 * (knots[chosen] + knots[chosen + 1])
         wanted = self._excitation.inputs(middle, self._drive)
         return bool((np.abs(spline(middle) - wanted) <= LARGEST_ERROR * np.abs(wanted).max(axis=0)).all())
-
-
-@entry(cache=True)
-def _evaluated(knots: FloatArray, coefficients: FloatArray, time_s: FloatArray) -> FloatArray:
-    """Return the cubics (4, knots - 1, m) at times (k,), which ascend, to the last bit as scipy does.
-
-    Scipy looks for the interval of every time, which costs seven times more.
-    """
-    result = np.empty((time_s.size, coefficients.shape[2]))
-    i = min(max(int(np.searchsorted(knots, time_s[0], side="right")) - 1, 0), knots.size - 2)
-    for k in range(time_s.size):
-        while i < knots.size - 2 and time_s[k] >= knots[i + 1]:
-            i += 1
-        past = time_s[k] - knots[i]
-        square = past * past
-        cube = square * past
-        for j in range(result.shape[1]):
-            rising = coefficients[3, i, j] + coefficients[2, i, j] * past
-            result[k, j] = rising + coefficients[1, i, j] * square + coefficients[0, i, j] * cube
-    return result
 
 
 def _knots(first_s: float, last_s: float, rate_hz: float) -> FloatArray:

@@ -15,9 +15,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from siggen.arrays import FloatArray
+from siggen.uniform_spline import UniformSpline
 
 Draws = Callable[[str], np.random.Generator]
 """Generator that belongs to a name, so that a new name shifts no other draw."""
@@ -84,14 +84,14 @@ def _slope(teeth: int, rng: np.random.Generator) -> FloatArray:
 
 
 def _form(waves: FloatArray, rng: np.random.Generator) -> FloatArray:
-    place, nodes = np.linspace(0.0, 1.0, FLANK_POINTS), np.linspace(0.0, 1.0, NOISE_POINTS)
+    place = np.linspace(0.0, 1.0, FLANK_POINTS)
     form, noise = np.empty((waves.size, FLANK_POINTS)), np.empty((NOISE_POINTS, waves.size))
     # Tooth by tooth, so that further teeth leave those before them as they are.
     for tooth, cycles in enumerate(waves):
         phase, amplitude = 2.0 * np.pi * rng.random(), 1.0 + TOOTH_SCATTER * rng.standard_normal()
         noise[:, tooth] = NOISE_SHARE * rng.standard_normal(NOISE_POINTS)
         form[tooth] = amplitude * np.sin(2.0 * np.pi * cycles * place + phase)
-    return without_line(form + CubicSpline(nodes, noise)(place).T)
+    return without_line(form + UniformSpline(0.0, 1.0 / (NOISE_POINTS - 1), noise)(place).T)
 
 
 def without_line(profiles: FloatArray) -> FloatArray:

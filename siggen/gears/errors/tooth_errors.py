@@ -16,7 +16,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from siggen.arrays import FloatArray
 from siggen.gears.errors.error_shapes import FLANK_POINTS
@@ -24,6 +23,7 @@ from siggen.gears.errors.gear_errors import GearErrors, eccentric_m
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.uniform_spline import UniformSpline
 
 
 def with_errors(
@@ -74,6 +74,5 @@ def _profiles(pair: GearPair, which: str, errors: GearErrors, position_m: FloatA
     """Return slope and form of every tooth (z, k) at positions s (k,) [m]; the gear's flank runs against s."""
     place = (position_m - pair.contact_start_m) / (pair.contact_end_m - pair.contact_start_m)
     place = np.clip(place if which == "pinion" else 1.0 - place, 0.0, 1.0)
-    points = np.linspace(0.0, 1.0, FLANK_POINTS)
-    form = CubicSpline(points, errors.form_m, axis=1)(place)
-    return np.asarray(errors.slope_m[:, None] * place[None, :] + form)
+    form = UniformSpline(0.0, 1.0 / (FLANK_POINTS - 1), errors.form_m.T)(place)
+    return np.asarray(errors.slope_m[:, None] * place[None, :] + form.T)
