@@ -29,6 +29,7 @@ def run(*arguments: object) -> None:
     assert result.exit_code == 0, result.output
 
 
+@pytest.mark.drawn
 def test_a_row_per_tooth_and_a_picture(tmp_path: Path) -> None:
     run("--out", tmp_path / "e.csv", "--png", tmp_path / "e.png", *CLASS_6)
     table = pyarrow.csv.read_csv(tmp_path / "e.csv")

@@ -30,6 +30,7 @@ def run(*arguments: object) -> None:
     assert result.exit_code == 0, result.output
 
 
+@pytest.mark.drawn
 def test_table_and_picture_of_one_state(tmp_path: Path) -> None:
     run(
         "configs/paper_a.yaml",

@@ -15,6 +15,7 @@ runner = CliRunner()
 
 
 @pytest.mark.parametrize(("model", "count"), [("8dof", 8), ("casing", 11)])
+@pytest.mark.drawn
 def test_every_model_has_exactly_one_mode_of_free_rotation(tmp_path: Path, model: str, count: int) -> None:
     rigid = ["--set", "housing={kind: rigid}"] if model == "casing" else []
     result = runner.invoke(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow.parquet
+import pytest
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
@@ -14,6 +15,7 @@ from siggen.errors import UsageError
 runner = CliRunner()
 
 
+@pytest.mark.drawn
 def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> None:
     out, png = tmp_path / "path.parquet", tmp_path / "path.png"
     arguments = [

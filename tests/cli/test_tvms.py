@@ -24,6 +24,7 @@ def run(*arguments: object) -> str:
     return result.output
 
 
+@pytest.mark.drawn
 def test_the_table_holds_one_column_per_state_and_healthy_is_the_upper_bound(tmp_path: Path) -> None:
     run("configs/paper_a.yaml", "--out", tmp_path / "tvms.csv", "--png", tmp_path / "tvms.png")
     table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
@@ -66,6 +67,7 @@ def test_an_unknown_ending_is_refused_before_any_work(tmp_path: Path, name: str)
         run("configs/paper_a.yaml", "--out", tmp_path / name)
 
 
+@pytest.mark.drawn
 def test_parts_add_up_to_the_pair_of_the_damaged_tooth(tmp_path: Path) -> None:
     run("configs/paper_a.yaml", "--out", tmp_path / "parts.parquet", "--png", tmp_path / "parts.png", "--parts")
     table = pyarrow.parquet.read_table(tmp_path / "parts.parquet")
@@ -99,6 +101,7 @@ def test_a_picture_with_an_unknown_ending_is_refused_before_any_work(tmp_path: P
     assert not (tmp_path / "tvms.csv").exists()
 
 
+@pytest.mark.drawn
 def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
     spall = "{kind: spall, teeth: 1, profile_length_mm: 1.5, face_length_mm: 20.0, depth_mm: 0.2}"
     states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"

@@ -236,10 +236,12 @@ def make_dataset() -> Callable[..., MemoryDataset]:
     return memory_dataset
 
 
-@pytest.fixture
-def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Boosting of at most three trees, where what it reaches is not asked: it is a sixth of a report's time."""
+@pytest.fixture(autouse=True, scope="session")
+def few_trees() -> Iterator[None]:
+    """Boosting of at most ten trees, which tell these sets apart as well: all of them take a third of a report."""
     from diagnostics.training import boosting
 
     model = boosting._model
-    monkeypatch.setattr(boosting, "_model", lambda trees, seed: model(min(trees, 3), seed))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(boosting, "_model", lambda trees, seed: model(min(trees, 10), seed))
+        yield

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from unittest.mock import patch
 
@@ -23,11 +24,15 @@ from tests.dataset.s3_server import BUCKET, object_bytes, s3_server
 from tests.publication.conftest import facts_file
 
 MOMENTS = 10
-PUBLISHED = """
+PICTURES = {f"previews/{name}.png": name.encode() for name in ("healthy", "slight", "moderate")}
+"""Drawn elsewhere: of a whole `publish` they take nearly all the time."""
+PUBLISHED = f"""
 import os, signal, sys
 from pathlib import Path
 from siggen import file_writing
+from siggen.publication import publish as publication_module
 from siggen.publication.publish import publish
+publication_module._previews = lambda dataset: {PICTURES}
 folder, moments = Path(sys.argv[1]), sys.argv[2:]
 flush, flushed = file_writing._flush, 0
 def dies(path):
@@ -44,6 +49,12 @@ for moment in map(int, moments):
         os._exit(0)
     print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), (folder / "upload").exists(), flush=True)
 """
+
+
+@pytest.fixture(autouse=True, scope="module")
+def pictures() -> Iterator[None]:
+    with patch.object(publication_module, "_previews", lambda dataset: PICTURES):
+        yield
 
 
 @pytest.fixture(scope="module")

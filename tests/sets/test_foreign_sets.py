@@ -21,7 +21,7 @@ from tests.dataset.resealed_set import facts
 from tests.faults.foreign_sets import outcome_rows, readers
 from tests.publication.conftest import facts_file
 
-CHANGES = 15
+CHANGES = 8
 QUICK_READERS = ("open", "verify", "publish", "merge", "extend", "generate")
 
 

@@ -102,6 +102,7 @@ def run(*arguments: object) -> tuple[int, str]:
     return result.exit_code, result.output
 
 
+@pytest.mark.drawn
 def test_the_command_writes_table_and_picture_and_says_the_largest_pressures(tmp_path: Path) -> None:
     out, png = tmp_path / "p.csv", tmp_path / "p.png"
     code, said = run("--record", 1, "--out", out, "--png", png)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from planted_set import Plant, PlantedSet, planted
 
-from diagnostics.audit import signal_attackers
+from diagnostics.audit import bank_detections, condition_traps, signal_attackers
 from diagnostics.cli.app import main
 from siggen.dataset import reading
 
@@ -27,7 +27,9 @@ def clean() -> PlantedSet:
 
 @pytest.fixture(autouse=True)
 def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few steps of training: what they find is tested with the attackers."""
+    """Few steps of training and few permutations: what they find is tested with the attackers."""
+    monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
+    monkeypatch.setattr(bank_detections, "PERMUTATIONS", 99)
     monkeypatch.setattr(signal_attackers, "SHOWN", 40)
     monkeypatch.setattr(signal_attackers, "FEWEST_EPOCHS", 1)
 

@@ -13,7 +13,7 @@ from diagnostics.audit.column_attackers import best_column
 from diagnostics.audit.held_out import dealt_folds
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 
-GEARBOXES, ORDERS, SETS, PERMUTATIONS = 24, 10, 800, 39
+GEARBOXES, ORDERS, SETS, PERMUTATIONS = 24, 10, 400, 39
 SPREAD = (0.1 * 0.9 * SETS) ** 0.5
 """Of the number of p-values at 0.1 or below."""
 SPECIMEN, DAMAGED = np.repeat(np.arange(GEARBOXES), 3), np.tile([False, False, True], GEARBOXES)

@@ -9,6 +9,7 @@ import pytest
 from planted_set import Plant, measured
 from planted_traps import FOUND_AS, TRAPS, with_permuted_states
 
+from diagnostics.audit import condition_traps
 from diagnostics.audit import separability_findings as findings
 from diagnostics.audit.condition_traps import condition_layers
 from diagnostics.audit.measured_set import MeasuredSet
@@ -29,6 +30,13 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
 def twice(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
     """Return a clean set with two records of every state of a gearbox at one operating point."""
     return measured(Plant(points=1, repeats=2), tmp_path_factory)
+
+
+@pytest.fixture(autouse=True)
+def few_permutations(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fifth of the permutations: how often clean sets are accused is asked by the slow test, with all of them."""
+    if request.node.get_closest_marker("slow") is None:
+        monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
 
 
 def traps(found: MeasuredSet) -> list[str]:
@@ -65,12 +73,15 @@ def test_labels_of_the_damage_itself_and_of_what_follows_from_it_are_no_tie(clea
     ("plant", "expected"),
     [
         (
-            Plant(points=1, error_depth=0.0, one_tooth=True),
+            Plant(specimens=6, points=1, error_depth=0.0, one_tooth=True),
             ["healthy_without_sidebands", "constant_damage_phase_tacho"],
         ),
-        (Plant(points=1, one_error_draw=True, shared_noise=True), ["one_error_draw", "noise_shared_by_records"]),
         (
-            Plant(points=1, padded_state="severe", copied_channel_noise=True, one_start=True),
+            Plant(specimens=6, points=1, one_error_draw=True, shared_noise=True),
+            ["one_error_draw", "noise_shared_by_records"],
+        ),
+        (
+            Plant(specimens=6, points=1, padded_state="severe", copied_channel_noise=True, one_start=True),
             ["state_tied_to_duration_s", "noise_shared_by_channels", "constant_damage_phase_start"],
         ),
     ],

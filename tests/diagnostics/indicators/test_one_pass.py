@@ -70,7 +70,6 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     return calls
 
 
-@pytest.mark.usefixtures("few_trees")
 def test_ranking_training_audit_and_features_resample_and_average_once_per_record_and_channel(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

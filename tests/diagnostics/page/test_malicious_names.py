@@ -68,7 +68,6 @@ def malicious() -> MemoryDataset:
 
 
 @pytest.mark.slow  # trains and draws all of a report; the page of records has these names in every run
-@pytest.mark.usefixtures("few_trees")
 def test_a_report_shows_every_name_as_text(malicious: MemoryDataset, tmp_path: Path) -> None:
     states = list(dict.fromkeys(malicious.table.column("state").to_pylist()))
     with warnings.catch_warnings():

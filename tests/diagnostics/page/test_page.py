@@ -38,6 +38,7 @@ ROWS = [
 HEAD = ("Feature", "AUC [-]", "p")
 
 
+@pytest.mark.drawn
 def test_figures_and_tables_are_numbered_by_kind_in_the_order_of_the_page() -> None:
     with styled():
         png = png_bytes(new_figure(height_in=1.0)[0])
@@ -82,6 +83,7 @@ def test_notes_are_sentences() -> None:
     assert html.notes(["no network", "Why?"]) == ['<p class="note">No network.</p>', '<p class="note">Why?</p>']
 
 
+@pytest.mark.drawn
 def test_a_picture_holds_a_palette_the_same_bytes_every_time_and_its_size() -> None:
     def drawn() -> bytes:
         with styled():
@@ -97,6 +99,7 @@ def test_a_picture_holds_a_palette_the_same_bytes_every_time_and_its_size() -> N
     assert 'width="960" height="400"' in html.figure_block(png, "A caption.")
 
 
+@pytest.mark.drawn
 def test_colours_of_the_figure_survive_the_palette(tmp_path: Path) -> None:
     with styled():
         figure, axes = new_figure(height_in=2.0)
@@ -144,6 +147,7 @@ def sorted_names(clicks: str, tmp_path: Path) -> tuple[list[str], list[str]]:
 
 
 @pytest.mark.skipif(not BROWSER, reason="no chromium or chrome on this machine")
+@pytest.mark.drawn
 def test_on_a_phone_wide_tables_scroll_in_their_own_box_and_the_page_does_not(tmp_path: Path) -> None:
     wide = [
         [Cell(f"energy_operator_teager_pinion_{k}__side_horizontal"), *[Cell("+0.50", "+0.40 … +0.60")] * 20]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
 from matplotlib.ticker import FuncFormatter
 
 from diagnostics.page.style import new_figure, png_bytes, styled
+
+pytestmark = pytest.mark.drawn
 
 
 def test_labels_of_a_logarithmic_axis_are_plain_text_and_those_of_ones_own_stay() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import pytest
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.statistics.evaluation import column_auc
@@ -58,7 +57,6 @@ def test_the_best_of_many_columns_of_noise_is_chance_on_gearboxes_that_did_not_c
         assert abs(found[family].every.value - 0.5) < 3 * 0.07
 
 
-@pytest.mark.usefixtures("few_trees")
 def test_a_column_that_shows_damage_is_chosen_whatever_its_direction() -> None:
     values = noise(3 * GEARBOXES)
     matrix = matrix_of(values)
@@ -71,7 +69,6 @@ def test_a_column_that_shows_damage_is_chosen_whatever_its_direction() -> None:
     assert not found.referenced  # one healthy record per gearbox: none is left to refer to
 
 
-@pytest.mark.usefixtures("few_trees")
 def test_a_healthy_reference_removes_what_differs_from_gearbox_to_gearbox() -> None:
     values = noise(4 * GEARBOXES)
     matrix = matrix_of(values, healthy_records=2)
@@ -84,7 +81,6 @@ def test_a_healthy_reference_removes_what_differs_from_gearbox_to_gearbox() -> N
     assert beside.every.value == 1.0 > found.alone[INDICATOR].every.value
 
 
-@pytest.mark.usefixtures("few_trees")
 def test_a_gearbox_is_in_one_fold_and_a_column_with_a_gap_is_not_taken() -> None:
     specimen = np.repeat(np.arange(GEARBOXES), 3)
     fold = dealt(specimen, seed=0)

@@ -83,7 +83,6 @@ def test_other_sets_must_match_in_channels_rate_and_states(dataset: Any) -> None
             check_other_set(dataset, found)
 
 
-@pytest.mark.usefixtures("few_trees")
 def test_another_set_is_judged_by_the_classifiers_of_the_first(
     dataset: Any, features: pa.Table, make_dataset: Callable[..., Any]
 ) -> None:
