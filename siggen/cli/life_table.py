@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from siggen.sets.record_cost import LifeCost
 
 QUANTILES = (0.05, 0.5, 0.95)
-MOST_LIVES = 200
-"""Gearboxes whose lives are worked out for the table."""
+MOST_LIVES = 25
+"""Gearboxes whose lives are worked out for the table; those of further ones count by proportion."""
 ENDS = {"first_pit": "first pit", "rated": "rated damage", "functional": "functional end"}
 
 
@@ -40,6 +40,7 @@ def life_summary(config: Config) -> dict[str, Any] | None:
         "slope": {name: _slope(ages) for name, ages in ends.items()},
         "pitted_teeth_at_end": spread([len(one.course.teeth(one.course.ends.functional)) for one in lives]),
         "inspections": spread([len(one.ages_h) for one in lives]),
+        "mean_inspections": sum(len(one.ages_h) for one in lives) / len(lives),
         "pitted_inspections": _pitted(lives) / max(sum(len(one.ages_h) for one in lives), 1),
         "history_h": lives[0].clock.round_h if config.life.history else None,
         "schedule_h": config.life.interval_h * (config.life.most - 1),

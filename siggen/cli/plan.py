@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from siggen.config import Config
-    from siggen.sets.trial import SetTrial, StateTrial
+    from siggen.sets.trial import SetTrial
 
 
 NOTES = ("stiffness_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
@@ -39,8 +39,8 @@ def plan(
             "--trial",
             min=0,
             max=1000,
-            help="Gearboxes of which a short record of every state is simulated, to tell what would be lost, what "
-            "damage does and what the set costs; 0: none. By default as many as make ten records.",
+            help="Gearboxes of which a short record of every state is simulated, to tell what would be lost and what "
+            "the set costs; 0: none. By default a sample of five records, of states evenly spread.",
             metavar="N",
         ),
     ] = None,
@@ -48,8 +48,8 @@ def plan(
 ) -> None:
     """List the records, shards and size that a configuration would give, what is implausible and what would be lost.
 
-    A record is lost where its motion leaves the model. Short records of a few gearboxes say of every state which share
-    that is, how much of the mesh stiffness its damage takes, and whether as much was found in the preset bench.
+    A record is lost where its motion leaves the model. A sample of short records says which share that is. For every
+    state it says how much of the mesh stiffness its damage takes, and whether as much was found in the preset bench.
     `--trial 0` leaves them out.
 
     Example: siggen plan configs/quickstart.yaml --set specimens=1000 --trial 20
@@ -80,7 +80,7 @@ def plan(
             console.print(printable(f"{state['name']}: {remark}"), highlight=False, markup=False)
     for note in (note for kind in NOTES for note in summary[kind]):
         console.print(printable(f"note: {note}"), highlight=False, markup=False)
-    _print_trial(console, tried)
+    _print_trial(console, found)
 
 
 def _cost(config: Config, summary: dict[str, Any], tried: SetTrial | None) -> dict[str, Any] | None:
@@ -100,33 +100,38 @@ def _tried(config: Config, gearboxes: int | None) -> SetTrial | None:
     from siggen.cli.working import stepwise
     from siggen.sets import trial
 
-    count = trial.default_gearboxes(config) if gearboxes is None else gearboxes
-    if not count:
+    if gearboxes == 0:
         return None
-    with stepwise("trying short records of every state (--trial 0 leaves this out)") as progress:
-        return trial.trial(config, count, progress)
+    with stepwise("trying short records (--trial 0 leaves this out)") as progress:
+        return trial.trial(config, gearboxes, progress)
 
 
-def _print_trial(console: Console, tried: Sequence[StateTrial]) -> None:
+def _print_trial(console: Console, found: SetTrial | None) -> None:
     """Print which share of every state would be lost, and what to do where that is more than a run allows."""
-    from rich.table import Table
+    from rich.table import Column, Table
 
     from siggen.errors import counted
     from siggen.sets.loss_limit import ALLOWED_LOSS
 
-    if not tried:
+    if found is None:
         console.print("nothing was tried: --trial 10 simulates short records of ten gearboxes", markup=False)
         return
-    title = f"Trial: a short record of {counted(tried[0].tried, 'gearbox', 'gearboxes')} in every state"
-    heads = ("state", "lost", "95 % of all", "loss of mesh stiffness", "through the face", "found")
-    table = Table(*heads, title=title, title_justify="left")
+    tried, most = found.states, counted(max(one.tried for one in found.states), "gearbox", "gearboxes")
+    sampled = sum(one.tried > 0 for one in tried)
+    where = "every state" if sampled == len(tried) else f"{sampled} of {len(tried)} states"
+    title = f"Trial: a short record of {most} in {where}"
+    if found.sized:
+        title += f"; damage of {counted(found.sized, 'gearbox', 'gearboxes')} in every state"
+    heads = ("lost", "95 % of all", "loss of mesh stiffness", "through the face", "found")
+    table = Table(Column("state", overflow="fold"), *heads, title=title, title_justify="left")
     for state in tried:
         low, high = state.interval
         damage = ("", "", "")
         if state.found:
             through = f"yes, {state.profile_length_mm:.2g} mm" if state.through_face else "no"
             damage = (_percent(state.stiffness_loss), through, state.found)
-        table.add_row(state.state, f"{state.lost} of {state.tried}", f"{low:.0%} to {high:.0%}", *damage)
+        lost = (f"{state.lost} of {state.tried}", f"{low:.0%} to {high:.0%}") if state.tried else ("not tried", "")
+        table.add_row(state.state, *lost, *damage)
     console.print(table)
     for state in (state for state in tried if state.found == "hardly"):
         sentence = (
@@ -153,11 +158,12 @@ def plan_summary(config: Config) -> dict[str, Any]:
         specimen_count,
         specimens_per_shard,
     )
-    from siggen.planning.plan import plan as planned
 
     specimens = {split: specimen_count(config, split) for split in SPLITS}
-    records = planned(config).count
     lives, notes = life_summary(config), _notes(config)
+    per_state = len(config.operating_points) * config.repeats
+    inspections = config.state_count if lives is None else lives["mean_inspections"]
+    records = round(config.specimens * inspections) * per_state
     raw_bytes = records * config.samples * 4 * len(config.channels)
     return {
         "name": config.name,
@@ -180,7 +186,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "specimens_per_full_shard": specimens_per_shard(config),
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,
-        "estimated_bytes_on_disk": estimated_bytes(config),
+        "estimated_bytes_on_disk": estimated_bytes(config, records),
         **notes,
         "implausible": [*notes["implausible"], *life_doubts(lives)],
     }
@@ -295,7 +301,7 @@ def _overview(summary: dict[str, Any]) -> Table:
         "identity": summary["identity"],
         "gearboxes": f"{summary['specimens']:,}  ({_per_split(summary['specimens_of_split'])})",
         **_pair_row(summary),
-        "records": f"{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
+        "records": f"{_about(summary)}{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
         "channels": ", ".join(summary["channels"]),
         "hours of signal": f"{summary['signal_hours']:.3g}",
         f"mesh of {summary['mesh']}" if summary["mesh"] else "mesh frequency": _hertz(low_hz, high_hz),
@@ -320,6 +326,11 @@ def _of_lives(summary: dict[str, Any]) -> dict[str, str]:
     history = history_text(summary["life"]) if summary["life"] else ""
     cost = {"time": cost_text(summary["cost"])} if summary["cost"] else {}
     return {**({"history of load": history} if history else {}), **cost}
+
+
+def _about(summary: dict[str, Any]) -> str:
+    """Return whether the records of lives were counted by proportion."""
+    return "about " if summary["life"] and summary["life"]["lives"] < summary["specimens"] else ""
 
 
 def _balance(summary: dict[str, Any]) -> dict[str, str]:

@@ -264,11 +264,11 @@ def specimens_per_shard(config: Config) -> int:
     return max(1, SHARD_BYTES * 100 // (specimen_bytes * DISK_SHARE_PERCENT))
 
 
-def estimated_bytes(config: Config) -> int:
-    """Return about how many bytes the signals of the set will take on disk."""
+def estimated_bytes(config: Config, records: int) -> int:
+    """Return about how many bytes the signals of a set of so many records will take on disk."""
     percents = [_disk_percent(sensor) for sensor in config.sensors for _ in sensor.axes]
     internals = config.specimens * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
-    return plan(config).count * _row_bytes(config) * sum(percents) // 100 + internals
+    return records * _row_bytes(config) * sum(percents) // 100 + internals
 
 
 def _disk_percent(sensor: SensorBase) -> int:

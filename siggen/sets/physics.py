@@ -19,6 +19,10 @@ def _nothing(config: Config) -> Sequence[CompilationPart]:  # noqa: ARG001 - as 
     return ()
 
 
+def _no_sizes(config: Config, specimen_id: int) -> Mapping[str, Mapping[str, object]]:  # noqa: ARG001
+    return {}
+
+
 def _no_life(config: Config, specimen_id: int) -> Mapping[str, Sequence[Mapping[str, object]]]:  # noqa: ARG001
     return {}
 
@@ -39,6 +43,8 @@ class Physics:
         config -> columns of `internals/`; asked only where a set stores some.
     to_compile
         config -> tasks that compile what its records need, side by side; none where that is compiled.
+    damage_sizes
+        (config, specimen) -> labels of the damage of every state, from its drawing alone.
     """
 
     simulate: Simulate
@@ -46,6 +52,7 @@ class Physics:
     quantities: Callable[[Config], Sequence[Column]]
     to_compile: Callable[[Config], Sequence[CompilationPart]] = _nothing
     life_rows: LifeRows = _no_life
+    damage_sizes: Callable[[Config, int], Mapping[str, Mapping[str, object]]] = _no_sizes
 
     def stored(self, config: Config) -> tuple[Column, ...]:
         """Return the columns of `internals/` of a set; none where it stores none."""
@@ -56,8 +63,9 @@ def physics() -> Physics:
     """Return the physics of this version; compiled code is imported here and not before."""
     from siggen.record.compilation import to_compile
     from siggen.record.damage_rows import damage_rows
+    from siggen.record.damage_sizes import damage_sizes
     from siggen.record.internals import stored_quantities
     from siggen.record.life_rows import life_rows
     from siggen.record.simulation import simulate_specimen
 
-    return Physics(simulate_specimen, damage_rows, stored_quantities, to_compile, life_rows)
+    return Physics(simulate_specimen, damage_rows, stored_quantities, to_compile, life_rows, damage_sizes)

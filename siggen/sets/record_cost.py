@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 LONGER_S = 2.0
 """By which a record is longer that tells what a second of signal costs."""
-TIMES = 2
-"""That each is timed; the least counts, since whatever else runs only adds."""
 LOOKED_THROUGH = 20
 """Gearboxes, at most, among which one is sought that shows both whole and pitted teeth."""
 
@@ -52,7 +50,7 @@ class LifeCost:
 
 
 def life_cost(config: Config) -> LifeCost:
-    """Return what records of one gearbox cost; the time of a compiler that runs first does not count."""
+    """Return what records of one gearbox cost, behind a trial that has loaded what they need."""
     specimen, pitted = _tried(config)
     each = len(config.operating_points) * config.repeats
     ids = record_ids_of(config, specimen)[::each]
@@ -62,9 +60,8 @@ def life_cost(config: Config) -> LifeCost:
     physics = contents.physics()
 
     def cost_s(of: Config, *records: int) -> float:
-        return min(_cpu_s(lambda: list(physics.simulate(of, sorted(set(records))))) for _ in range(TIMES))
+        return _cpu_s(lambda: list(physics.simulate(of, sorted(set(records)))))
 
-    cost_s(short, first, damaged)
     once, both, with_damage = cost_s(short, first), cost_s(short, *whole), cost_s(short, first, damaged)
     longer_by_s = longer.duration_s - short.duration_s
     signal_s = max((cost_s(longer, first) - once) / longer_by_s, 0.0) if longer_by_s > 0.0 else 0.0

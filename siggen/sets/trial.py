@@ -1,4 +1,4 @@
-"""A trial of a configuration: a short record of every state of some gearboxes: what is lost, and what damage does.
+"""A trial of a configuration: short records of some states and gearboxes: what is lost, and what damage does.
 
 A record is lost where the motion leaves the model. It does so within the first turns: of three machines with 8
 gearboxes each, records of 8 and of 60 turns lost the same number in all 15 states, 0 to 5 of 8.
@@ -7,7 +7,7 @@ gearboxes each, records of 8 and of 60 turns lost the same number in all 15 stat
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil, sqrt
 from statistics import median
@@ -21,11 +21,14 @@ if TYPE_CHECKING:
     from siggen.columns.record import SimulatedRecord
     from siggen.config import Config
 
-GEARBOXES, RECORDS = 10, 10
-"""That are tried unless told otherwise: as many gearboxes as make so many records, at least one."""
+RECORDS = 5
+"""That are tried unless told otherwise: of every state of one gearbox or more, or of as many states, evenly spread.
+Where several pairs of gears mesh they are shared among these, and two are the least."""
+SIZES = 25
+"""Damaged pairs that are sized: of as many gearboxes as have so many, at least one."""
 TURNS = 8
 """Of the slower shaft that carries damage."""
-LONGER_S = 1.0
+LONGER_S = 0.5
 """By which a record is longer that tells what a second of signal costs."""
 NORMAL_95 = 1.96
 FOUND_LOSS, BESIDE_LOSS, FOUND_LENGTH_MM = 0.15, 0.03, 0.2
@@ -42,7 +45,7 @@ class StateTrial:
     ----------
     state : str
     tried, lost : int
-        Gearboxes, and those that lost their record.
+        Gearboxes of which a record was tried, and those that lost it.
     reason : str
         Why the first one did.
     stiffness_loss, area_share, profile_length_mm : float
@@ -64,11 +67,13 @@ class StateTrial:
     @property
     def share(self) -> float:
         """Share of the records that is lost."""
-        return self.lost / self.tried
+        return self.lost / max(self.tried, 1)
 
     @property
     def interval(self) -> tuple[float, float]:
         """Where the share of all gearboxes lies with 95 % (Wilson's interval)."""
+        if not self.tried:
+            return 0.0, 1.0
         n, z2 = self.tried, NORMAL_95**2
         middle = (self.share + 0.5 * z2 / n) / (1.0 + z2 / n)
         half = NORMAL_95 * sqrt(self.share * (1.0 - self.share) / n + 0.25 * z2 / n**2) / (1.0 + z2 / n)
@@ -90,55 +95,68 @@ class StateTrial:
 
 @dataclass(frozen=True, slots=True)
 class SetTrial:
-    """States in the order of the configuration, and what the whole set costs by proportion, CPU seconds."""
+    """States in the order of the configuration, gearboxes whose damage was sized, CPU seconds of the whole set."""
 
     states: tuple[StateTrial, ...]
+    sized: int
     cpu_s: float
 
 
-def default_gearboxes(config: Config) -> int:
-    """Return how many gearboxes are tried."""
-    return min(GEARBOXES, max(1, RECORDS // config.state_count), config.specimens)
-
-
-def trial(config: Config, gearboxes: int, progress: Callable[[int, int], None] | None = None) -> SetTrial:
+def trial(config: Config, gearboxes: int | None = None, progress: Callable[[int, int], None] | None = None) -> SetTrial:
     """Return what short records of the first gearboxes of a set lose, what damage does, and what all records cost.
 
     Parameters
     ----------
     config : Config
-    gearboxes : int
-        At most as many as the set has; with several operating points each gearbox runs at one of them in turn.
+    gearboxes : int, optional
+        Of which every state is tried, at most as many as the set has; with several operating points each gearbox runs
+        at one of them in turn. By default `RECORDS` records.
     progress : callable, optional
         Called with (records done, records of the trial).
     """
-    short, tried = shortened(config), min(gearboxes, config.specimens)
+    short, physics = shortened(config), contents.physics()
+    meshes = 1 + len(config.stages) if config.planetary is None else 2 * len(config.planetary.positions_deg)
+    most = max(2, RECORDS // meshes) if gearboxes is None else config.state_count
+    wanted = max(1, most // config.state_count) if gearboxes is None else gearboxes
+    tried = min(wanted, config.specimens)
     found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in config.state_names}
-    total = tried * len(found)
-    contents.physics().simulate(short, _record_ids(short, 0)[:1])  # what is compiled here costs nothing later
-    spent_s = []
+    picked = _spread(len(found), most)
+    total = tried * len(picked)
+    spent_s: list[float] = []
     for specimen in range(tried):
-        if progress is not None:
-            progress(specimen * len(found), total)
+        ids = _record_ids(short, specimen)  # a gearbox may fail before its last inspection
+        places = [i for i in picked if i < len(ids)]
         begun_s = time.process_time()
-        results = list(contents.physics().simulate(short, _record_ids(short, specimen)))
-        spent_s.append(time.process_time() - begun_s)
-        for name, result in zip(found, results, strict=False):  # a gearbox may fail before its last inspection
-            found[name].append(result)
-    states = tuple(_state_trial(name, results) for name, results in found.items() if results)
-    return SetTrial(states, _set_cpu_s(config, short, median(spent_s)))
+        for i, result in zip(places, physics.simulate(short, [ids[i] for i in places]), strict=True):
+            if progress is not None:
+                progress(len(spent_s), total)
+            found[config.state_names[i]].append(result)
+            begun_s, before_s = time.process_time(), begun_s
+            spent_s.append(begun_s - before_s)
+    count = 0 if config.life is not None else min(max(1, SIZES // (meshes * config.state_count)), config.specimens)
+    sizes = [physics.damage_sizes(config, specimen) for specimen in range(count)]
+    states = tuple(
+        _state_trial(name, results, [one[name] for one in sizes if name in one]) for name, results in found.items()
+    )
+    return SetTrial(tuple(one for one in states if one.tried or count), count, _set_cpu_s(config, short, spent_s))
 
 
-def _set_cpu_s(config: Config, short: Config, gearbox_s: float) -> float:
-    """Return the CPU seconds of a whole set, where short records of all states of one gearbox took so long."""
+def _spread(count: int, most: int) -> list[int]:
+    """Return so many of the first whole numbers, the first and the last among them."""
+    steps = min(count, most) - 1
+    return [i * (count - 1) // max(steps, 1) for i in range(steps + 1)]
+
+
+def _set_cpu_s(config: Config, short: Config, spent_s: Sequence[float]) -> float:
+    """Return the CPU seconds of a whole set of which short records took so long, the first of them with all loading."""
     longer = short.model_copy(update={"duration_s": short.duration_s + LONGER_S})
-    one = _record_ids(short, 0)[:1]
+    one, records = _record_ids(short, 0)[:1], len(record_ids_of(config, 0))
     once_s, longer_s = _record_cpu_s(short, one), _record_cpu_s(longer, one)
     signal_s = max(longer_s - once_s, 0.0) / LONGER_S
-    states, records = config.state_count, len(record_ids_of(config, 0))
-    record_s = max(gearbox_s - once_s, 0.0) / max(states - 1, 1)
-    more_s = records * (config.duration_s - short.duration_s) * signal_s
-    return config.specimens * (gearbox_s + (records - states) * record_s + more_s)
+    next_s = median(spent_s[1:] or [once_s])
+    return config.specimens * (
+        once_s + (records - 1) * next_s + records * (config.duration_s - short.duration_s) * signal_s
+    )
 
 
 def _record_cpu_s(config: Config, ids: Sequence[int]) -> float:
@@ -166,9 +184,11 @@ def _record_ids(config: Config, specimen: int) -> Sequence[int]:
     return record_ids_of(config, specimen)[point * config.repeats :: each]
 
 
-def _state_trial(name: str, results: Sequence[SimulatedRecord | RecordFailure]) -> StateTrial:
+def _state_trial(
+    name: str, results: Sequence[SimulatedRecord | RecordFailure], sizes: Sequence[Mapping[str, object]]
+) -> StateTrial:
     reasons = [reason for result in results if (reason := _lost(result))]
-    labels = [result.labels for result in results if not isinstance(result, RecordFailure)]
+    labels = sizes or [result.labels for result in results if not isinstance(result, RecordFailure)]
 
     def middle(column: str) -> float:
         return float(median([float(str(row.get(column, 0.0))) for row in labels] or [0.0]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from siggen.planning.plan import planned_record
-from siggen.sets.trial import StateTrial, default_gearboxes, shortened, trial
+from siggen.sets.trial import RECORDS, StateTrial, shortened, trial
 from tests.config.minimal import config as minimal
 from tests.dataset.fake_set import fake_config, fake_physics, simulate_none, simulate_with_failures
 
@@ -23,7 +23,7 @@ def test_a_trial_says_which_states_lose_records_and_why() -> None:
         found = trial(fake_config(), 99).states
     assert [(state.lost, state.tried) for state in found] == [(5, 5)] * 3
     assert found[0].reason == "diverged (always)"
-    assert told == [(0, 6), (3, 6)]
+    assert told == [(i, 6) for i in range(6)]
 
 
 def test_the_interval_is_wilsons() -> None:
@@ -39,7 +39,16 @@ def test_records_of_a_trial_are_short_and_those_of_the_set() -> None:
     assert 8 <= short.duration_s * config.operating_points[0].speed_hz < 8.01
     assert planned_record(short, 3) == planned_record(config, 3)
     assert shortened(minimal(duration_s=0.1)).duration_s == 0.1
-    assert default_gearboxes(config) == 5  # of two states, ten records
+
+
+def test_a_sample_takes_gearboxes_where_states_are_few_and_states_where_they_are_many() -> None:
+    with fake_physics():
+        assert [one.tried for one in trial(fake_config()).states] == [1, 1, 1]
+        states = [{"name": f"state_{i}"} for i in range(12)]
+        found = trial(fake_config(states=states)).states
+    assert [one.tried for one in found] == [1, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]
+    assert sum(one.tried for one in found) == RECORDS
+    assert found[1].interval == (0.0, 1.0)
 
 
 @pytest.mark.parametrize(
