@@ -87,18 +87,19 @@ class Code:
         """Return the keys of all that code beginning at a key can use."""
         seen: set[str] = set()
         attributes: set[str] = set()
-        waiting = [start]
+        waiting, unasked = [start], defaultdict(list)
         while waiting:
             key = waiting.pop()
             if key in seen or key not in self.nodes:
                 continue
             seen.add(key)
-            keys, new = self.used[key]
-            attributes |= new
+            keys, said = self.used[key]
             waiting += keys
-            for owner in seen & self.classes.keys() if new else {key} & self.classes.keys():
-                methods = self.classes[owner].items()
-                waiting += [method for name, method in methods if name in attributes or name.startswith("__")]
+            for name in said - attributes:
+                waiting += unasked.pop(name, ())
+            attributes |= said
+            for name, method in self.classes.get(key, {}).items():
+                (waiting if name in attributes or name.startswith("__") else unasked[name]).append(method)
         return seen
 
 
