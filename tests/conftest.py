@@ -10,6 +10,8 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import settings
 
+from tests.blank_pictures import blank_pictures
+
 # No deadline: the first example of a property compiles its kernels. The same examples in every run, so that a failure
 # can be found again; HYPOTHESIS_PROFILE=explore looks for new ones.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
@@ -32,27 +34,21 @@ def nothing_said_yet(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(taken, "_said", {})
 
 
-_draws = False
-"""Whether the test that runs looks at its pictures."""
+_looked_at: set[str] = set()
+"""The test that runs, if it looks at its pictures."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    global _draws  # noqa: PLW0603
-    _draws = item.get_closest_marker("drawn") is not None
+    _looked_at.clear()
+    if item.get_closest_marker("drawn"):
+        _looked_at.add(item.nodeid)
 
 
 @pytest.fixture(autouse=True, scope="session")
-def blank_pictures() -> Iterator[None]:
-    """Leave pictures blank but for tests marked `drawn`: layout and letters took a tenth of all time.
-
-    Figures are still made whole and written in their size; commands in processes of their own draw them.
-    """
-    from matplotlib.figure import Figure
-
-    draw = Figure.draw
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Figure, "draw", lambda figure, renderer: draw(figure, renderer) if _draws else None)
+def pictures() -> Iterator[None]:
+    """Leave pictures blank but for tests marked `drawn`, and commands in processes of their own."""
+    with blank_pictures(lambda: bool(_looked_at)):
         yield
 
 

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from tests.blank_pictures import blank_pictures
 from tests.command import command
 from tests.house.source_tree import ROOT
 
@@ -49,4 +50,5 @@ def said_by(
 def serve() -> None:
     """Run the command lines of standard input, print what they said as JSON."""
     lines = json.load(sys.stdin)
-    json.dump([command(PACKAGES[program], *words) for program, *words in lines], sys.stdout)
+    with blank_pictures():
+        json.dump([command(PACKAGES[program], *words) for program, *words in lines], sys.stdout)

@@ -19,7 +19,7 @@ CONFIG = """
 extends: quickstart
 name: toy
 specimens: 1
-duration_s: 0.3
+duration_s: 0.1
 repeats: 1
 splits: {train: 10, validation: 5, test: 5}
 dynamics: {mesh: {damage: all}}

@@ -25,7 +25,7 @@ CONFIG = """
 extends: quickstart
 name: toy
 specimens: 1
-duration_s: 0.4
+duration_s: 0.2
 repeats: 1
 splits: {train: 10, validation: 5, test: 5}
 states:
