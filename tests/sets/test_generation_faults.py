@@ -66,7 +66,7 @@ def test_after_sigkill_the_same_command_gives_the_bytes_of_an_undisturbed_run(
     kept = len(sidecars(tmp_path))
     assert 2 <= kept < 5
     assert not (tmp_path / "manifest.json").exists()
-    again = write_fake_set(tmp_path, workers=2)
+    again = write_fake_set(tmp_path)
     assert again.shards_taken_over == kept
     assert_complete(tmp_path, reference)
 
@@ -144,7 +144,7 @@ def test_a_killed_worker_does_not_stop_generation(
 
 def test_a_record_that_kills_every_worker_ends_with_an_error_that_names_its_chunk(tmp_path: Path) -> None:
     with pytest.raises(EngineError, match=r"records 6 to 11 of shard \S+ was lost 3 times"):
-        write_fake_set(tmp_path, workers=2, simulation=simulate_and_die)
+        write_fake_set(tmp_path, workers=1, simulation=simulate_and_die)
     assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
 
 

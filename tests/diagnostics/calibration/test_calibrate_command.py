@@ -53,8 +53,8 @@ def calibrated(recordings: list[Path]) -> tuple[Path, Path, str]:
     made = CliRunner().invoke(siggen_app, ["init", *drawing, "--out", str(rig)], catch_exceptions=False)
     assert made.exit_code == 0, made.output
     said = ["calibrate", str(rig), *map(str, recordings[:3]), "--fs", "25600", "--tacho-pulses", "1"]
-    judged = ["--held-out", str(recordings[3]), "--compared", "3"]
-    options = ["--gearboxes", "3", "--paths", "6", *judged, "--out", str(mine)]
+    judged = ["--held-out", str(recordings[3]), "--compared", "2"]
+    options = ["--gearboxes", "2", "--paths", "4", *judged, "--out", str(mine)]
     result = CliRunner().invoke(app, [*said, *options], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return rig, mine, result.output

@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from diagnostics.audit import signal_attackers
+from diagnostics.audit import bank_detections, condition_traps, signal_attackers
 from diagnostics.cli.app import main
 from diagnostics.indicators import channel_signals
 from diagnostics.indicators.ranking_table import ranking_table
@@ -28,18 +28,19 @@ from tests.diagnostics.cli.test_bad_sets import samples, turning
 OWN = "def peak_to_peak(signal, tacho, gears):\n    return float(signal.max() - signal.min())\n"
 
 
+def made(folder: Path, specimens: int, splits: dict[str, int]) -> Path:
+    """Write gearboxes in three states, one record of each."""
+    points = [{"speed_hz": 30.0, "torque_nm": 60.0}]
+    config = fake_config(
+        specimens=specimens, fs_hz=12_800.0, duration_s=0.32, operating_points=points, splits=splits
+    )  # fmt: skip
+    write_fake_set(folder, config, simulation=turning)
+    return folder
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Eight gearboxes in three states, on disk."""
-    config = fake_config(
-        specimens=8,
-        fs_hz=12_800.0,
-        duration_s=0.32,
-        operating_points=[{"speed_hz": 30.0, "torque_nm": 60.0}],
-        splits={"train": 10, "validation": 5, "test": 5},
-    )
-    write_fake_set(tmp_path / "set", config, simulation=turning)
-    return tmp_path / "set"
+    return made(tmp_path / "set", 3, {"train": 7, "validation": 7, "test": 6})
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -71,11 +72,13 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 
 
 def test_ranking_training_audit_and_features_resample_and_average_once_per_record_and_channel(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    calls = counted(monkeypatch)
-    # What the audit's networks learn is not asked here: a few epochs read as many records as hundreds of them do.
+    folder, calls = made(tmp_path / "set", 8, {"train": 10, "validation": 5, "test": 5}), counted(monkeypatch)
+    # What the audit's networks learn is not asked here: a few epochs read as many records as hundreds do.
     monkeypatch.setattr(signal_attackers, "SHOWN", 0)
+    monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
+    monkeypatch.setattr(bank_detections, "PERMUTATIONS", 99)
     for command, *options in (
         ("indicators", "--out", "ranking"),
         ("report", "--models-only", "--no-cnn", "--out", "models"),
@@ -143,7 +146,7 @@ def test_a_damaged_or_unwritable_table_is_computed_again(folder: Path, monkeypat
     kept.parent.write_text("a file where the folder should be")
     found = record_table(reading.open(folder))
     assert "could not be kept" in found.note
-    assert found.rows == 24
+    assert found.rows == 9
 
 
 def test_a_chosen_channel_reads_the_table_of_all(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
