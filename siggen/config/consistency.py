@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from difflib import SequenceMatcher
 from fractions import Fraction
 from typing import Any
 
@@ -39,6 +41,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _twice_named,
         _growth,
         _fault_names,
+        _severities,
         _tooth_indices,
         _sensor_places,
         _sensors_beside,
@@ -257,6 +260,26 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
         kinds = kinds_called(state.fault)
         if state.fault not in words and (kinds or not state.changes):
             yield Problem(f"states.{index}.fault", _shown_text(state), _words_text([*words], state.fault, kinds))
+
+
+def _severities(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield severities that are a slip of the pen from a usual one, or from the name of their state."""
+    states: Mapping[int, StateSection] = sections.get("states", {})
+    for index, state in states.items():
+        usual = [*SEVERITIES, state.name]
+        if state.severity in usual:
+            continue
+        slips = [word for word in usual if _is_slip(state.severity, word)]
+        if slips:
+            allowed = f"did you mean '{slips[0]}'? allowed: that, or a name that is less like it"
+            yield Problem(f"states.{index}.severity", f"'{state.severity}'", allowed)
+
+
+def _is_slip(word: str, other: str) -> bool:
+    """Return whether two words differ by a letter or by two that are exchanged; numbers tell sizes apart."""
+    if re.sub("[^a-z]", "", word) == re.sub("[^a-z]", "", other) or abs(len(word) - len(other)) > 1:
+        return False
+    return SequenceMatcher(None, word, other).ratio() > 0.8
 
 
 def _shown_text(state: StateSection) -> str:

@@ -7,12 +7,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import isfinite
 from numbers import Real
-from typing import Any
+from typing import Any, TypeVar
 
 from siggen.errors import ConfigError, SolverFailure, UsageError
 from siggen.keys.problems import nearest_word
 
-__all__ = ["finite", "named", "one_of", "refused", "saying"]
+__all__ = ["finite", "named", "of_kind", "one_of", "refused", "saying"]
+
+
+Kind = TypeVar("Kind")
 
 
 def refused(argument: str, received: object, allowed: str) -> UsageError:
@@ -59,6 +62,19 @@ def named(argument: str, values: object, known: Sequence[str]) -> tuple[str, ...
     return tuple(one_of(argument, value, known) for value in listed)
 
 
+def of_kind(argument: str, value: object, kind: type[Kind], allowed: str) -> Kind:
+    """Return an object of a class.
+
+    Raises
+    ------
+    UsageError
+        If it is none.
+    """
+    if not isinstance(value, kind):
+        raise refused(argument, repr(value), allowed)
+    return value
+
+
 @contextmanager
 def saying(arguments: Mapping[str, str]) -> Iterator[None]:
     """Turn refusals that name keys of a file or options of a command into refusals that name arguments.
@@ -87,6 +103,7 @@ def saying(arguments: Mapping[str, str]) -> Iterator[None]:
 
 def _said(text: str, arguments: Mapping[str, str]) -> str:
     text = re.sub(r" \(`siggen [^)]*\)", "", text)  # a hint for the command line
+    text = re.sub(r"semi_axis_(face|profile)_mm", "semi_axes_mm", text)
     for beginning in sorted(arguments, key=len, reverse=True):
         if text.startswith(beginning):
             return arguments[beginning] + text.removeprefix(beginning)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from siggen.gears.damage.crack_law import DEEPEST_SHARE
 from siggen.gears.damage.layouts import clustered_centres, layered_centres
 from siggen.gears.geometry.gear_pair import Gear, GearPair
 from siggen.gears.geometry.root_chord import root_chord
-from siggen.library.arguments import finite, refused
+from siggen.library.arguments import finite, of_kind, refused
 from siggen.seeding import Stage, generator
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "Pit",
     "Spall",
     "Wear",
+    "all_damages",
     "entries",
     "pits_in_layers",
     "random_pits",
@@ -106,7 +107,10 @@ class Pit(Damage):
 
     def _entry(self, seat: DamagedPlace) -> dict[str, Any]:
         middle = 5e2 * seat.pair.face_width_m if self.face_mm is None else self.face_mm
-        across, along = self.semi_axes_mm
+        axes = self.semi_axes_mm
+        if not isinstance(axes, Sequence) or len(axes) != 2:
+            raise refused("semi_axes_mm", repr(axes), "two numbers in mm, across the face and along the profile")
+        across, along = axes
         return {
             "gear": seat.word, "tooth": self.tooth, "height_mm": "pitch" if self.height_mm is None else self.height_mm,
             "face_mm": middle + self.offset_mm, "semi_axis_face_mm": across, "semi_axis_profile_mm": along,
@@ -263,6 +267,22 @@ LISTS = {Pit: "pits", Spall: "outlines"}
 """Kinds that stand together in one section, and their key there."""
 
 
+def all_damages(damages: object) -> tuple[Damage, ...]:
+    """Return damages that all are some.
+
+    Raises
+    ------
+    UsageError
+        If these are no sequence, or one is no damage.
+    """
+    allowed = "a sequence of Pit, Spall, Crack, ..., or of a class of Damage with missing_m"
+    found: tuple[Damage, ...] = tuple(of_kind("damages", damages, Iterable, allowed))  # type: ignore[type-abstract]
+    for one in found:
+        if not isinstance(one, Damage) or type(one) is Damage:
+            raise refused("damages", repr(one), allowed)
+    return found
+
+
 def entries(damages: Iterable[Damage], seat_of: Callable[[Damage], DamagedPlace]) -> list[dict[str, Any]]:
     """Return damages as a file writes them; those of a kind of the user's own are left out.
 
@@ -273,14 +293,16 @@ def entries(damages: Iterable[Damage], seat_of: Callable[[Damage], DamagedPlace]
     """
     listed: dict[str, dict[str, Any]] = {}
     found: list[dict[str, Any]] = []
-    for one in damages:
-        if not isinstance(one, Damage) or type(one) is Damage:
-            raise refused("damages", repr(one), "Pit, Spall, Crack, ..., or a class of Damage with missing_m")
+    for one in all_damages(damages):
         seat = seat_of(one)
         if not isinstance(one, (Wear, BearingSpall)):
             finite("tooth", one.tooth, f"0 to {seat.gear.teeth - 1}", 0, seat.gear.teeth - 1)
         if one.is_shape:
             continue
+        for field in fields(one):  # type: ignore[arg-type]
+            value = getattr(one, field.name)
+            if field.default is None or type(field.default) is float:
+                finite(field.name, 0.0 if value is None else value, "a number")
         entry = one._entry(seat)  # type: ignore[attr-defined]
         if key := LISTS.get(type(one)):
             section = listed.setdefault(seat.word, {"kind": "list"})

@@ -12,7 +12,7 @@ from siggen.checks.loading import load_config
 from siggen.config import Config, Pair
 from siggen.config.planetary import RING
 from siggen.errors import UsageError
-from siggen.library.arguments import finite, one_of, refused, saying
+from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
 from siggen.library.shape_fault import ShapeFault
@@ -304,6 +304,7 @@ def draw(config: Config, number: int = 0) -> Gearbox:
     UsageError
         If the number is none.
     """
+    of_kind("config", config, Config, "what load_config returns")
     if not isinstance(number, int) or isinstance(number, bool) or number < 0:
         raise refused("number", repr(number), "0, 1, 2 and so on")
     states = config.state_names[: inspection_count(config, number)]

@@ -28,9 +28,9 @@ from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import TOOTH_MODELS, StiffnessOptions
 from siggen.keys.drawing import draw
 from siggen.keys.problems import section_problems
-from siggen.library.arguments import finite, one_of, refused, saying
+from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.axes import drawing, legend_above, new_axes
-from siggen.library.damage import Damage, DamagedPlace, entries
+from siggen.library.damage import Damage, DamagedPlace, all_damages, entries
 from siggen.library.shape_fault import ShapeFault
 from siggen.rig.rating import bearable_torque_nm, rated_torque_nm
 from siggen.specimen.contact import tooth_tables
@@ -116,9 +116,8 @@ def mesh_stiffness(
         If an argument or a damage cannot be: names it, what came and what is allowed.
     """
     one_of("law", law, LAWS)
-    finite("points", points, "2 to 100000", 2, 100_000)
+    finite("points", of_kind("points", points, int, "2 to 100000"), "2 to 100000", 2, 100_000)
     options = StiffnessOptions(one_of("tooth", tooth, TOOTH_MODELS), coupling="body" if law == "pairs" else "none")
-    damages = tuple(damages)
     dynamics = draw(Dynamics(), lambda _: 0.5, "dynamics")
     parts = _parts(pair, damages, law, partial(load_at_rest, dynamics, pair, options))
     on_tooth = on_teeth(parts)
@@ -158,7 +157,8 @@ def flank_picture(pair: GearPair, damages: Iterable[Damage], ax: Any = None, *, 
     UsageError
         If a damage cannot be, or matplotlib is missing.
     """
-    parts = with_outlines(_parts(pair, tuple(damages), "pairs", None), pair)
+    parts = with_outlines(_parts(pair, damages, "pairs", None), pair)
+    finite("tooth", tooth, "an index from 0")
     on = on or next((one.gear for one in parts), GEARS[0])
     tooth = next((one.tooth for one in parts if one.gear == on), 0) if tooth < 0 else tooth
     own = pits_of(parts, one_of("on", on, GEARS), tooth)
@@ -192,11 +192,12 @@ def _draw_shapes(ax: Any, pair: GearPair, shapes: Sequence[LostShape], shades: A
                   cmap=shades.cmap, norm=shades.norm, shading="nearest", rasterized=True)  # fmt: skip
 
 
-def _parts(pair: GearPair, damages: Sequence[Damage], law: str, loads: Any) -> Parts:
+def _parts(pair: GearPair, damages: Iterable[Damage], law: str, loads: Any) -> Parts:
     """Return damages on the teeth of a pair."""
+    of_kind("pair", pair, GearPair, "a GearPair, such as GearPair.of(teeth=(18, 47), module_mm=3.5, face_width_mm=20)")
+    damages = all_damages(damages)
     for one in damages:
-        if isinstance(one, Damage) and one.on not in GEARS:
-            raise refused("on", repr(one.on), ", ".join(GEARS))
+        one_of("on", one.on, GEARS)
     with saying({"damage.": "damages."}):
         sections = _sections(entries(damages, lambda one: DamagedPlace(pair, one.on, one.on)))
         shapes = [one for one in damages if one.is_shape]

@@ -17,7 +17,7 @@ from siggen.config.planetary import pitches_per_turn
 from siggen.config.stage_problems import most_teeth_per_turn
 from siggen.config.stages import turned
 from siggen.keys.number import constant
-from siggen.library.arguments import finite, one_of, refused, saying
+from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.gearbox import Gearbox, Point
 from siggen.library.record import LineOrders, Record
 from siggen.record.simulation import simulate_specimen
@@ -85,6 +85,7 @@ def run(
     UsageError
         If an argument cannot be: names it, what came and what is allowed. Also where the record cannot be simulated.
     """
+    of_kind("gearbox", gearbox, Gearbox, "what single_stage, machine, planetary and draw return")
     given = speed_hz is not None or torque_nm is not None
     point = _point(gearbox, speed_hz, torque_nm) if given or not gearbox.points else None
     config = _config_of(gearbox, point, duration_s, fs_hz, truth)
@@ -103,6 +104,9 @@ def runs(
     UsageError
         As `run`.
     """
+    of_kind("gearbox", gearbox, Gearbox, "what single_stage, machine, planetary and draw return")
+    for case in cases:
+        of_kind("cases", case, Case, "objects of Case")
     for point, group in groupby(cases, key=lambda case: case.point):
         config = _config_of(gearbox, _point(gearbox, point.speed_hz, point.torque_nm), duration_s, fs_hz, ())
         yield from _records(gearbox, config, [(case.state, case.repeat) for case in group])
@@ -152,6 +156,8 @@ def _config_of(
     if point is not None:
         changes["operating_points"] = [{"speed_hz": point.speed_hz, "torque_nm": point.torque_nm}]
     if truth:
+        if not isinstance(truth, Sequence):
+            raise refused("truth", repr(truth), "names such as mesh_force_n, or all")
         changes["internals"] = {"quantities": [truth] if isinstance(truth, str) else list(truth)}
     with saying(KEYS):
         return gearbox._with_passed(load_config({**base.canonical(), **changes}))

@@ -30,7 +30,7 @@ def varied(text: str, states: Sequence[str]) -> Iterator[tuple[str, list[str], i
         raise UsageError(f"--vary: received state {state}; allowed: 0 to {len(states) - 1} ({', '.join(states)})")
     alone = [f"states.{state}.grows_from=none"] if own else []
     for value in values:
-        yield f"{key.rpartition('.')[2]}_{value}", [*alone, f"{key}={value}"], state
+        yield f"{key}={value}", [*alone, f"{key}={value}"], state
 
 
 def varied_curves(

@@ -164,3 +164,12 @@ def test_parts_of_a_contact_across_the_face_add_up_to_the_pair_that_is_simulated
 def test_a_torque_that_no_teeth_carry_is_refused_with_the_largest_of_the_set(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"torque: received 1e\+09 N m; allowed: up to \d+"):
         run("tests/configs/casing.yaml", "--out", tmp_path / "t.csv", "--torque", 1e9)
+
+
+def test_a_study_of_a_key_names_its_curves_as_the_user_typed_them(tmp_path: Path) -> None:
+    key = "states.2.damage.first_height_mm"
+    run("configs/paper_a.yaml", "--vary", f"{key}=1.9,2.8", "--out", tmp_path / "tvms.csv")
+    table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
+    assert table.column_names == ["angle_deg", *(f"{s}_n_per_m" for s in ("healthy", f"{key}=1.9", f"{key}=2.8"))]
+    low, high = (table[f"{key}={value}_n_per_m"].to_numpy() for value in (1.9, 2.8))
+    assert low.argmin() != high.argmin()  # pits at other heights meet the mate at other angles

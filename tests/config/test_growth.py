@@ -59,6 +59,18 @@ def test_labels_follow_from_the_name_and_the_damage():
     assert [s.severity for s in config.states] == ["healthy", "moderate", "severe"]
 
 
+@pytest.mark.parametrize(("severity", "meant"), [("slihgt", "slight"), ("sever", "severe"), ("moderat", "moderate")])
+def test_a_severity_that_is_a_slip_of_the_pen_is_asked_for(severity: str, meant: str) -> None:
+    (problem,) = parsed(state("healthy"), state("worn", LAYERS, severity=severity)).problems
+    assert problem.path == "states.1.severity"
+    assert problem.allowed.startswith(f"did you mean '{meant}'?")
+
+
+@pytest.mark.parametrize("severity", ["mild", "slight_2", "severe2", "size_1", "very_severe"])
+def test_a_severity_may_have_any_other_name(severity: str) -> None:
+    assert not parsed(state("healthy"), state("worn", LAYERS, severity=severity)).problems
+
+
 def test_a_milder_state_cannot_grow_from_a_more_severe_one():
     (problem,) = parsed(state("severe", LAYERS), state("slight", CLUSTER)).problems
     assert problem.path == "states.1.grows_from"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -86,3 +87,10 @@ def test_an_installed_wheel_plans_a_preset_by_name(tmp_path: Path) -> None:
     ).stdout
     assert said.startswith(str(tmp_path / "venv"))
     assert '"name": "quickstart"' in said
+    # What a newcomer writes has types with the wheel alone: py.typed is in it, and public names are resolved.
+    (packages,) = (tmp_path / "venv" / "lib").glob("python3*/site-packages")
+    (packages / "libraries.pth").write_text(libraries)
+    shutil.copy(ROOT / "tests/library/newcomer.py", tmp_path)  # away from the sources
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--python-executable", python, "newcomer.py"]
+    typed = subprocess.run(command, cwd=tmp_path, check=False, capture_output=True, text=True)
+    assert typed.returncode == 0, typed.stdout

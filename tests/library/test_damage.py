@@ -169,14 +169,17 @@ BAD = [
     ),
     ([Pit("lid")], "on: received 'lid'; allowed: pinion, gear"),
     ([Pit(tooth=40)], "tooth: received 40; allowed: 0 to 17"),
-    ([Pit(semi_axes_mm=(0.3, -1.0))], "semi_axis_profile_mm: received -1.0; allowed: a number above 0"),
+    ([Pit(semi_axes_mm=(0.3, -1.0))], "semi_axes_mm: received -1.0; allowed: a number above 0"),
+    ([Pit(semi_axes_mm=0.3)], "semi_axes_mm: received 0.3; allowed: two numbers in mm"),  # type: ignore[arg-type]
+    ([Pit(face_mm="middle")], "face_mm: received 'middle'; allowed: a number"),  # type: ignore[arg-type]
     ([Crack(depth_mm=30.0)], r"depth_mm: received 30.0; allowed: above 0 up to 3"),
     ([Chip(height_mm=90.0)], "height_mm: received 90; allowed: up to 7.875, the height of the tooth"),
     ([Spall(outline_mm=((1, 2), (2, 3)))], "outline_mm: received .*; allowed: three corners or more"),
     ([Spall(outline_mm=((1, 2), (2, 4), (1.5, 2.5), (1, 4)))], "outline_mm: received an outline that crosses itself"),
     ([Dent(depth_um=-5.0)], "missing_m: received depths from .*; allowed: finite depths of at least 0"),
-    ([Damage()], "damages: received .*; allowed: Pit, Spall, Crack"),
-    (["pit"], "damages: received 'pit'; allowed: Pit, Spall, Crack"),
+    ([Damage()], "damages: received .*; allowed: a sequence of Pit, Spall, Crack"),
+    (["pit"], "damages: received 'pit'; allowed: a sequence of Pit, Spall, Crack"),
+    (Pit(), "damages: received Pit.*; allowed: a sequence of Pit, Spall, Crack"),
 ]
 
 
@@ -191,6 +194,10 @@ def test_what_a_law_or_a_gearbox_has_not_is_refused() -> None:
         mesh_stiffness(PAIR, [Dent()], law="linear")
     with pytest.raises(UsageError, match="torque_nm: received 1000000"):
         mesh_stiffness(PAIR, torque_nm=1e6)
+    with pytest.raises(UsageError, match=r"points: received 10\.5; allowed: 2 to 100000"):
+        mesh_stiffness(PAIR, points=10.5)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="pair: received 'pair'; allowed: a GearPair"):
+        siggen.flank_picture("pair", [])  # type: ignore[arg-type]
     with pytest.raises(UsageError, match=r"teeth=\(5, 6\) of module 2 mm: "):
         Pair.of((5, 6), 2)
     gearbox = siggen.single_stage((23, 61), 2.5)
@@ -200,6 +207,7 @@ def test_what_a_law_or_a_gearbox_has_not_is_refused() -> None:
         (State("far", (Pit("sun"),)), "on: received 'sun'; allowed: pinion, gear"),
         (State("far", (siggen.BearingSpall("lid"),)), "on: received 'lid'; allowed: input.bearing, output.bearing"),
         (State("deep", (Pit(depth_mm=5.0),)), "damages of deep.0.pits.0.depth_mm: received depth 5 mm"),
+        (State("bare", Pit()), "damages: received Pit.*; allowed: a sequence of Pit"),  # type: ignore[arg-type]
         (State("dent", (Dent(depth_um=-1.0),)), "Dent.missing_m: received depths from"),
     ):
         with pytest.raises(UsageError, match=said):

@@ -147,7 +147,10 @@ BAD_RUNS = [
     ),
     ({"fs_hz": 100}, "fs_hz: received 100; allowed: 1991 to 1e7 Hz, for the first mesh line"),
     ({"truth": ["mesh_force"]}, "truth.0: received 'mesh_force'; allowed: all, or .*nearest: mesh_force_n"),
+    ({"truth": 3}, "truth: received 3; allowed: names such as mesh_force_n, or all"),
     ({"repeat": -1}, "repeat: received -1; allowed: 0, 1, 2"),
+    ({"speed_hz": -25}, "speed_hz: received -25; allowed: above 0 up to 1000"),
+    ({"speed_hz": "25"}, "speed_hz: received '25'; allowed: above 0 up to 1000"),
 ]
 
 
@@ -166,6 +169,15 @@ def test_a_run_that_cannot_be_is_refused_by_its_argument(
     given: dict[str, object] = {"speed_hz": 25, "torque_nm": 40, "duration_s": 0.1, **change}
     with pytest.raises(UsageError, match=said):
         siggen.run(gearbox, **given)  # type: ignore[arg-type]
+
+
+def test_what_is_no_gearbox_no_case_and_no_configuration_is_refused(gearbox: siggen.Gearbox) -> None:
+    with pytest.raises(UsageError, match="gearbox: received 'bench'; allowed: what single_stage, machine, planetary"):
+        siggen.run("bench", speed_hz=25, torque_nm=40)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="cases: received 'healthy'; allowed: objects of Case"):
+        next(siggen.runs(gearbox, ["healthy"]))  # type: ignore[list-item]
+    with pytest.raises(UsageError, match="config: received 'bench'; allowed: what load_config returns"):
+        siggen.draw("bench")  # type: ignore[arg-type]
 
 
 def test_channels_and_harmonics_that_are_not_there_are_refused(record: siggen.Record) -> None:
