@@ -57,7 +57,8 @@ def test_a_life_ends_anywhere_among_its_continuations_from_its_first_pit_and_fro
         young.append(rank(one, one.ends.first_pit))
         times = np.arange(one.ends.first_pit, one.ends.functional, 0.2 * STEP)
         # the first time at which a pit is large: it knows nothing of what comes later
-        old += [rank(one, time) for time in times[[one.shares(time).max() > 0.15 for time in times]][:1]]
+        large = next((time for time in times if one.shares(time).max() > 0.15), None)
+        old += [] if large is None else [rank(one, large)]
     # of right draws one test in a thousand fails; the seeds are fixed
     assert kstest(young, "uniform").pvalue > 1e-3
     assert kstest(old, "uniform").pvalue > 1e-3
@@ -65,4 +66,4 @@ def test_a_life_ends_anywhere_among_its_continuations_from_its_first_pit_and_fro
 
 def rank(one: PittingCourse, time: float) -> float:
     """Return which share of continuations from a damage time end before the life itself does."""
-    return float((one.outlook(time, 200) < one.ends.functional).mean())
+    return float((one.outlook(time, 100) < one.ends.functional).mean())

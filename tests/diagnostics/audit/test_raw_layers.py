@@ -9,6 +9,7 @@ import pyarrow as pa
 import pytest
 from planted_set import CHANNELS, FS_HZ, Plant, PlantedSet, measured, planted
 
+from diagnostics.audit import condition_traps
 from diagnostics.audit.measured_set import measured_set
 from diagnostics.audit.raw_columns import raw_columns
 from diagnostics.audit.separability_findings import repeated_runs, separability_findings
@@ -25,6 +26,12 @@ TWICE = Plant(points=1, repeats=2)
 @pytest.fixture(scope="module")
 def clean() -> PlantedSet:
     return planted(TWICE)
+
+
+@pytest.fixture(autouse=True)
+def few_permutations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fifth of them, as in test_traps."""
+    monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
 
 
 def signals(table: pa.Table, channel: str) -> np.ndarray:
