@@ -1,7 +1,7 @@
 """Anywhere: the error of the delivered accelerations on random gearboxes far from the presets, and what its label says.
 
 Every second gearbox has a spall, and its record begins before the spalled tooth enters. The error is that of the worst
-motion, over the whole record, against Runge-Kutta from the same state at the same time. It begins with 16 steps per
+motion, over the whole record, against Runge-Kutta that starts nine decay times before it. It begins with 16 steps per
 sample, or with the record's own where these are more. They are halved until two of them agree to a tenth of the
 tolerance; where they do not, the error is known to what they are apart, and no nearer. Costs are CPU time.
 """
@@ -55,18 +55,21 @@ class Found:
 
 
 @dataclass(frozen=True, slots=True)
-class _Case:
+class Case:
+    """The record of a random gearbox, ready to be integrated in many ways."""
+
     config: Config
     specimen: Specimen
     state: SpecimenState
     point: OperatingPoint
     driven: RecordDrive
 
-    def response(self, motion: Motion, per_sample: int) -> Response:
-        """Return the response to the whole record."""
+    def response(self, motion: Motion, per_sample: int, settle_s: float = 0.0) -> Response:
+        """Return the response to the whole record, from an earlier start if `settle_s` is longer than its transient."""
         grid = SampleGrid(self.config.fs_hz, self.config.samples, per_sample)
         only = Wanted(bearing_forces=False)
-        return response_of(motion, self.driven.rotation, grid, wanted=only, excitation=self.driven.excitation)
+        acting = self.driven.excitation
+        return response_of(motion, self.driven.rotation, grid, wanted=only, excitation=acting, settle_s=settle_s)
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
@@ -126,20 +129,21 @@ def measured(count: int) -> Iterator[Found]:
 
 def _found(config: Config, number: int) -> Found | None:
     """Return what is found of a gearbox, every second one healthy; None if its motion diverges."""
-    case = _case(config, number % 2)
+    case = drawn_case(config, number % 2)
     dynamics, begin = case.specimen.dynamics, time.process_time()
     with refused_as("outside_model"):
-        grid, motion, label = stepped_motion(config, dynamics, case.state.mesh, case.point, case.driven)
+        grid, motion, label, _ = stepped_motion(config, dynamics, case.state.mesh, case.point, case.driven)
         chosen = time.process_time()
         response = case.response(motion, grid.per_sample)
         looped = time.process_time()
         if response.status != "ok" or label is None:
             return None
         fine, apart = _reference(case, max(FIRST_STEPS, grid.steps))
-    return Found(number, grid.steps, label, _error(response, fine), apart, chosen - begin, looped - chosen)
+    return Found(number, grid.steps, label, worst_error(response, fine), apart, chosen - begin, looped - chosen)
 
 
-def _case(config: Config, state_id: int) -> _Case:
+def drawn_case(config: Config, state_id: int) -> Case:
+    """Return the record of a state that begins before a spalled tooth enters."""
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, state_id)
     records = (planned_record(config, i) for i in range(config.records_per_specimen))
@@ -147,29 +151,29 @@ def _case(config: Config, state_id: int) -> _Case:
     point = draw_operating_point(config, 0, record.operating_point_id)
     angle = 2.0 * pi * (1.0 - BEFORE) / TEETH
     driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
-    return _Case(config, specimen, state, point, driven)
+    return Case(config, specimen, state, point, driven)
 
 
-def _reference(case: _Case, first: int) -> tuple[Response, float]:
+def _reference(case: Case, first: int) -> tuple[Response, float]:
     """Return the finest reference, and how far it is from the one with twice its steps."""
     steps, coarse = first, _runge_kutta(case, first)
     enough, most = first << DOUBLINGS, max(MOST_STEPS, first << DOUBLINGS)
     while True:
         steps *= 2
         fine = _runge_kutta(case, steps)
-        apart = _error(coarse, fine)
+        apart = worst_error(coarse, fine)
         hopeless = steps >= enough and not apart <= UNSETTLED
         if apart <= AGREEING * TOLERANCE or hopeless or 2 * steps > most:
             return fine, apart
         coarse = fine
 
 
-def _runge_kutta(case: _Case, steps: int) -> Response:
+def _runge_kutta(case: Case, steps: int) -> Response:
     dynamics, step_s = by_reference(case.specimen.dynamics), 1.0 / (case.config.fs_hz * steps)
     return case.response(specimen_motion(dynamics, case.state.mesh, case.point, step_s, case.driven), steps)
 
 
-def _error(found: Response, wanted: Response) -> float:
+def worst_error(found: Response, wanted: Response) -> float:
     """Return the relative rms difference of the worst motion."""
     if (found.status, wanted.status) != ("ok", "ok"):
         return float(np.inf)

@@ -86,8 +86,14 @@ INTEGRATION_COLUMNS = in_role(
         pa.float64(),
         "",
         f"estimated relative rms error of the simulated motion (of at least {STILL_M_S2:g} in SI units) by the steps "
-        "of integration, from a stretch of the record with twice as many; above the set's tolerance where the motion "
-        "depends on every rounding or the finest steps do not suffice, inf where it diverges",
+        "of integration, from a stretch of the record with twice as many, and by its start, from a later one; above "
+        "the set's tolerance where the finest steps do not suffice, inf where it diverges",
+    ),
+    Column(
+        "integration_error_of",
+        pa.string(),
+        "",
+        "samples; or levels, over half a second at most, where teeth part and the motion depends on every rounding",
     ),
 )
 """Columns of sets of the law pairs."""

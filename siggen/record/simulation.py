@@ -93,7 +93,7 @@ def _stream(
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     driven = _driven(config, specimen, state, record) if driven is None else driven
     with stage("loop"):
-        grid, motion, error = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
+        grid, motion, error, error_of = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
         stream = response_stream(
             motion,
             driven.rotation,
@@ -109,7 +109,8 @@ def _stream(
             history_s=history_s(config, specimen),
             ahead=AHEAD,
         )
-    return stream, point, {} if error is None else {"integration_error": error}
+    stepped = {} if error is None else {"integration_error": error, "integration_error_of": error_of}
+    return stream, point, stepped
 
 
 def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:

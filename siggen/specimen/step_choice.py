@@ -1,4 +1,4 @@
-"""How many steps a record takes: the rule's, or more where a stretch of the record itself says so, with the error left.
+"""How many steps a record takes and how early it starts, as a stretch of the record itself says, with the error left.
 
 The rule knows speed, friction and natural frequencies, but not how often flanks part and how hard they meet again. So a
 stretch of the record is integrated twice from one state, with the steps at hand and with twice as many, and delivered
@@ -8,13 +8,17 @@ and from what pushes now and then, such as a spalled bearing.
 
 Errors fall with the square of the step, so a difference is three quarters of the error. Motions of sensors are left
 out: a sensor that is added must not change the others.
+
+The stretch begins settled. From a start at its beginning it is integrated once more: what that changes falls with the
+slowest decay, so it says how long before its samples the record has to start, and what is left of that. Where flanks
+part and samples have nothing in common, levels over a longer time are compared.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, inf, sqrt
+from math import ceil, hypot, inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +29,8 @@ from siggen.dynamics.drive.sampled_excitation import SampledExcitation
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response_stream import Run
-from siggen.dynamics.time.stretch import LEAD, Stretch, state_at, stretch_accelerations
+from siggen.dynamics.time.stretch import LEAD, Seen, Stretch, seen_stretch, state_at
+from siggen.dynamics.time.transient import DECAY_TIMES, forgotten
 from siggen.errors import SolverFailure
 from siggen.planning.specimen import OperatingPoint
 from siggen.sensors.quantity import STILL_M_S2
@@ -43,10 +48,15 @@ LEAST_S, LEAST_PITCHES = 0.03, 5.0
 LONGEST_RINGING_S = 0.1
 """Before that, two motions from one state may part, one decay time long but no longer than this."""
 SETTLING_DECAYS = 2.0
-"""Decay times of the slowest mode from the start to that state. Both motions begin with it, so it need only be usual:
+"""Decay times of the slowest mode from the start to that state. All motions but one begin with it, so it need only be
 
-with five of them no label of 27 records of three presets moved by more than 1 %.
+usual: with five of them no label of 27 records of three presets moved by more than 1 %.
 """
+START_SHARE = 0.1
+"""Of the tolerance: what is left of the start."""
+LEVELS_S = 0.5
+"""Over which levels are compared."""
+SAMPLES, LEVELS = "samples", "levels"
 PITCHES_BEFORE = 1.0
 """Before a damaged pair enters."""
 SHRINKS = 4.0 / 3.0
@@ -61,12 +71,14 @@ SPREAD_POINTS = 1024
 class Stepped(NamedTuple):
     """Where the states of a record are, its motion, and its error by a stretch; None where the integrator states none.
 
-    The motion may have been stepped: `start` makes it forget that.
+    The motion may have been stepped: `start` makes it forget that. Its `transient_s` is what this record needs.
+    `error_of`: what was compared.
     """
 
     grid: TimeGrid
     motion: Motion
     error: float | None
+    error_of: str = SAMPLES
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +118,13 @@ class Probe:
         pitches_hz = min(
             one.mesh.tables.table_of_pair.shape[0] * one.turning * abs(self.point.speed_hz) for one in self.mesh.every
         )
-        compared_s = max(LEAST_S, LEAST_PITCHES / pitches_hz, self._sharp_s())
+        count = self.samples(max(LEAST_S, LEAST_PITCHES / pitches_hz, self._sharp_s()))
         ringing = self.ringing(motion)
-        count = max(2, min(ceil(compared_s * self.config.fs_hz), self.config.samples))
         return Stretch(self._first() - ringing, ringing + count)
+
+    def samples(self, compared_s: float) -> int:
+        """Return the samples of a time, as far as the record has them."""
+        return max(2, min(ceil(compared_s * self.config.fs_hz), self.config.samples))
 
     def _sharp_s(self) -> float:
         """Return the time over which what acts shows all that it changes within few steps."""
@@ -153,14 +168,20 @@ def stepped_motion(
     except SolverFailure:
         return Stepped(grid, motion, inf)
     steps, error = refined_steps(errors, grid.steps, MARGIN * dynamics.integration_tolerance)
+    motion.transient_s, left = errors.forgotten_start(START_SHARE * dynamics.integration_tolerance)
     if steps > grid.steps:
         grid = exponential_grid(steps)
         motion = probe.motion(grid, motion)
+    error = hypot(error, left)
+    if errors.parts and error > dynamics.integration_tolerance:
+        return Stepped(grid, motion, errors.of_levels(grid.steps), LEVELS)
     return Stepped(grid, motion, error)
 
 
 class _Errors:
     """Steps per sample -> error of a stretch that begins with a motion; what was integrated last is kept.
+
+    `parts`: whether no teeth of a mesh touch at one of its steps.
 
     Raises
     ------
@@ -172,34 +193,56 @@ class _Errors:
         self._probe, self._motion = probe, motion
         self._stretch, self._ringing = probe.stretch(motion), probe.ringing(motion)
         first, end = self._stretch.first, self._stretch.first + self._stretch.samples
-        settling = ceil(SETTLING_DECAYS * motion.decay_s * probe.config.fs_hz)
+        settling = ceil(SETTLING_DECAYS * motion.transient_s / DECAY_TIMES * probe.config.fs_hz)
         self._acting = probe.inputs(first - settling, end, probe.config.fs_hz * grid.per_sample)
         run = probe.run(motion, grid.per_sample, self._acting)
         self._state = state_at(run, first - settling, first)
-        self._last = grid.steps, self._accelerations(run)
+        self._last = grid.steps, _seen(run, self._state, self._stretch)
+        self._start = state_at(run, first, first)
+        self._by_start = self._apart(_seen(run, self._start, self._stretch), self._last[1])
+        self.parts = self._last[1] is not None and self._last[1].parts
 
     def __call__(self, steps: int) -> float:
         """Return the error of the worst motion, infinite where a motion diverges."""
-        coarse = self._last[1] if self._last[0] == steps else self._with(steps)
-        fine = self._with(2 * steps)
+        coarse = self._last[1] if self._last[0] == steps else _seen(self._run(steps), self._state, self._stretch)
+        fine = _seen(self._run(2 * steps), self._state, self._stretch)
         self._last = 2 * steps, fine
-        if coarse is None or fine is None:
+        return SHRINKS * self._apart(coarse, fine)
+
+    def forgotten_start(self, allowed: float) -> tuple[float, float]:
+        """Return how long before its samples [s] the record has to start, and its error by that."""
+        ringing_s = self._ringing / self._probe.config.fs_hz
+        return forgotten(self._by_start, ringing_s, allowed, self._motion.transient_s)
+
+    def of_levels(self, steps: int) -> float:
+        """Return by how much levels change with a later start and half the steps, infinite where a motion diverges."""
+        first, count = self._stretch.first, self._ringing + self._probe.samples(LEVELS_S)
+        self._acting = self._probe.inputs(first, first + count, self._probe.config.fs_hz * steps)
+        cases = (steps, self._state), (2 * steps, self._start)
+        seen = [_seen(self._run(tried), state, Stretch(first, count)) for tried, state in cases]
+        if None in seen:
             return inf
-        apart = ((coarse - fine)[:, self._ringing :] ** 2).mean(axis=1)
-        whole = (fine[:, self._ringing :] ** 2).mean(axis=1)
-        return SHRINKS * float(np.sqrt(apart / np.maximum(whole, STILL_M_S2**2)).max(initial=0.0))
+        mine, other = (np.sqrt((one.accelerations[:, self._ringing :] ** 2).mean(axis=1)) for one in seen if one)
+        return float((np.abs(mine - other) / np.maximum(other, STILL_M_S2)).max(initial=0.0))
 
-    def _with(self, steps: int) -> FloatArray | None:
+    def _run(self, steps: int) -> Run:
         grid = exponential_grid(steps)
-        return self._accelerations(
-            self._probe.run(self._probe.motion(grid, self._motion), grid.per_sample, self._acting)
-        )
+        return self._probe.run(self._probe.motion(grid, self._motion), grid.per_sample, self._acting)
 
-    def _accelerations(self, run: Run) -> FloatArray | None:
-        try:
-            return stretch_accelerations(run, self._state, self._stretch)
-        except SolverFailure:
-            return None
+    def _apart(self, found: Seen | None, wanted: Seen | None) -> float:
+        if found is None or wanted is None:
+            return inf
+        apart = ((found.accelerations - wanted.accelerations)[:, self._ringing :] ** 2).mean(axis=1)
+        whole = (wanted.accelerations[:, self._ringing :] ** 2).mean(axis=1)
+        return float(np.sqrt(apart / np.maximum(whole, STILL_M_S2**2)).max(initial=0.0))
+
+
+def _seen(run: Run, state: FloatArray, stretch: Stretch) -> Seen | None:
+    """Return what is seen of a stretch; None where the motion diverges."""
+    try:
+        return seen_stretch(run, state, stretch)
+    except SolverFailure:
+        return None
 
 
 def refined_steps(errors: Callable[[int], float], steps: int, allowed: float) -> tuple[int, float]:

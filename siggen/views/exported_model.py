@@ -69,7 +69,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         angle = start_angle_rad(config, specimen, record)
         built, parts = state.mesh.structure, (state.parts, state.parts_behind)
         driven = record_drive(config, specimen, built, point, record, angle, *parts)
-        (steps, _), motion, _ = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
+        (steps, _), motion, *_ = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
         grid = _time_grid(config, specimen, motion, steps)
         start = motion.start(_first_pitches(motion, driven.rotation, grid["start_s"]))
     return {

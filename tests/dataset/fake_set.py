@@ -27,6 +27,7 @@ from siggen.sets.verification import Verification, verify
 
 STEP_M_S2 = 2.0**-6
 """Least power of two that covers 2 * 500 m/s^2 in 16 bits, as the converter of the configuration has it."""
+STEPPED = {"integration_error": 2e-4, "integration_error_of": "samples"}
 
 
 def fake_config(**changes: Any) -> Config:
@@ -93,7 +94,7 @@ def fake_record(config: Config, planned: PlannedRecord) -> SimulatedRecord:
         "mesh_hz": 540.0,
         "mesh_stiffness_loss_as_simulated": 0.008 * pits,
         "start_angle_rad": float(rng.random()),
-        **({"integration_error": 2e-4} if config.dynamics.method == "exponential" else {}),
+        **(STEPPED if config.dynamics.method == "exponential" else {}),
     }
     signals = {}
     for name in config.channels:

@@ -37,8 +37,15 @@ def state_at(run: Run, first: int, until: int) -> FloatArray:
     return state
 
 
-def stretch_accelerations(run: Run, state: FloatArray, stretch: Stretch) -> FloatArray:
-    """Return the accelerations (motions, samples) of a stretch from the `state` (2n,) LEAD samples before it.
+class Seen(NamedTuple):
+    """Accelerations (motions, samples) of a stretch, and whether no teeth of a mesh touched at one of its steps."""
+
+    accelerations: FloatArray
+    parts: bool
+
+
+def seen_stretch(run: Run, state: FloatArray, stretch: Stretch) -> Seen:
+    """Return what is seen of a stretch from the `state` (2n,) LEAD samples before it.
 
     Raises
     ------
@@ -48,8 +55,9 @@ def stretch_accelerations(run: Run, state: FloatArray, stretch: Stretch) -> Floa
     steps = run.steps_per_sample
     decimator = acceleration_decimator(run.motion.structure, run.motions, run.fs_hz, steps)
     begin, end = (stretch.first - LEAD) * steps, (stretch.first + stretch.samples + LEAD) * steps
-    skipped, parts = LEAD * steps - half_length(steps), []
+    skipped, taken, parts = LEAD * steps - half_length(steps), [], False
     for block in stepped_blocks(run, state.copy(), begin, end):
-        parts.append(decimator.take(block.states[skipped:]))
+        taken.append(decimator.take(block.states[skipped:]))
+        parts = parts or (block.apart is not None and bool(block.apart.any()))
         skipped = 0
-    return np.concatenate(parts, axis=1)[:, : stretch.samples]
+    return Seen(np.concatenate(taken, axis=1)[:, : stretch.samples], parts)

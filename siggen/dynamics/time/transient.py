@@ -9,18 +9,18 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.modes import slowest_decay_per_s
 
-DECAY_TIMES = 5.0
-"""Length of the discarded transient of one mesh in decay times of the slowest mode that it excites.
+DECAY_TIMES = 9.0
+"""Length of the discarded transient in decay times of the slowest mode, where nothing is known of the start.
 
-Turning a shaft lets its flanks carry the mean load: it starts in equilibrium, moved by the mean of friction. With an
-earlier start 0.1 s of quickstart change by 3e-4 of their rms at 1 Hz, by 7e-5 at 5 Hz and 8e-6 at 35 Hz.
+Turning a shaft lets its flanks carry the mean load: it starts in equilibrium, moved by the mean of friction. At 35 Hz
+and 40 N m an earlier start changes samples by 1e-4 after 3 decays, at 2 Hz and 1 N m after 8: then pairs carry by
+errors of a micrometre, and whatever moves by one moves them. Of several meshes those modes count that meshes show
+alone, such as torsion between sun and load: their shares of the load are not those of the mean stiffness.
 """
-DECAYS_OF_SEVERAL = 9.0
-"""The same of several meshes, of modes that meshes show alone too, such as torsion between sun and load.
-
-Their shares of the load are not those of the mean stiffness, and modes of a casing sound that they excite. After 5
-decay times an earlier start changes 0.1 s of two stages by 1e-3, after 8 by 6e-5.
-"""
+SHORTEST_DECAYS = 3.0
+"""Shortest transient, whatever is measured of a start."""
+QUARTERS = 4
+"""Steps of a decay time in which transients are chosen: a rounding changes none."""
 IN_A_ROW = 0.4
 """Of the shorter one of two times over which things settle: what it adds where they stand in a row."""
 TRANSIENT_CAP_S = 5.0
@@ -28,20 +28,31 @@ TRANSIENT_CAP_S = 5.0
 
 
 def transient_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: FloatArray) -> float:
-    """Return the time [s] that is simulated and discarded before sample 0."""
+    """Return the time [s] that is simulated and discarded before sample 0, where nothing is known of the start."""
     several = len(structure.meshes) > 1
-    decay = slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m, at_meshes=several)
-    return _capped(DECAYS_OF_SEVERAL if several else DECAY_TIMES, decay)
+    return _capped(slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m, at_meshes=several))
 
 
 def decay_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: FloatArray) -> float:
     """Return one decay time [s] of the slowest mode that meshes excite and a bearing shows."""
-    slowest = slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m)
-    return _capped(DECAY_TIMES, slowest) / DECAY_TIMES
+    return _capped(slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m)) / DECAY_TIMES
 
 
-def _capped(decays: float, decay_per_s: float) -> float:
-    return min(TRANSIENT_CAP_S, decays / decay_per_s) if decay_per_s > 0.0 else TRANSIENT_CAP_S
+def forgotten(error: float, after_s: float, allowed: float, unknown_s: float) -> tuple[float, float]:
+    """Return the transient [s] after which a start errs by no more than allowed, and by how much it does then.
+
+    It erred by `error` after `after_s`; `unknown_s` is what `transient_s` says. Nothing is known to decay at the cap.
+    """
+    if error == math.inf or unknown_s >= TRANSIENT_CAP_S:
+        return unknown_s, error
+    decay_s = unknown_s / DECAY_TIMES
+    needed = min(after_s / decay_s + math.log(max(error / allowed, 1.0)), TRANSIENT_CAP_S / decay_s)
+    transient = math.ceil(QUARTERS * max(SHORTEST_DECAYS, needed)) / QUARTERS * decay_s
+    return transient, error * math.exp((after_s - transient) / decay_s)
+
+
+def _capped(decay_per_s: float) -> float:
+    return min(TRANSIENT_CAP_S, DECAY_TIMES / decay_per_s) if decay_per_s > 0.0 else TRANSIENT_CAP_S
 
 
 def both_settled_s(first_s: float, second_s: float) -> float:
