@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def uncollected() -> Iterator[None]:
-    """Leave out what Python does about garbage while modules are loaded: all of it stays, and passes grow with it."""
+    """Leave out what Python does about garbage while modules and functions are loaded: all of that stays."""
     was = gc.isenabled()
     gc.disable()
     try:

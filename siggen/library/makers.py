@@ -14,6 +14,7 @@ from siggen.library.gearbox import Gearbox, draw
 from siggen.rig.rating import bearable_torque_nm, proposed_face_width_mm, rated_torque_nm
 from siggen.rig.rig import Rig, checked_rig
 from siggen.rig.rig_text import rig_text
+from siggen.uncollected import uncollected
 
 __all__ = ["counts", "made", "single_stage"]
 
@@ -74,9 +75,8 @@ def single_stage(
     width = finite("face_width_mm", width, "a number above 0", 1e-9)
     angle = finite("pressure_angle_deg", pressure_angle_deg, "14.5 to 30 degrees", 14.5, 30.0)
     speed = finite("rated_hz", rated_hz, "a number above 0", 1e-9)
-    with saying(
-        {**KEYS, "gears": f"teeth={pair}", "gears.pinion": f"teeth={pair}, pinion", "gears.gear": f"teeth={pair}, gear"}
-    ):
+    own = {"gears": f"teeth={pair}", "gears.pinion": f"teeth={pair}, pinion", "gears.gear": f"teeth={pair}, gear"}
+    with saying({**KEYS, **own}), uncollected():  # the first compiled function loads a thousand templates of numba
         checked_rig(Rig(pair, module, width, (speed, speed), (1.0, 1.0), pressure_angle_deg=angle))
         torque = rated_torque_nm(pair, module, width, angle) if rated_nm is None else rated_nm
         most = bearable_torque_nm(pair, module, width, angle)
