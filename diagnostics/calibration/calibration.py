@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.calibration.drivetrain import Drivetrain
+from diagnostics.calibration.drivetrain import TrainOrders
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlocks, jackknife
 from diagnostics.calibration.noise_fit import UNKNOWN_SPREAD_DB, NoiseFit, SensorFit, noise_fit, sensor_fit
 from diagnostics.calibration.order_record import (
@@ -141,7 +141,7 @@ def calibrated(
     return Calibration(rig, point, _random_rms(blocks), grid_hz, channels, library, blocks, stage)
 
 
-def _records(name: str, blocks: HealthyBlocks, drive: Drivetrain) -> tuple[OrderRecord, ...]:
+def _records(name: str, blocks: HealthyBlocks, drive: TrainOrders) -> tuple[OrderRecord, ...]:
     return tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, drive) for one in blocks.blocks)
 
 
@@ -157,7 +157,7 @@ class _Foreign:
         return tuple(line.order for line in (*(one.line for one in self.stage), *self.waves))
 
 
-def _foreign(name: str, multiples: Multiples, stage: SecondStage | None, drive: Drivetrain) -> _Foreign:
+def _foreign(name: str, multiples: Multiples, stage: SecondStage | None, drive: TrainOrders) -> _Foreign:
     lines = stage_lines(stage, multiples[stage.shaft][name]) if stage and name in multiples[stage.shaft] else ()
     return _Foreign(lines, wave_lines(multiples, drive, name, tuple(one.line.order for one in lines)))
 
@@ -224,7 +224,7 @@ def _channel(
     library: SourceLibrary,
     draws: _Draws,
     grid_hz: np.ndarray,
-    drive: Drivetrain,
+    drive: TrainOrders,
     groups: tuple[LineGroup, ...],
 ) -> ChannelFit:
     rng = generator(draws.seed, Purpose.PATHS, 1 + number)

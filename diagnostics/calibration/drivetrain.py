@@ -1,4 +1,4 @@
-"""Drivetrain: shafts and meshes of the machine that is calibrated, by their orders, named as its user names them.
+"""TrainOrders: shafts and meshes of the machine that is calibrated, by their orders, named as its user names them.
 
 Orders are turns, or teeth that mesh, per turn of the first shaft. Shafts and meshes stand in the order of power.
 """
@@ -52,7 +52,7 @@ class MeshOrder:
 
 
 @dataclass(frozen=True, slots=True)
-class Drivetrain:
+class TrainOrders:
     """All shafts and meshes of a machine."""
 
     shafts: tuple[Shaft, ...]
@@ -69,7 +69,7 @@ class Drivetrain:
         return self.shafts[1].step
 
 
-def drivetrain(train: Sequence[Mesh], shafts: Sequence[str] = (), meshes: Sequence[str] = ()) -> Drivetrain:
+def drivetrain(train: Sequence[Mesh], shafts: Sequence[str] = (), meshes: Sequence[str] = ()) -> TrainOrders:
     """Return the shafts and meshes of a gearbox.
 
     Parameters
@@ -87,7 +87,7 @@ def drivetrain(train: Sequence[Mesh], shafts: Sequence[str] = (), meshes: Sequen
         teeth.append((mesh.teeth[1], *(one.teeth[0] for one in train[number + 1 : number + 2])))
     found = tuple(Shaft(*one) for one in zip(named, turns, teeth, strict=True))
     orders = (float(found[number].turns * mesh.teeth[0]) for number, mesh in enumerate(train))
-    return Drivetrain(
+    return TrainOrders(
         found,
         tuple(
             MeshOrder(name, order, (found[number], found[number + 1]))
@@ -96,6 +96,6 @@ def drivetrain(train: Sequence[Mesh], shafts: Sequence[str] = (), meshes: Sequen
     )
 
 
-def pair(teeth: tuple[int, int]) -> Drivetrain:
+def pair(teeth: tuple[int, int]) -> TrainOrders:
     """Return the drivetrain of one pair of gears."""
     return drivetrain((Mesh("", teeth),))

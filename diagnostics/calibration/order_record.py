@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.calibration.drivetrain import Drivetrain, MeshOrder
+from diagnostics.calibration.drivetrain import MeshOrder, TrainOrders
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 
 FLOOR_BINS, LINE_BINS, MASK_BINS = 41, 2, 2.2
@@ -80,7 +80,7 @@ def turns_of(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray) -> np.ndarr
     return resample_to_angle(signal, fs_hz, grid).reshape(grid.revolutions, -1)
 
 
-def order_record(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, drive: Drivetrain) -> OrderRecord:
+def order_record(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, drive: TrainOrders) -> OrderRecord:
     """Return the record of a channel (n,) with one pulse [s] per turn of the first shaft."""
     from scipy import fft
 
@@ -94,7 +94,7 @@ def order_record(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, drive: 
     return OrderRecord(power[:kept], _floor(power[:kept], free), free, turns.shape[0], speed_hz)
 
 
-def free_bins(bins: int, revolutions: int, drive: Drivetrain) -> np.ndarray:
+def free_bins(bins: int, revolutions: int, drive: TrainOrders) -> np.ndarray:
     """Return which bins (bins,) lie beside all orders of all shafts; of slow ones too dense to pass are ignored."""
     order = np.arange(bins) / revolutions
     free = np.abs(order - np.round(order)) * revolutions > MASK_BINS
@@ -137,7 +137,7 @@ class LineGroup:
     is_line: bool = False
 
 
-def line_groups(drive: Drivetrain, top_order: float, foreign: tuple[float, ...] = ()) -> tuple[LineGroup, ...]:
+def line_groups(drive: TrainOrders, top_order: float, foreign: tuple[float, ...] = ()) -> tuple[LineGroup, ...]:
     """Return the groups below an order: of every mesh harmonic the line, sidebands of its driving and its driven shaft.
 
     Below all of them errors of the teeth have lines at orders of the shafts. Lines at `foreign` orders are left out:
@@ -162,7 +162,7 @@ def _groups(mesh: MeshOrder, number: int, h: int, foreign: tuple[float, ...]) ->
         yield LineGroup(f"{shaft.name} sidebands of {called}", centre, orders, number)
 
 
-def _low_groups(drive: Drivetrain, foreign: tuple[float, ...]) -> Iterator[LineGroup]:
+def _low_groups(drive: TrainOrders, foreign: tuple[float, ...]) -> Iterator[LineGroup]:
     """Yield the multiples of the first two shafts from order 1 to the first sidebands, by quarters of an octave."""
     top = min(mesh.order - max(GEAR_SIDEBANDS) * mesh.shafts[0].step for mesh in drive.meshes)
     multiples = {k * shaft.step for shaft in drive.shafts[:2] for k in range(1, math.ceil(max(top, 1.0) / shaft.step))}

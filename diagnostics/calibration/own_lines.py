@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnostics.calibration.drivetrain import Drivetrain
+from diagnostics.calibration.drivetrain import TrainOrders
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
 from diagnostics.calibration.order_record import LINE_BINS, OrderRecord, line_places
 
@@ -42,7 +42,7 @@ class OwnLine:
     spread: float
 
 
-def own_lines(records: Sequence[OrderRecord], drive: Drivetrain) -> tuple[OwnLine, ...]:
+def own_lines(records: Sequence[OrderRecord], drive: TrainOrders) -> tuple[OwnLine, ...]:
     """Return the lines that a channel shows beside those of the gears, the strongest first."""
     peaks = [_peaks(record, drive) for record in records]
     needed = max(1, math.ceil(0.5 * len(records)))
@@ -56,7 +56,7 @@ def own_lines(records: Sequence[OrderRecord], drive: Drivetrain) -> tuple[OwnLin
     return tuple(sorted(found, key=lambda line: -line.amplitude)[:MOST_LINES])
 
 
-def _peaks(record: OrderRecord, drive: Drivetrain) -> np.ndarray:
+def _peaks(record: OrderRecord, drive: TrainOrders) -> np.ndarray:
     """Return order, frequency and mean square of the lines that are not of the gears, (lines, 3)."""
     from scipy.ndimage import maximum_filter1d
 
@@ -72,7 +72,7 @@ def _peaks(record: OrderRecord, drive: Drivetrain) -> np.ndarray:
     return np.stack([order[known], order[known] * record.speed_hz, energy[known]], axis=1).reshape(-1, 3)
 
 
-def _of_teeth(order: np.ndarray, revolutions: int, drive: Drivetrain) -> np.ndarray:
+def _of_teeth(order: np.ndarray, revolutions: int, drive: TrainOrders) -> np.ndarray:
     """Return which orders (lines,) are not told from a shaft's multiple, and from no low one: errors of the teeth."""
     told, low = SAME_BINS / revolutions, np.zeros(order.size, dtype=bool)
     of_teeth = low.copy()
@@ -116,7 +116,7 @@ def _matched(
     return [_line(where if by_order else 0.0, 0.0 if by_order else where, chosen[:, 2], least)]
 
 
-def _on_shaft(line: OwnLine, revolutions: int, drive: Drivetrain) -> OwnLine:
+def _on_shaft(line: OwnLine, revolutions: int, drive: TrainOrders) -> OwnLine:
     """Return a line whose order is a shaft's within what is seen as exactly that: averages shall hold it."""
     for step in (shaft.step for shaft in drive.shafts):
         nearest = round(line.order / step) * step

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 import siggen
-from diagnostics.calibration.drivetrain import Drivetrain, MeshOrder, drivetrain
+from diagnostics.calibration.drivetrain import MeshOrder, TrainOrders, drivetrain
 from diagnostics.calibration.healthy_blocks import Block
 from diagnostics.calibration.order_record import OrderRecord
 from diagnostics.calibration.path_draws import number_limits
@@ -33,14 +33,14 @@ class Rig:
     file : Path
     config : dict
         Resolved, in its user's words.
-    drive : Drivetrain
+    drive : TrainOrders
     forces : tuple of str
         Its bearing forces as place/axis, in its user's words.
     """
 
     file: Path
     config: dict[str, Any]
-    drive: Drivetrain
+    drive: TrainOrders
     forces: tuple[str, ...]
 
     @property

@@ -22,7 +22,7 @@ from math import gcd
 
 import numpy as np
 
-from diagnostics.calibration.drivetrain import Drivetrain
+from diagnostics.calibration.drivetrain import TrainOrders
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, jackknife
 from diagnostics.calibration.order_record import SAME_ORDER
 from diagnostics.calibration.own_lines import LEAST_SPREAD, SHAFT_ORDERS, UNKNOWN_SPREAD, OwnLine
@@ -51,14 +51,14 @@ LINE_EXCESS_DB = 6.0
 HIGHEST_LINE = 20
 
 
-def wave_lines(multiples: Multiples, drive: Drivetrain, channel: str, known: tuple[float, ...]) -> tuple[OwnLine, ...]:
+def wave_lines(multiples: Multiples, drive: TrainOrders, channel: str, known: tuple[float, ...]) -> tuple[OwnLine, ...]:
     """Return these lines of a channel.
 
     Parameters
     ----------
     multiples : mapping
         By shaft and channel.
-    drive : Drivetrain
+    drive : TrainOrders
     channel : str
     known : tuple of float
         Orders that are taken already: those of a second stage.
@@ -103,7 +103,7 @@ class StageLine:
     line: OwnLine
 
 
-def second_stage(multiples: Multiples, drive: Drivetrain) -> SecondStage | None:
+def second_stage(multiples: Multiples, drive: TrainOrders) -> SecondStage | None:
     """Return the stage that recordings show; None where no comb stands out clearly."""
     steps = {shaft.name: shaft.step for shaft in drive.shafts}
     found = [

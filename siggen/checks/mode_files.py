@@ -8,7 +8,7 @@ from typing import Any
 
 from siggen.config import Background, ModalHousing
 from siggen.config.data_file import data_file_bytes, shortened_path
-from siggen.dynamics.structure.planetary import SEATS_OF_SET
+from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 from siggen.sensing.inputs import MOTION

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from siggen.config import Dynamics, Rotor, Shaft
 from siggen.dynamics.bearings.loaded_bearing import loaded_bearing
-from siggen.dynamics.structure.tilting_shaft import Shaft as Beam
-from siggen.dynamics.structure.tilting_shaft import cantilever_compliance_m_per_n
+from siggen.dynamics.structure.gear_stage import Shaft as Beam
+from siggen.dynamics.structure.gear_stage import cantilever_compliance_m_per_n
 from siggen.errors import Problem
 from siggen.gears.contact.table_columns import approach_under_m
 from siggen.gears.geometry.gear_pair import GearPair

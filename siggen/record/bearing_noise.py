@@ -19,7 +19,6 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
-from siggen.dynamics.drive.external_forces import OF_SET
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course
@@ -36,7 +35,9 @@ BAND_EDGES_HZ = (50.0, 300.0, 1800.0, 10_000.0)
 TAPS = 2048
 PHASE_SPREAD = 0.1
 """Noise of one shaft's bearings rises at the same angle, within this share of a turn to either side."""
-SEATS_OF_SHAFTS = tuple(f"{place}/{axis}" for place in OF_SET for axis in ("vertical", "horizontal"))
+SEATS_OF_SHAFTS = tuple(
+    f"{place}/{axis}" for place in ("sun_bearing", "carrier_bearing") for axis in ("vertical", "horizontal")
+)
 SLIP = (0.005, 0.02)
 """Share by which the cage lags (assumed)."""
 PASSING_LINES = 3

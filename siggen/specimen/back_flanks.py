@@ -16,7 +16,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics
-from siggen.dynamics.structure.back_flanks import on_back_flanks as seen_from_behind
+from siggen.dynamics.structure.structure import on_back_flanks as seen_from_behind
 from siggen.gears.damage.flank_loss import Losses, from_flanks, on_back_flanks, takes_from_flanks, turned
 from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.damage.tooth_damage import acts_on_tooth, goes_through, on_teeth
@@ -110,7 +110,7 @@ def with_back_flanks(
         found = tooth_tables(dynamics, driven, gone, options, TABLE_POINTS, largest_force_n, _seen_from_behind(lead_m))
         return SpecimenMesh(
             driven,
-            seen_from_behind(mesh.structure, pair.line_of_action_m, pitches_ahead(pair)),
+            seen_from_behind(mesh.structure, pitches_ahead(pair)),
             # rows by the teeth of the pinion first, as everywhere
             replace(found.tables, table_of_pair=np.ascontiguousarray(found.tables.table_of_pair.T)),
             BackTeeth(teeth, pair, from_flanks(parts)),

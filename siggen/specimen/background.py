@@ -20,10 +20,11 @@ from siggen.dynamics.drive.external_forces import (
     shaft_direction,
     shaft_directions,
 )
-from siggen.dynamics.structure.body import Body
+from siggen.dynamics.structure.drivetrain import BASE, Place
 from siggen.dynamics.structure.forced_motion import MeanMesh
-from siggen.dynamics.structure.foundation import Base, on_base
-from siggen.dynamics.structure.structure import Structure, vector
+from siggen.dynamics.structure.gear_stage import Base
+from siggen.dynamics.structure.makers import on_base
+from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
@@ -43,7 +44,7 @@ from siggen.specimen.background_numbers import (
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.planetary_numbers import planets_in_ring
-from siggen.specimen.structure import linear_structure
+from siggen.specimen.structure import linear_structure, linear_train
 
 DECAYS = 7.0
 """Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
@@ -102,11 +103,12 @@ def specimen_background(
     channels : by name
     frequency_hz : (k,)
     """
-    assembled, body = linear_structure(config, specimen)
-    if body is not None and section.base is not None:
-        assembled = on_base(assembled, body, _base(section.base))
+    machine = linear_train(config, specimen)
+    if section.base is not None and BASE in machine.body:
+        machine = on_base(machine, _base(section.base))
+    assembled = linear_structure(machine)
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
-    directions = _directions(assembled, body, section, uniform)
+    directions = _directions(assembled, section, uniform)
     assert config.background is not None
     numbers = background_numbers(config.background)
     shafts, bearings = _shafts(numbers, uniform), bearings_of_shafts(numbers, uniform)
@@ -186,7 +188,7 @@ def _base(section: BaseNumbers) -> Base:
 
 
 def _directions(
-    assembled: Structure, body: Body | None, section: BackgroundNumbers, uniform: Callable[[str], float]
+    assembled: Structure, section: BackgroundNumbers, uniform: Callable[[str], float]
 ) -> dict[str, FloatArray]:
     """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
     found: dict[str, FloatArray] = {}
@@ -203,9 +205,9 @@ def _directions(
             found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
         found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
     if section.second_stage is not None:
-        found["second_stage"] = _entry(assembled, body, "second_stage")
+        found["second_stage"] = _entry(assembled, "second_stage")
     if section.auxiliary_drive is not None:
-        rows = np.array([_entry(assembled, body, f"auxiliary_drive/{axis}") for axis in AXES])
+        rows = np.array([_entry(assembled, f"auxiliary_drive/{axis}") for axis in AXES])
         found["auxiliary_drive"] = _turned(rows, _angle(uniform, "auxiliary_drive"))
     return found
 
@@ -241,9 +243,10 @@ def _pressed(assembled: Structure, turn_rad: float) -> dict[str, dict[str, float
     return {**own, "second_stage": {"second_stage": 1.0}, "auxiliary_drive": drive}
 
 
-def _entry(assembled: Structure, body: Body | None, name: str) -> FloatArray:
-    """Return the generalised force (n,) of 1 N where another machine presses on the body; nothing without a body."""
-    return vector(assembled.coordinates, {} if body is None else body.entries[name])
+def _entry(assembled: Structure, name: str) -> FloatArray:
+    """Return the generalised force (n,) of 1 N where another machine presses on the housing; nothing without one."""
+    machine = assembled.drivetrain
+    return machine.way(machine.entries[name]) if name in machine.entries else np.zeros(len(assembled.coordinates))
 
 
 def _angle(uniform: Callable[[str], float], name: str) -> float:
@@ -258,19 +261,15 @@ def _on_rotor(assembled: Structure, shaft: str) -> FloatArray:
     return shaft_directions(assembled, bearing_places(assembled)[SHAFTS.index(shaft)])
 
 
-def _moved(assembled: Structure, names: tuple[str, str]) -> FloatArray:
-    """Return unit forces (2, n), horizontal and vertical, on a body with these translations; 0 if there is none."""
-    pinion = [assembled.coordinates.index(f"{axis}_{'s' if assembled.frame else 1}") for axis in "xy"]
-    rows = np.zeros((2, len(assembled.coordinates)))
-    if set(names) <= set(assembled.coordinates):
-        rows[:, [assembled.coordinates.index(name) for name in names]] = _on_rotor(assembled, "pinion")[:, pinion]
-    return rows
-
-
 def _on_base(assembled: Structure) -> FloatArray:
-    return _moved(assembled, ("x_b", "y_b"))
+    """Return unit forces (2, n), horizontal and vertical, on the base; 0 if there is none."""
+    machine = assembled.drivetrain
+    if BASE not in machine.body:
+        return np.zeros((len(AXES), len(assembled.coordinates)))
+    return np.array([machine.row(Place(BASE), axis) for axis in AXES])
 
 
 def _stand(assembled: Structure, shaft: str) -> FloatArray:
     """Return where a machine presses: on the base, or on its shaft of a gearbox without one."""
-    return _on_base(assembled) if "x_b" in assembled.coordinates else _on_rotor(assembled, shaft)
+    base = assembled.drivetrain.body.get(BASE)
+    return _on_base(assembled) if base is not None and base.coordinates else _on_rotor(assembled, shaft)

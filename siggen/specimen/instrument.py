@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
-from siggen.dynamics.structure.planetary import SEATS_OF_SET
+from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen

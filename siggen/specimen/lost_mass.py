@@ -16,7 +16,6 @@ from siggen.dynamics.drive.external_forces import (
     Unbalance,
     bearing_places,
     gear_directions,
-    gear_number,
     turning_sense,
 )
 from siggen.dynamics.structure.structure import Structure
@@ -60,8 +59,9 @@ def tooth_angle_rad(pair: GearPair, which: str, tooth: int) -> float:
 
 def _unbalance(pair: GearPair, structure: Structure, which: str, lost: LostMetals, at: MeshPlace) -> Unbalance:
     gear, driven = pair.member(which), int(which == "gear")
-    place, number = bearing_places(structure)[at.number + driven], structure.meshes[at.number].turning[driven]
-    sense, directions = turning_sense(structure, place), gear_directions(structure, place, gear_number(number))
+    mesh = structure.drivetrain.meshes[at.number]
+    directions = gear_directions(structure, (mesh.driven if driven else mesh.driver).body)
+    sense = turning_sense(structure, bearing_places(structure)[at.number + driven])
     begins_rad = 2.0 * pi * at.turned_pitches / gear.teeth
     moment = -sum(
         lost_moment_kg_m(gear, one, pair.face_width_m)

@@ -11,7 +11,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Housing, ModalHousing
 from siggen.dynamics.housing.modes import TableModes, table_motion
 from siggen.dynamics.housing.motion import Motion
-from siggen.dynamics.structure.planetary import SEATS_OF_SET
+from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.planning.specimen import Specimen
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.mode_table import BASE, DRIVE, ModeTable, mode_table, seats_of

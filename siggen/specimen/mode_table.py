@@ -22,7 +22,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.housing.modes import VIBRATING_HZ
-from siggen.dynamics.structure.planetary import SEATS_OF_SET
+from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.keys.problems import nearest
 
 FREQUENCY, DAMPING = "frequency_hz", "damping_ratio"

@@ -15,9 +15,8 @@ from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_internals import PairContact
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
-from siggen.dynamics.structure.back_flanks import on_back_flanks
 from siggen.dynamics.structure.shaft_lines import frame_turns
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.structure import Structure, on_back_flanks
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
@@ -100,7 +99,7 @@ class SpecimenMesh:
         back = self.back
         if back is None:
             return replace(self, structure=structure)
-        behind = on_back_flanks(structure, self.pair.line_of_action_m, pitches_ahead(self.pair))
+        behind = on_back_flanks(structure, pitches_ahead(self.pair))
         return replace(self, structure=structure, back=lambda: replace(back(), structure=behind))
 
     def carrying(self, point: OperatingPoint) -> tuple[SpecimenMesh, OperatingPoint]:

@@ -15,28 +15,25 @@ from dataclasses import replace
 import numpy as np
 
 from siggen.config import RigidHousing
-from siggen.dynamics.structure.body import Body, renamed, rigid_body
-from siggen.dynamics.structure.casing_structure import refuse_single_bolt
-from siggen.dynamics.structure.planetary import RING_TURNING, planetary_structure
-from siggen.dynamics.structure.structure import Structure, assemble
+from siggen.dynamics.structure.drivetrain import Drivetrain
+from siggen.dynamics.structure.makers import CENTRAL, GROUND, Housing, planetary_train, rigid_housing
+from siggen.dynamics.structure.structure import matrices
 from siggen.planning.specimen import Specimen
 from siggen.specimen.planetary_numbers import planetary_numbers, ring_outer_radius_m
 from siggen.specimen.rigid_casing import CASING_GYRATION, casing_numbers
 
 AXIS = (0.0, 0.0)
 """Of all bodies: the middle of the housing."""
-NAMES = {"x_c": "x_h", "y_c": "y_h", "phi_c": "phi_h"}
-"""Coordinates of a rigid housing, beside those of a carrier."""
 
 
-def set_in_housing(specimen: Specimen, body: Body | None) -> Structure:
-    """Return the structure of a set with evenly spread planets in a body, or on the ground."""
+def set_in_housing(specimen: Specimen, housing: Housing | None) -> Drivetrain:
+    """Return a set with evenly spread planets in a housing, or on the ground."""
     stage = planetary_numbers(specimen)
     count = len(stage.places_turns)
-    return planetary_structure(replace(stage, places_turns=tuple(i / count for i in range(count))), body)
+    return planetary_train(replace(stage, places_turns=tuple(i / count for i in range(count))), housing)
 
 
-def rigid_housing_of_set(specimen: Specimen) -> Body:
+def rigid_housing_of_set(specimen: Specimen) -> Housing:
     """Return a block on bolts round a set, whose axis lies in its middle.
 
     Raises
@@ -47,17 +44,13 @@ def rigid_housing_of_set(specimen: Specimen) -> Body:
     assert isinstance(specimen.housing, RigidHousing)
     extent_m = ring_outer_radius_m(specimen) / CASING_GYRATION
     casing = replace(casing_numbers(specimen.housing, extent_m, specimen.sensors), pinion_place_m=AXIS)
-    refuse_single_bolt(casing)
-    places = dict.fromkeys(("sun_bearing", "carrier_bearing", "ring"), AXIS)
-    body = rigid_body(casing, places, 0.0)
-    return renamed(replace(body, seats={**body.seats, RING_TURNING: {"phi_c": 1.0}}), NAMES)
+    return rigid_housing(casing, dict.fromkeys(CENTRAL, AXIS), "h")
 
 
-def slowest_decay_per_s(body: Body) -> float:
+def slowest_decay_per_s(housing: Housing) -> float:
     """Return the smallest decay rate of a rigid body on its supports [1/s]."""
-    coordinates = tuple(body.inertias)
-    stiffness, damping = assemble(coordinates, body.supports)
-    inverse = np.diag(1.0 / np.array(list(body.inertias.values())))
-    still, unit = np.zeros_like(stiffness), np.eye(len(coordinates))
+    mass, damping, stiffness = matrices(Drivetrain((housing.body, GROUND), housing.bolts))
+    inverse = np.diag(1.0 / np.diag(mass))
+    still, unit = np.zeros_like(stiffness), np.eye(len(mass))
     state = np.block([[still, unit], [-inverse @ stiffness, -inverse @ damping]])
     return float((-np.linalg.eigvals(state).real).min())

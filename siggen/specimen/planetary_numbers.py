@@ -15,8 +15,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Config, PlainRotor, Planetary
 from siggen.config import Coupling as CouplingSection
 from siggen.config.planetary_problems import set_of
-from siggen.dynamics.structure.gear_stage import Coupling
-from siggen.dynamics.structure.planetary import PlanetaryBody, PlanetaryStage
+from siggen.dynamics.structure.gear_stage import Coupling, PlanetaryBody, PlanetaryStage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair, ring_round
 from siggen.gears.geometry.planetary import PlanetarySet

@@ -25,8 +25,8 @@ from siggen.dynamics.housing.housing_modes import (
 )
 from siggen.dynamics.housing.layout import Contents, Proportions, layout
 from siggen.dynamics.housing.loose_foot import loosened, springs
-from siggen.dynamics.housing.motion import Motion, Place, motion_at, seat_motions
-from siggen.dynamics.structure.body import Point
+from siggen.dynamics.housing.motion import Motion, PlatePlace, motion_at, seat_motions
+from siggen.dynamics.structure.gear_stage import Point
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import at, constant
 from siggen.planning.housing_numbers import PlateNumbers
@@ -128,7 +128,9 @@ def _sensors(
         if sensor.plate is not None:
             plate, first, second = sensor_place(box, sensor, uniform)
             for axis, number in AXES.items():
-                found[f"casing_{sensor.name}/{axis}"] = motion_at(modes.halves, Place(plate, first, second, number))
+                found[f"casing_{sensor.name}/{axis}"] = motion_at(
+                    modes.halves, PlatePlace(plate, first, second, number)
+                )
     return found
 
 
@@ -164,7 +166,7 @@ def _entries(
     shares = [0.2 + 0.6 * uniform(f"housing.auxiliary_drive.{i}") for i in range(2)]
     drive = {
         f"auxiliary_drive/{axis}": motion_at(
-            modes.halves, Place("front", shares[0] * length, shares[1] * height, AXES[axis])
+            modes.halves, PlatePlace("front", shares[0] * length, shares[1] * height, AXES[axis])
         )
         for axis in ("horizontal", "vertical")
     }

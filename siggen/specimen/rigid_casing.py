@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from siggen.config import RigidHousing
-from siggen.dynamics.structure.body import Bolts, Casing, Point
+from siggen.dynamics.structure.gear_stage import Bolts, Casing, Point
 from siggen.keys.number import Number, constant
 from siggen.sensors.sensor import SensorBase
 

@@ -12,14 +12,14 @@ import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
-from siggen.dynamics.structure.body import Body
-from siggen.dynamics.structure.planetary import SEATS_OF_SET, supports_of_set
-from siggen.dynamics.structure.structure import Structure, vector
+from siggen.dynamics.structure.drivetrain import Modes
+from siggen.dynamics.structure.makers import SEATS_OF_SET, Housing, supports_of_set
+from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import Specimen
 from siggen.specimen.background import mean_meshes
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.planetary_numbers import planetary_numbers
-from siggen.specimen.structure import linear_structure
+from siggen.specimen.structure import linear_structure, linear_train, specimen_body
 
 
 def forces_through_housing(
@@ -32,18 +32,21 @@ def forces_through_housing(
     ValueError
         If a channel shows what the machine does not have.
     """
-    assembled, body = linear_structure(config, specimen)
-    assert body is not None
-    springs = supports_of_set(planetary_numbers(specimen), {}).values()
-    forcing = _on_seats(assembled, body, np.array([spring.stiffness for spring in springs]))
+    housing, assembled = specimen_body(config, specimen), linear_structure(linear_train(config, specimen))
+    assert housing is not None
+    supports = supports_of_set(planetary_numbers(specimen), None)
+    forcing = _on_seats(assembled, housing, np.concatenate([np.diag(one.stiffness) for one in supports]))
     return forced_ways((assembled, mean_meshes(specimen, assembled)), forcing, channels, frequency_hz)
 
 
-def _on_seats(assembled: Structure, body: Body, stiffness: FloatArray) -> Forcing:
-    """Return unit forces on the seats of a body whose springs have a stiffness (seats,)."""
-    seats = np.array([vector(assembled.coordinates, body.seats[name]) for name in SEATS_OF_SET])
-    given = body.flexibility_m_per_n
-    flexibility = np.zeros((len(seats), len(seats))) if given is None else given
+def _on_seats(assembled: Structure, housing: Housing, stiffness: FloatArray) -> Forcing:
+    """Return unit forces on the seats of a housing whose springs have a stiffness (seats,)."""
+    split = [name.split("/") for name in SEATS_OF_SET]
+    seats = np.array([assembled.drivetrain.row(housing.seats[place], along) for place, along in split])
+    flexibility = np.zeros((len(seats), len(seats)))
+    if isinstance(housing.body, Modes):
+        order = [housing.body.seats.index(name) for name in SEATS_OF_SET]
+        flexibility = housing.body.give_m_per_n[np.ix_(order, order)]
     pulled = np.array([assembled.bearing_forces[name][0] for name in SEATS_OF_SET])
     back = np.linalg.solve(np.diag(1.0 / stiffness) + flexibility, flexibility)
     rows, shares = seats + flexibility @ pulled, np.eye(len(seats)) - back

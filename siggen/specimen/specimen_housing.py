@@ -15,7 +15,9 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.housing.box import Box
 from siggen.dynamics.housing.modes import ALL, Modes
 from siggen.dynamics.housing.motion import Motion
-from siggen.dynamics.structure.body import ModalBody, Point
+from siggen.dynamics.structure.drivetrain import Modes as LowestModes
+from siggen.dynamics.structure.gear_stage import Point
+from siggen.dynamics.structure.makers import Housing, housing_of_modes
 
 MODES_ON_BOLTS = 6
 COUPLED_HZ, MOST = 1500.0, 9
@@ -93,25 +95,37 @@ def settle_s(slowest_per_s: float) -> float:
     return min(SETTLED_DECAYS / slowest_per_s, LONGEST_S) if slowest_per_s > 0.0 else LONGEST_S
 
 
-def coupled_modes(housing: SpecimenHousing) -> ModalBody:
-    """Return the modes that move with the gears."""
+def moving_with_gears(housing: SpecimenHousing) -> Housing:
+    """Return the lowest modes of a housing, those that move with the gears."""
     modes, n = housing.modes, housing.coupled
     seats = list(housing.seats.values())
-
-    def shapes(motions: Mapping[str, Motion]) -> dict[str, FloatArray]:
-        return dict(zip(motions, modes.shapes(list(motions.values()))[:, :n], strict=True)) if motions else {}
-
-    bolts = housing.bolts()
-    of_bolts = modes.shapes([motion for *_, motion in bolts])[:, :n] if bolts else ()
-    return ModalBody(
+    places = {**housing.seats, **housing.motions, **housing.entries}
+    shapes = modes.shapes(list(places.values()))[:, :n]
+    lowest = LowestModes(
+        name="h",
         frequency_hz=modes.frequency_hz[:n],
         damping_ratio=housing.damping_ratio[:n],
-        seats=shapes(housing.seats),
-        motions=shapes(housing.motions),
-        entries=shapes(housing.entries),
-        bolts=tuple((place, axis, k, shape) for (place, axis, k, _), shape in zip(bolts, of_bolts, strict=True)),
-        flexibility_m_per_n=modes.flexibility_beyond(n, seats, seats),
+        shapes=dict(zip(places, shapes, strict=True)),
+        seats=tuple(housing.seats),
+        give_m_per_n=modes.flexibility_beyond(n, seats, seats),
+        base=participation(housing)[:n],
     )
+    return housing_of_modes(lowest, tuple(housing.motions), tuple(housing.entries))
+
+
+def participation(housing: SpecimenHousing) -> FloatArray:
+    """Return how far each mode moves (m, 3) at rest with a base: horizontally, vertically, rocking about the middle.
+
+    Derived: g_r = φ_rᵀ K_b t/ω_r², t the base's motion at the bolts. A mode's spring acts between η_r and g_r, so that
+    a base that moves slowly takes the whole box along.
+    """
+    bolts, omega = housing.bolts(), 2.0 * pi * housing.modes.frequency_hz
+    taken = np.zeros((omega.size, 3))
+    shapes = housing.modes.shapes([motion for *_, motion in bolts]) if bolts else ()
+    for ((h, v), axis, stiffness, _), shape in zip(bolts, shapes, strict=True):
+        moved = (1.0, 0.0, -v) if axis == "horizontal" else (0.0, 1.0, h)
+        taken += np.outer(stiffness * shape / (omega * omega), moved)
+    return taken
 
 
 def second_stage(seats: Mapping[str, Motion], pressure_angle_rad: float) -> Motion:

@@ -1,4 +1,4 @@
-"""The structure of a drawn specimen with further meshes: its shafts on the ground, or in a rigid casing."""
+"""Further meshes of a drawn specimen in SI, and the rigid casing round all of its shafts."""
 
 from __future__ import annotations
 
@@ -6,11 +6,8 @@ from itertools import pairwise
 from math import cos, radians, sin
 
 from siggen.config import PlainRotor, RigidHousing, Stage
-from siggen.dynamics.structure.body import Body, Point, rigid_body
-from siggen.dynamics.structure.casing_structure import refuse_single_bolt
-from siggen.dynamics.structure.drivetrain import PLACES, CommonShaft, NextStage, drivetrain
-from siggen.dynamics.structure.gear_stage import GearStage
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.gear_stage import PLACES, CommonShaft, NextStage, Point
+from siggen.dynamics.structure.makers import Housing, rigid_housing
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
@@ -22,12 +19,7 @@ LEAST_SPAN = 0.5 / min(PLACES[0], PLACES[1] - PLACES[0])
 """Distance of the bearings of a common shaft over both faces, from which on neither gears nor bearings overlap."""
 
 
-def staged_structure(first: GearStage, specimen: Specimen, body: Body | None) -> Structure:
-    """Return the structure of a gearbox with further meshes behind the first one, in a body or on the ground."""
-    return drivetrain(first, _next_stages(specimen), body)
-
-
-def staged_casing(specimen: Specimen) -> Body:
+def casing_round_shafts(specimen: Specimen) -> Housing:
     """Return the rigid casing round all shafts. Its x is horizontal, its y vertical.
 
     Raises
@@ -39,8 +31,7 @@ def staged_casing(specimen: Specimen) -> Body:
     places = axis_places_m(specimen)
     across = [place[0] for place in places.values()]
     casing = casing_numbers(specimen.housing, max(across) - min(across), specimen.sensors)
-    refuse_single_bolt(casing)
-    return rigid_body(casing, places, 0.0)
+    return rigid_housing(casing, places)
 
 
 def axis_places_m(specimen: Specimen) -> dict[str, Point]:
@@ -67,7 +58,7 @@ def _directions(specimen: Specimen) -> list[float]:
     return [radians(constant(stage.direction_deg)) for stage in specimen.stages]
 
 
-def _next_stages(specimen: Specimen) -> list[NextStage]:
+def next_stages(specimen: Specimen) -> list[NextStage]:
     """Return the further meshes in SI; a shaft is as thick as the thinner bore of its two gears."""
     pairs = pairwise(_pairs(specimen))
     return [

@@ -5,20 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 
-from siggen.config import Config, Dynamics, RigidHousing
+from siggen.config import Config, Dynamics
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.external_forces import shaft_direction
-from siggen.dynamics.structure.axial_motion import axial_bearings
-from siggen.dynamics.structure.body import Body, modal_body
-from siggen.dynamics.structure.casing_structure import carried_structure, casing_body
-from siggen.dynamics.structure.gear_stage import Coupling, GearStage
+from siggen.dynamics.structure.drivetrain import TURNING, Drivetrain, Place, Way
+from siggen.dynamics.structure.gear_stage import Coupling, GearStage, Shaft
 from siggen.dynamics.structure.gear_stage import Rotor as RotorNumbers
 from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.structure.planetary import planetary_structure
-from siggen.dynamics.structure.structure import Structure, eight_dof, vector
-from siggen.dynamics.structure.tilting_shaft import Shaft
+from siggen.dynamics.structure.makers import Housing, planetary_train, train
+from siggen.dynamics.structure.structure import Structure, assembled
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
@@ -27,10 +24,9 @@ from siggen.specimen.housing import specimen_housing
 from siggen.specimen.loaded_bearings import loaded_bearings, on_loaded_bearings
 from siggen.specimen.planetary_housing import rigid_housing_of_set, set_in_housing
 from siggen.specimen.planetary_numbers import planetary_numbers
-from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.rotors import rotor_numbers
-from siggen.specimen.specimen_housing import coupled_modes
-from siggen.specimen.staged_structure import staged_casing, staged_structure
+from siggen.specimen.specimen_housing import moving_with_gears
+from siggen.specimen.staged_structure import casing_round_shafts, next_stages
 
 
 def structure(config: Config, specimen: Specimen) -> Structure:
@@ -38,16 +34,9 @@ def structure(config: Config, specimen: Specimen) -> Structure:
 
     A planetary set stands on the ground: its frame turns in its housing (`planetary_housing`).
     """
-    dynamics, pair, stage = specimen.dynamics, gear_pair(specimen.gears), supported_stage(specimen)
     if specimen.planetary is not None:
-        return planetary_structure(planetary_numbers(specimen))
-    body = specimen_body(config, specimen) if dynamics.model == "casing" else None
-    if specimen.stages:
-        found = staged_structure(stage, specimen, body)
-    elif body is None:
-        return eight_dof(stage)
-    else:
-        found = carried_structure(stage, body, _shafts(dynamics, stage, pair))
+        return assembled(planetary_train(planetary_numbers(specimen)))
+    found = assembled(specimen_train(specimen, specimen_body(config, specimen)))
     if specimen_housing(config, specimen) is None:
         return found
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
@@ -55,25 +44,29 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     return replace(found, motions=shafts)
 
 
+def specimen_train(specimen: Specimen, housing: Housing | None) -> Drivetrain:
+    """Return a drawn train of pairs in a housing, or on the ground."""
+    stage = supported_stage(specimen)
+    bending = _shafts(specimen.dynamics, stage, gear_pair(specimen.gears)) if housing and not specimen.stages else None
+    return train(stage, next_stages(specimen), housing, bending)
+
+
 def moved_along(specimen: Specimen) -> tuple[str, ...]:
     """Return the motions along the shafts that sensors on them see: of helical teeth on bearings on the ground."""
     grounded = specimen.dynamics.model == "8dof" and not specimen.stages and specimen.planetary is None
-    return tuple(axial_bearings(gear_stage(specimen.dynamics, gear_pair(specimen.gears)))) if grounded else ()
+    helical = gear_pair(specimen.gears).base_helix_rad != 0.0
+    return ("pinion_bearing/axial", "gear_bearing/axial") if grounded and helical else ()
 
 
-def linear_structure(config: Config, specimen: Specimen) -> tuple[Structure, Body | None]:
-    """Return the structure on which small forces act, and what carries its bearings; it moves as its body does.
+def linear_train(config: Config, specimen: Specimen) -> Drivetrain:
+    """Return the machine on which small forces act, with what carries its bearings; it is seen where that moves."""
+    housing = specimen_body(config, specimen)
+    return specimen_train(specimen, housing) if specimen.planetary is None else set_in_housing(specimen, housing)
 
-    The load is held softly: otherwise nothing would keep the shafts from turning away.
-    """
-    housed = specimen.dynamics.model == "casing"
-    body = specimen_body(config, specimen) if housed else None
-    assembled = structure(config, specimen) if specimen.planetary is None else set_in_housing(specimen, body)
-    assembled = locked_load(assembled)
-    if body is None:
-        return assembled, None
-    motions = {name: vector(assembled.coordinates, row) for name, row in body.motions.items()}
-    return replace(assembled, motions=motions), body
+
+def linear_structure(drivetrain: Drivetrain) -> Structure:
+    """Return a machine whose load is held softly: otherwise nothing would keep the shafts from turning away."""
+    return locked_load(assembled(drivetrain))
 
 
 def supported_stage(specimen: Specimen) -> GearStage:
@@ -91,22 +84,22 @@ def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
 
 
 @lru_cache(maxsize=4)  # structure and background of a gearbox ask for it
-def specimen_body(config: Config, specimen: Specimen) -> Body:
-    """Return the body that carries the bearings of a specimen, sensors and entries on it included."""
-    pair, housing = gear_pair(specimen.gears), specimen_housing(config, specimen)
-    if housing is not None:
-        upright = specimen.stages or specimen.planetary is not None  # coordinates of others follow their line of action
-        return modal_body(coupled_modes(housing), 0.0 if upright else pair.working_pressure_angle_rad)
+def specimen_body(config: Config, specimen: Specimen) -> Housing | None:
+    """Return what carries the bearings of a specimen, sensors and entries on it included; None for the ground."""
+    if specimen.dynamics.model != "casing":
+        return None
+    pair, modes = gear_pair(specimen.gears), specimen_housing(config, specimen)
+    if modes is not None:
+        return moving_with_gears(modes)
     if specimen.planetary is not None:
         return rigid_housing_of_set(specimen)
+    housing = casing_round_shafts(specimen)
     if specimen.stages:
-        return staged_casing(specimen)
-    assert isinstance(specimen.housing, RigidHousing)
-    casing = casing_numbers(specimen.housing, pair.working_centre_distance_m, specimen.sensors)
-    body = casing_body(gear_stage(specimen.dynamics, pair), casing)
+        return housing
     # Of a second mesh a rigid casing feels the moment alone: the force times the distance of both lines of action.
     arm_m = pair.pinion.base_radius_m + pair.gear.base_radius_m
-    return replace(body, entries={**body.entries, "second_stage": {"phi_c": arm_m}})
+    moment = Way(Place(housing.body.name), TURNING, arm_m)
+    return replace(housing, entries={**housing.entries, "second_stage": moment})
 
 
 def gear_stage(dynamics: Dynamics, pair: GearPair) -> GearStage:

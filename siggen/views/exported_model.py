@@ -18,9 +18,8 @@ from siggen.config.names import Names
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
 from siggen.dynamics.structure.shaft_lines import frame_turns, rolling, without_drift
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.structure import MeshVectors, Structure
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.motion import Motion
@@ -162,20 +161,20 @@ def _meshes(motion: Motion, names: Names) -> dict[str, Any]:
             "pitches_per_rad": per_radian * rate,
             "begins_pitches": begins + mesh.flanks.ahead_pitches,
             **_static_part(motion.equations, number),
-            **_tilt(motion.structure, mesh, motion.equations),
+            **_tilt(mesh, motion.equations),
             **_law(law),
         }
         found |= {f"mesh.{number}.{name}": value for name, value in own.items()}
     return found
 
 
-def _tilt(structure: Structure, mesh: MeshVectors, equations: Equations) -> dict[str, Any]:
+def _tilt(mesh: MeshVectors, equations: Equations) -> dict[str, Any]:
     """Return how gears of a mesh tilt, where they do."""
     if mesh.tilt is None:
         return {}
     return {
         "tilt_vector": mesh.tilt,
-        "tilt_friction_vector": friction_tilt(structure.coordinates, mesh),
+        "tilt_friction_vector": mesh.friction_tilt,
         "static_tilt_rad": float(mesh.tilt @ equations.static_deflection),
     }
 

@@ -6,11 +6,8 @@ from math import pi
 
 import numpy as np
 
-from siggen.arrays import FloatArray
-from siggen.dynamics.structure.body import BASE as MOVED
-from siggen.dynamics.structure.body import on_body
 from siggen.specimen.mode_table import BASE, DRIVE, ModeTable
-from siggen.specimen.specimen_housing import SpecimenHousing
+from siggen.specimen.specimen_housing import SpecimenHousing, participation
 
 RESIDUAL_HZ, RESIDUAL_DAMPING = 1e10, 1e-6
 """Of residual vectors: so high that within any band they only give way (to 1e-11 at 30 kHz)."""
@@ -35,18 +32,7 @@ def exported_modes(housing: SpecimenHousing) -> ModeTable:
         frequency_hz=np.concatenate([modes.frequency_hz, RESIDUAL_HZ * more]),
         damping_ratio=np.concatenate([housing.damping_ratio, RESIDUAL_DAMPING * more]),
         shapes={name.removeprefix("casing_"): shape for name, shape in zip(places, shapes, strict=True)},
-        base=_participation(housing, more.size),
+        base={name: np.concatenate([row, 0.0 * more]) for name, row in zip(BASE, participation(housing).T, strict=True)}
+        if housing.bolts()
+        else {},
     )
-
-
-def _participation(housing: SpecimenHousing, beyond: int) -> dict[str, FloatArray]:
-    """Return the participation factors of a housing on bolts; residual vectors have none."""
-    bolts = housing.bolts()
-    if not bolts:
-        return {}
-    omega = 2.0 * pi * housing.modes.frequency_hz
-    taken = np.zeros((omega.size, len(MOVED)))
-    for (place, axis, stiffness, _), shape in zip(bolts, housing.modes.shapes([b[-1] for b in bolts]), strict=True):
-        motion = on_body(place, axis, 0.0, MOVED)
-        taken += np.outer(stiffness * shape / omega**2, [motion[name] for name in MOVED])
-    return {name: np.concatenate([row, np.zeros(beyond)]) for name, row in zip(BASE, taken.T, strict=True)}

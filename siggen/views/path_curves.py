@@ -13,7 +13,7 @@ from siggen.config import Config
 from siggen.config.names import NO_NAMES, Names
 from siggen.config.planetary import pitches_per_turn
 from siggen.config.stages import turned_teeth
-from siggen.dynamics.structure.planetary import RING_TURNING
+from siggen.dynamics.structure.makers import RING_TURNING
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen

@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.dynamics.structure.body import Bolts, Casing
-from siggen.dynamics.structure.casing_structure import casing_structure
-from siggen.dynamics.structure.gear_stage import Bearing, Coupling, GearStage, Rotor
-from siggen.dynamics.structure.structure import Structure, eight_dof, vector
+from siggen.dynamics.structure.gear_stage import Bearing, Bolts, Casing, Coupling, GearStage, Rotor
+from siggen.dynamics.structure.structure import Structure, vector
+from tests.dynamics.trains import casing_structure, eight_dof
 
 PRESSURE_ANGLE = np.radians(20.0)
 BASE_RADIUS_1 = 0.5 * 3e-3 * 18 * np.cos(PRESSURE_ANGLE)
@@ -76,6 +75,7 @@ def torsional(stage: GearStage) -> Structure:
         damping=whole.damping[square],
         stiffness=whole.stiffness[square],
         meshes=(replace(mesh, vector=mesh.vector[turning], sliding=np.ascontiguousarray(mesh.sliding[:, turning])),),
+        lines=np.ascontiguousarray(whole.lines[:, turning]),
         torque_vector=whole.torque_vector[turning],
         motions={"pinion_rim/tangential": vector(coordinates, {"theta_1": BASE_RADIUS_1})},
         bearing_forces={},

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.structure.gear_stage import Bearing, Coupling, GearStage, Rotor
-from siggen.dynamics.structure.structure import Structure, eight_dof
+from siggen.dynamics.structure.structure import Structure
 from siggen.gears.stiffness.mesh_tables import MeshTables
+from tests.dynamics.trains import eight_dof
 
 PRESSURE_ANGLE = np.radians(20.0)
 BASE_RADIUS_1 = 0.5 * 3.5e-3 * 18 * np.cos(PRESSURE_ANGLE)

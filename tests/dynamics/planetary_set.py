@@ -10,8 +10,7 @@ import numpy as np
 
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
-from siggen.dynamics.structure.gear_stage import Coupling
-from siggen.dynamics.structure.planetary import PlanetaryBody, PlanetaryStage
+from siggen.dynamics.structure.gear_stage import Coupling, PlanetaryBody, PlanetaryStage
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.pair_motion import PairMesh
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from siggen.config import Config
-from siggen.dynamics.structure.body import Bolts, Casing
-from siggen.dynamics.structure.casing_structure import casing_structure
+from siggen.dynamics.structure.gear_stage import Bolts, Casing
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import Specimen
@@ -14,6 +13,7 @@ from siggen.specimen.plate_housing import sensor_place
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import gear_stage
 from tests.dynamics.housing.rigid_body import mass_points
+from tests.dynamics.trains import casing_structure
 
 
 def rigid_twin(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Structure:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import pytest
 
 from siggen.arrays import FloatArray
 from siggen.config import Config, parse
-from siggen.dynamics.structure.body import DIRECTIONS, Row
+from siggen.dynamics.structure.drivetrain import Modes
 from siggen.planning.specimen import OperatingPoint, draw_specimen
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.motion import specimen_motion
@@ -72,7 +70,7 @@ def mirror(config: Config, state: SpecimenState) -> FloatArray:
     stage, other = state.mesh.structure, str.maketrans("ml12", "lm21")
     names, reflected = (
         list(stage.coordinates),
-        np.eye(2) - 2.0 * np.outer(stage.mesh.centre_line, stage.mesh.centre_line),
+        np.diag([-1.0, 1.0]),  # gears stand beside each other
     )
     found = np.zeros((len(names), len(names)))
     for i, name in enumerate(names):
@@ -84,23 +82,26 @@ def mirror(config: Config, state: SpecimenState) -> FloatArray:
                 to = names.index(f"{kind[:-1]}{axis}_{side.translate(other)}")
                 found[to, i] = reflected[j, "xy".index(kind[-1])]
     if "eta_1" in names:
-        seats = specimen_body(config, draw_specimen(config, 0)).seats
-        for name, sign in of_modes(seats).items():
+        modes = specimen_body(config, draw_specimen(config, 0)).body
+        for name, sign in zip(modes.coordinates, signs_in_mirror(modes), strict=True):
             found[names.index(name), names.index(name)] = sign
     return found
 
 
-def of_modes(seats: Mapping[str, Row]) -> dict[str, float]:
+def signs_in_mirror(modes: Modes) -> list[float]:
     """Return of each mode 1 if both seats rise together and part, -1 if neither; nothing else is left by the mirror."""
-    found = {}
-    for name in seats["gear_bearing/vertical"]:
-        shape = {axis: [seats[f"{g}_bearing/{axis}"][name] for g in ("pinion", "gear")] for axis in DIRECTIONS}
+    signs = []
+    for number in range(len(modes.frequency_hz)):
+        shape = {
+            axis: [float(modes.shapes[f"{g}_bearing/{axis}"][number]) for g in ("pinion", "gear")]
+            for axis in ("vertical", "horizontal")
+        }
         larger = max(abs(value) for pair in shape.values() for value in pair)
         sign = float(np.sign(np.prod(shape["vertical"]) - np.prod(shape["horizontal"])))
         assert shape["vertical"][1] == pytest.approx(sign * shape["vertical"][0], abs=1e-9 * larger)
         assert shape["horizontal"][1] == pytest.approx(-sign * shape["horizontal"][0], abs=1e-9 * larger)
-        found[name] = sign
-    return found
+        signs.append(sign)
+    return signs
 
 
 def in_the_mirror(states: FloatArray, image: FloatArray) -> FloatArray:

@@ -9,17 +9,17 @@ from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.dynamics.housing.box import Material
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
-from siggen.dynamics.structure.foundation import Base, on_base
+from siggen.dynamics.structure.gear_stage import Base
 from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.makers import on_base
 from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import MOTION
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import specimen_instrument
 from siggen.specimen.measured_path import INPUTS
 from siggen.specimen.specimen_housing import SpecimenHousing, modes_settle_s
-from siggen.specimen.structure import specimen_body, structure
+from siggen.specimen.structure import linear_structure, linear_train, structure
 from tests.specimen.rigid_twin import rigid_twin
 
 CONFIG = load_config("quickstart")
@@ -53,14 +53,13 @@ def stiff(monkeypatch, made_anew) -> None:
 def test_a_base_that_moves_slowly_takes_the_box_along_without_force(share: float) -> None:
     config = load_config("quickstart", [f"housing.loose_foot_share={share}"])
     specimen = draw_specimen(config, 0)
-    free = locked_load(structure(config, specimen))
-    stage = on_base(free, specimen_body(config, specimen), Base(300.0, 20.0, (20.0, 20.0, 20.0), 0.1))
+    base = Base(300.0, 20.0, (20.0, 20.0, 20.0), 0.1)
+    stage = linear_structure(on_base(linear_train(config, specimen), base))
     p, names = stage.mesh.vector, stage.coordinates
     stiffness = stage.stiffness + MESH.stiffness_n_per_m * np.outer(p, p)
     moving = [i for i, name in enumerate(names) if not name.endswith("_b")]
-    angle, half_m = gear_pair(specimen.gears).working_pressure_angle_rad, 0.04875
-    # x lies horizontally but for the working pressure angle; rocking is about the middle between both shafts
-    turned = half_m * np.array([np.sin(angle), np.cos(angle)])
+    # rocking is about the middle between both shafts, and the pinion stands at positive x
+    turned = 0.04875 * np.array([0.0, 1.0])
     goes = {"x_b": ((1.0, 0.0), (1.0, 0.0)), "y_b": ((0.0, 1.0), (0.0, 1.0)), "phi_b": (turned, -turned)}
     for base, expected in goes.items():
         q = np.eye(len(names))[names.index(base)]

@@ -10,7 +10,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.checks.shaft_notes import shaft_notes
 from siggen.config import Config
-from siggen.dynamics.structure.back_flanks import on_back_flanks
+from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
 from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
 from siggen.record.simulation import simulate

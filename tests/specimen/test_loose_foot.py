@@ -11,13 +11,14 @@ from scipy.linalg import eigvalsh
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.dynamics.structure.body import bolt_elements
-from siggen.dynamics.structure.structure import assemble
+from siggen.dynamics.structure.drivetrain import Drivetrain
+from siggen.dynamics.structure.gear_stage import Casing
+from siggen.dynamics.structure.makers import GROUND, rigid_housing
+from siggen.dynamics.structure.structure import matrices
 from siggen.record.simulation import simulate
 from tests.config.minimal import minimal
 from tests.dynamics.casing_stage import BOLT_PLACES, make_casing
 
-COORDINATES = ("x_c", "y_c", "phi_c")
 SHEAR, AXIAL, ARM, MASS, INERTIA = 8e7, 1.5e8, 0.09, 20.0, 0.25
 
 
@@ -26,7 +27,13 @@ def support(share: float, first: int = 0) -> tuple[np.ndarray, np.ndarray]:
     casing = make_casing()
     places = (*BOLT_PLACES[first:], *BOLT_PLACES[:first])
     bolts = replace(casing.bolts, places_m=places, loose_share=share)
-    return assemble(COORDINATES, bolt_elements(replace(casing, bolts=bolts), 0.0))
+    return supported(replace(casing, bolts=bolts))
+
+
+def supported(casing: Casing) -> tuple[np.ndarray, np.ndarray]:
+    housing = rigid_housing(casing, {})
+    _, damping, stiffness = matrices(Drivetrain((housing.body, GROUND), housing.bolts))
+    return stiffness, damping
 
 
 @pytest.mark.parametrize("share", [1.0, 0.5, 0.1, 1e-3])
@@ -45,7 +52,7 @@ def test_all_four_loose_together_are_softer_bolts() -> None:
     whole, one_each = support(1.0), [support(0.1, first) for first in range(4)]
     casing = make_casing()
     softer = replace(casing.bolts, shear_stiffness_n_per_m=0.1 * SHEAR, axial_stiffness_n_per_m=0.1 * AXIAL)
-    all_soft = assemble(COORDINATES, bolt_elements(replace(casing, bolts=softer), 0.0))
+    all_soft = supported(replace(casing, bolts=softer))
     for tight, soft, *single in zip(whole, all_soft, *one_each, strict=True):
         np.testing.assert_allclose(tight + sum(one - tight for one in single), soft, rtol=1e-12, atol=1e-6)
 

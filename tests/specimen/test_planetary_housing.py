@@ -16,9 +16,8 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.dynamics.structure.forced_motion import forced_motion
-from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.structure.planetary import SEATS_OF_SET, planetary_structure
-from siggen.dynamics.structure.structure import Structure, vector
+from siggen.dynamics.structure.makers import SEATS_OF_SET, planetary_train
+from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.sensing.inputs import MOTION, Input
 from siggen.specimen.background import AXES, EVEN, mean_meshes, mesh_directions
@@ -27,7 +26,7 @@ from siggen.specimen.housing import specimen_housing
 from siggen.specimen.planetary_housing import set_in_housing
 from siggen.specimen.planetary_numbers import planetary_numbers
 from siggen.specimen.set_on_housing import forces_through_housing
-from siggen.specimen.structure import linear_structure
+from siggen.specimen.structure import linear_structure, linear_train, specimen_body
 from tests.config.planets import planets
 
 GRID = np.array([20.0, 150.0, 462.0, 924.0, 1700.0, 3200.0])
@@ -69,7 +68,7 @@ def pushed(structure: Structure, specimen: Specimen, directions: FloatArray, mot
 
 def set_free(config: Config, specimen: Specimen) -> ComplexArray:
     """Return what a push in each mesh does to the lid (meshes, k): forces of the set on the ground, then set free."""
-    ground = locked_load(set_in_housing(specimen, None))
+    ground = linear_structure(set_in_housing(specimen, None))
     pushes = np.array([mesh.vector for mesh in ground.meshes])
     held = pushed(ground, specimen, pushes).bearing_force
     through = forces_through_housing(config, specimen, way(config, specimen), GRID)["lid"]
@@ -79,7 +78,7 @@ def set_free(config: Config, specimen: Specimen) -> ComplexArray:
 @pytest.mark.parametrize("housing", [RIGID, {"kind": "modal", "modes": modes()}], ids=["rigid", "modal"])
 def test_forces_on_held_seats_set_free_move_the_housing_as_the_whole_machine_does(housing: dict[str, Any]) -> None:
     config, specimen = machine(housing)
-    whole, _ = linear_structure(config, specimen)
+    whole = linear_structure(linear_train(config, specimen))
     pushes = np.array([mesh.vector for mesh in whole.meshes])
     expected = pushed(whole, specimen, pushes, ("casing_lid/vertical",)).acceleration["casing_lid/vertical"]
     found = set_free(config, specimen)
@@ -103,12 +102,9 @@ def test_modes_beyond_those_of_the_machine_give_way_as_if_they_were_in_it(
 
 def at_angles(config: Config, specimen: Specimen, turn: float) -> tuple[Structure, Structure]:
     """Return the machine as siggen takes it, and with its carrier a part of a turn farther."""
-    whole, body = linear_structure(config, specimen)
-    assert body is not None
-    places = (turn, turn + 1 / 3, turn + 2 / 3)
-    farther = locked_load(planetary_structure(replace(planetary_numbers(specimen), places_turns=places), body))
-    seen = {name: vector(farther.coordinates, row) for name, row in body.motions.items()}
-    return whole, replace(farther, motions=seen)
+    places, housing = (turn, turn + 1 / 3, turn + 2 / 3), specimen_body(config, specimen)
+    farther = planetary_train(replace(planetary_numbers(specimen), places_turns=places), housing)
+    return linear_structure(linear_train(config, specimen)), linear_structure(farther)
 
 
 @pytest.mark.parametrize("turn", [0.04, 0.23])
@@ -139,8 +135,8 @@ def test_a_planet_anywhere_moves_the_housing_by_three_waves_of_its_angle(mesh: i
 def test_a_stiff_and_heavy_housing_is_the_ground_to_the_set() -> None:
     bolts = {"shear_stiffness_n_per_m": 1e13, "axial_stiffness_n_per_m": 1e13}
     config, specimen = machine({"kind": "rigid", "mass_kg": 1e8, "bolts": bolts})
-    whole, _ = linear_structure(config, specimen)
-    ground = locked_load(set_in_housing(specimen, None))
+    whole = linear_structure(linear_train(config, specimen))
+    ground = linear_structure(set_in_housing(specimen, None))
     push = (whole.meshes[0].vector, ground.meshes[0].vector)
     moved, held = (pushed(one, specimen, row[None]) for one, row in zip((whole, ground), push, strict=True))
     for seat in SEATS_OF_SET:

@@ -9,7 +9,6 @@ from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.columns.planetary_columns import manufacture_of_others
 from siggen.columns.record import label_names
-from siggen.dynamics.structure.planetary import planetary_structure
 from siggen.gears.errors.gear_errors import eccentric_m
 from siggen.gears.geometry.internal_pair import ring_begins_pitches
 from siggen.planning.specimen import draw_specimen
@@ -18,6 +17,7 @@ from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.planetary_meshes import made_meshes
 from siggen.specimen.planetary_numbers import planetary_numbers, planetary_teeth, planets_in_ring
 from tests.config.planets import planets
+from tests.dynamics.trains import planetary_structure
 
 COUNT = 3
 

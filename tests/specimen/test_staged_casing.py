@@ -10,8 +10,10 @@ import pytest
 from scipy.linalg import eigh
 
 from siggen.config import parse
+from siggen.dynamics.structure.drivetrain import PLANE, Drivetrain
 from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import Structure, assemble, vector
+from siggen.dynamics.structure.makers import GROUND
+from siggen.dynamics.structure.structure import Structure, matrices
 from siggen.dynamics.time.equations import mesh_springs
 from siggen.dynamics.time.modes import natural_modes
 from siggen.planning.specimen import draw_specimen
@@ -77,14 +79,15 @@ def test_the_modes_of_a_rigid_casing_make_the_same_machine() -> None:
     assert parsed.config is not None, parsed.problems
     specimen = draw_specimen(parsed.config, 0)
     body = specimen_body(parsed.config, specimen)
-    stiffness, _ = assemble(tuple(body.inertias), body.supports)
-    values, shapes = eigh(stiffness, np.diag(list(body.inertias.values())))
+    alone = Drivetrain((body.body, GROUND), body.bolts)
+    mass, _, stiffness = matrices(alone)
+    values, shapes = eigh(stiffness, mass)
+    seats = {f"{name}/{along}": alone.row(seat, along) for name, seat in body.seats.items() for along in PLANE}
     columns = {
         "frequency_hz": np.sqrt(values) / (2.0 * pi),
         "damping_ratio": np.full(3, 0.04),
-        **{f"{name.replace('/', '_')}_per_sqrt_kg": vector(tuple(body.inertias), row) @ shapes
-           for name, row in body.seats.items()},
-    }  # fmt: skip
+        **{f"{name.replace('/', '_')}_per_sqrt_kg": row @ shapes for name, row in seats.items()},
+    }
     rows = zip(*columns.values(), strict=True)
     text = "\n".join([",".join(columns), *(",".join(repr(float(x)) for x in row) for row in rows), ""])
     modal = parse({**rigid, "housing": {"kind": "modal", "modes": text}})

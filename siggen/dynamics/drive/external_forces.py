@@ -13,10 +13,8 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.excitation import Source
+from siggen.dynamics.structure.drivetrain import PLANE, Place
 from siggen.dynamics.structure.structure import Structure
-
-OF_SET = {"sun_bearing": "s", "carrier_bearing": "c"}
-"""Bearings of the shafts of a planetary set, and how the coordinates of what they hold end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,80 +61,39 @@ def bearing_direction(structure: Structure, place: str, axis: str) -> FloatArray
 
 def shaft_directions(structure: Structure, place: str) -> FloatArray:
     """Return the generalised forces (2, n) of 1 N on the rotor at a bearing, horizontal and vertical."""
-    return np.array([shaft_direction(structure, f"{place}/{axis}") for axis in ("horizontal", "vertical")])
+    return np.array([shaft_direction(structure, f"{place}/{axis}") for axis in PLANE])
 
 
 def shaft_direction(structure: Structure, name: str) -> FloatArray:
     """Return the generalised force (n,) of 1 N on the rotor at a bearing along an axis, by place/axis."""
     place, axis = name.split("/")
-    return _on_shaft(structure, place, bearing_direction(structure, place, axis))
+    bearing_direction(structure, place, axis)
+    gears = structure.drivetrain.held[place]
+    rows = [structure.drivetrain.row(Place(gear), axis) for gear in gears]
+    return np.asarray(np.add.reduce(rows) / len(gears))
 
 
 def bearing_places(structure: Structure) -> tuple[str, ...]:
-    """Return what the bearings of each shaft are called, in the order of power; of a planetary set sun and carrier."""
-    if structure.frame:
-        return tuple(OF_SET)
-    return ("pinion_bearing", "gear_bearing", *(f"{mesh.name}_bearing" for mesh in structure.meshes[1:]))
+    """Return what the bearings of each shaft that turns are called, in the order of power; a planet's pin is none."""
+    machine = structure.drivetrain
+    return tuple(place for place, gears in machine.held.items() if machine.turning[gears[0]] != 0.0)
 
 
-def gear_directions(structure: Structure, place: str, gear: str) -> FloatArray:
-    """Return the generalised forces (2, n) of 1 N on one gear of the shaft at a bearing, horizontal and vertical.
-
-    Gears are counted from the first pinion, "1", in the order of power; an idler is one gear.
-    """
-    along = shaft_directions(structure, place)
-    if len(_gears(structure, place)) == 1:
-        return along
-    own = [name in (f"x_{gear}", f"y_{gear}") for name in structure.coordinates]
-    along = np.where(own, along, 0.0)
-    return np.asarray(along / np.sqrt((along**2).sum(axis=1))[:, None])
+def gear_directions(structure: Structure, gear: str) -> FloatArray:
+    """Return the generalised forces (2, n) of 1 N on one gear, horizontal and vertical."""
+    return np.array([structure.drivetrain.row(Place(gear), axis) for axis in PLANE])
 
 
 def shaft_mass(structure: Structure, place: str) -> tuple[float, FloatArray]:
-    """Return the mass [kg] of all gears of the shaft at a bearing, and 1 N (2, n) that acts on each by its share."""
-    gears = _gears(structure, place)
-    masses = [float(structure.mass[(structure.coordinates.index(f"x_{gear}"),) * 2]) for gear in gears]
+    """Return the mass [kg] that moves with a shaft at a bearing, and 1 N (2, n) that acts on each gear by its share."""
+    rows = [gear_directions(structure, gear) for gear in structure.drivetrain.held[place]]
+    masses = [float(row[0] @ structure.mass @ row[0]) for row in rows]
     whole = sum(masses)
-    shares = [m / whole * gear_directions(structure, place, gear) for m, gear in zip(masses, gears, strict=True)]
-    return whole, np.add.reduce(shares)
+    return whole, np.add.reduce([mass / whole * row for mass, row in zip(masses, rows, strict=True)])
 
 
 def turning_sense(structure: Structure, place: str) -> float:
-    """Return +1 if the shaft at a bearing turns from horizontal to vertical, -1 if back (derived).
-
-    With g along the line of action and w the direction in which flanks slide positively, both in the plane of the
-    coordinates, a point of the driving flank at arm s slides by s Ω along w: so w is g turned by a quarter in the
-    sense of the driving gear. The driven gear turns the other way.
-    """
-    gear = _gears(structure, place)[0]
-    mesh = next(one for one in structure.meshes if f"theta_{gear}" in one.turning)
-    rows = [structure.coordinates.index(f"{axis}_{gear}") for axis in "xy"]
-    along, across = mesh.vector[rows], mesh.sliding[0][rows]
-    horizontal, vertical = shaft_directions(structure, place)[:, rows]
-    driving = np.sign(_cross(along, across)) * np.sign(_cross(horizontal, vertical))
-    return float(driving if f"theta_{gear}" == mesh.turning[0] else -driving)
-
-
-def _cross(first: FloatArray, second: FloatArray) -> float:
-    return float(first[0] * second[1] - first[1] * second[0])
-
-
-def _gears(structure: Structure, place: str) -> tuple[str, ...]:
-    """Return the gears on the shaft at a bearing: between two meshes a driven and a driving one; a carrier is one."""
-    if structure.frame:
-        return (OF_SET[place],)
-    shaft, meshes = bearing_places(structure).index(place), structure.meshes
-    driven = meshes[shaft - 1].turning[1:] if shaft > 0 else ()
-    driving = meshes[shaft].turning[:1] if shaft < len(meshes) else ()
-    return tuple(dict.fromkeys(gear_number(name) for name in (*driven, *driving)))
-
-
-def gear_number(rotation: str) -> str:
-    """Return the number of a gear by the coordinate in which it turns."""
-    return rotation.removeprefix("theta_")
-
-
-def _on_shaft(structure: Structure, place: str, values: FloatArray) -> FloatArray:
-    """Return a vector (n,) with its entries at the gears of a shaft alone."""
-    own = {f"{axis}_{gear}" for gear in _gears(structure, place) for axis in "xyz"}
-    return np.where([name in own for name in structure.coordinates], values, 0.0)
+    """Return 1 if the shaft at a bearing turns from horizontal to vertical, -1 if back."""
+    machine = structure.drivetrain
+    gear = machine.held[place][0]
+    return float(np.sign(machine.rigid(gear).sense * machine.turning[gear]))

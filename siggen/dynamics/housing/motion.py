@@ -32,7 +32,7 @@ class Motion(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class PlatePlace:
     """A place on a plate, at distances [m] along its two axes in order, and the direction of motion."""
 
     plate: str
@@ -41,7 +41,7 @@ class Place:
     direction: Axis
 
 
-def motion_at(halves: tuple[HalfFunctions, HalfFunctions], place: Place) -> Motion:
+def motion_at(halves: tuple[HalfFunctions, HalfFunctions], place: PlatePlace) -> Motion:
     """Return the motion of a place of the middle surface.
 
     Raises
@@ -89,7 +89,7 @@ def box_motions(box: Box, halves: tuple[HalfFunctions, HalfFunctions]) -> dict[s
     }
 
 
-def _at(half: HalfFunctions, place: Place) -> FloatArray:
+def _at(half: HalfFunctions, place: PlatePlace) -> FloatArray:
     plate, sign = place.plate, 1.0
     if plate == "back":
         plate, sign = "front", half.mirror_sign(place.direction)

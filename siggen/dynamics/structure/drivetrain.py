@@ -1,267 +1,366 @@
-"""Structures of several meshes in a row: shafts with one or two gears on bearings on the ground or in a body.
+"""Drivetrain: bodies, elements between places on them, and meshes, as one graph for every machine.
 
-Equations: standard literature (a round beam on two supports; gears as rigid discs); direction of the lines of action
-derived. With x along the first centre line from pinion to gear and y along the pitch-line velocity of the first pinion,
-which turns from x to y, a driven gear in the direction χ is pushed along (-sin(χ - α), cos(χ - α)) by a gear that turns
-that way and along (sin(χ + α), -cos(χ + α)) by one that turns back. Rotations count in the running sense of their
-shaft. An idler is one body in two meshes, driven in one and driver in the next.
+Derived. Everything is one function, `Drivetrain.row`: how far a place moves along a direction per unit of every
+coordinate. A mass is m row rowᵀ, an element k stretch stretchᵀ with the difference of the rows of its ends, a mesh the
+row of the driver less that of the driven gear at the pitch point, a sensor a row, a force on a place a row again. No
+part knows what kind of machine it is in.
+
+Axes: x horizontal and y vertical in the plane of the gears, z along the shafts, rotations from x to y. Coordinates are
+deviations from rigid rotation. A tilt φ_x is what a body moves along x per distance along z. SI units.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import cos, pi, prod, sin, sqrt, tan
-from typing import NamedTuple
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import cos, sin
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.body import Body
-from siggen.dynamics.structure.casing_structure import seated_springs
-from siggen.dynamics.structure.gear_stage import Bearing, GearStage, Rotor
-from siggen.dynamics.structure.mesh_vectors import MeshVectors
-from siggen.dynamics.structure.structure import Element, Structure, assemble, shafts, vector
 
-PLACES = (1.0 / 3.0, 2.0 / 3.0)
-"""Of both gears between the bearings of their shaft (assumed)."""
-TORSIONAL_DAMPING = 0.005
-"""Of a steel shaft between two gears, as a share of the critical one (assumed)."""
-AXES = {"vertical": "y", "horizontal": "x"}
+Vector: TypeAlias = tuple[float, float, float]
+DIRECTIONS: Mapping[str, Vector] = {
+    "horizontal": (1.0, 0.0, 0.0),
+    "vertical": (0.0, 1.0, 0.0),
+    "axial": (0.0, 0.0, 1.0),
+}
+TURNING = "turning"
+PLANE = ("horizontal", "vertical")
+ROUND, ROCKING = "theta", "phi"
+"""Names of rotations: of a body that goes round, and of one that stands."""
+MODE = "eta_"
+"""How the names of coordinates begin that are modes of a housing."""
+BASE = "b"
+"""What housings stand on: a body that does not move until it is given moves."""
+SMALL = 1e-9
+"""Share of its largest entry below which an equation between rotations says nothing: rounding leaves 1e-15."""
 
 
-@dataclass(frozen=True, slots=True)
-class CommonShaft:
-    """A round shaft on two bearings that carries a driven gear and the pinion of the next mesh."""
+class Place(NamedTuple):
+    """A place on a body: a point [m], the name of a place that modes know, or the middle of the body itself."""
 
-    span_m: float
-    diameter_m: float
-    youngs_modulus_pa: float
-    poisson_ratio: float
+    body: str
+    at: Vector | str | None = None
 
-    @property
-    def torsional_stiffness_nm_per_rad(self) -> float:
-        """Stiffness of the piece between both gears: G J over its length."""
-        shear = 0.5 * self.youngs_modulus_pa / (1.0 + self.poisson_ratio)
-        return shear * pi * self.diameter_m**4 / 32.0 / (self.span_m * (PLACES[1] - PLACES[0]))
 
-    @property
-    def bending_m_per_n(self) -> FloatArray:
-        """Deflection (2, 2) of the places of both gears by forces there, on stiff bearings."""
-        a, b = (self.span_m * place for place in PLACES)
-        length, rigidity = self.span_m, self.youngs_modulus_pa * pi * self.diameter_m**4 / 64.0
+class Way(NamedTuple):
+    """A direction at a place: what a sensor there sees, or where a force presses. Modes may know a way by its name."""
 
-        def deflection(at: float, force_at: float) -> float:
-            low, beyond = min(at, force_at), length - max(at, force_at)
-            return low * beyond * (length**2 - low**2 - beyond**2) / (6.0 * rigidity * length)
-
-        return np.array([[deflection(a, a), deflection(a, b)], [deflection(b, a), deflection(b, b)]])
+    place: Place
+    along: str
+    factor: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class NextStage:
-    """A mesh behind another one: its gears, the shaft that its pinion shares, the direction to its gear [rad].
+class Body:
+    """A rigid body.
 
-    Without a shaft its pinion is the gear in front itself, an idler.
+    Attributes
+    ----------
+    moves : of x, y, z, phi_x, phi_y (tilts), and theta or phi; a body without moves is the ground
+    sense : 1 where theta counts from x to y, -1 where back; theta counts in the running sense of its shaft
+    axes_rad : how far the body's own x and y are turned from those of the graph
+    on : the body that carries it round; its x and y are then relative to its own place there
     """
 
     name: str
-    working_pressure_angle_rad: float
-    pinion: Rotor
-    gear: Rotor
-    shaft: CommonShaft | None
-    direction_rad: float
+    mass_kg: float = 0.0
+    inertia_kg_m2: float = 0.0
+    tilt_inertia_kg_m2: float = 0.0
+    at_m: Vector = (0.0, 0.0, 0.0)
+    moves: tuple[str, ...] = ("x", "y", ROUND)
+    sense: float = 1.0
+    axes_rad: float = 0.0
+    on: str = ""
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of its coordinates."""
+        return tuple(f"{move}_{self.name}" for move in self.moves)
+
+    @property
+    def goes_round(self) -> bool:
+        """Whether it turns on and on."""
+        return ROUND in self.moves
+
+    def inertias(self) -> dict[str, float]:
+        """Return move -> mass [kg] or moment of inertia [kg m^2]."""
+        tilts = dict.fromkeys(("phi_x", "phi_y"), self.tilt_inertia_kg_m2)
+        turns = dict.fromkeys((ROUND, ROCKING), self.inertia_kg_m2)
+        every = {**dict.fromkeys("xyz", self.mass_kg), **turns, **tilts}
+        return {move: every[move] for move in self.moves}
 
 
-def drivetrain(first: GearStage, behind: Sequence[NextStage], body: Body | None = None) -> Structure:
-    """Return motor, shafts with their gears, load, and what carries the bearings: the ground, or a body.
+@dataclass(frozen=True, slots=True)
+class Modes:
+    """A housing as its r lowest modes, of modal mass 1.
 
-    q = [θ_m, x_1, y_1, θ_1, x_2, ..., θ_L, coordinates of the body], gears numbered in the order of power. The bearings
-    of the shaft that mesh k drives are called by it, of the first mesh `pinion_bearing` and `gear_bearing`.
-    On the ground horizontal runs from the first pinion to its gear, in a body from gear to pinion, as in single stages.
-    """
-    rotors = [first.pinion, first.gear, *(rotor for stage in behind for rotor in _new_rotors(stage))]
-    inertias = {**_inertias(first, rotors), **({} if body is None else body.inertias)}
-    coordinates, carried = tuple(inertias), _carried(first, behind)
-    held = {f"{one.place}/{name}": (one.held(name, body),) for one in carried for name in AXES}
-    free = [element for one in carried for name in AXES for element in one.bent(name)]
-    supports = () if body is None else body.supports
-    turned = assemble(coordinates, (*_torsion(first, behind), *free, *supports))
-    seats, flexibility = (tuple(held), None) if body is None else (tuple(body.seats), body.flexibility_m_per_n)
-    springs = seated_springs(coordinates, held, seats, flexibility)
-    stiffness, damping = springs.stiffness + turned[0], springs.damping + turned[1]
-    mass = np.diag(list(inertias.values()))
-    for matrix in (mass, damping, stiffness):
-        matrix.setflags(write=False)
-    ratio = first.ratio * prod(stage.gear.base_radius_m / stage.pinion.base_radius_m for stage in behind)
-    motions = springs.directions if body is None else _body_motions(coordinates, body)
-    return Structure(
-        coordinates=coordinates,
-        mass=mass,
-        damping=damping,
-        stiffness=stiffness,
-        meshes=_meshes(coordinates, first, behind, 1.0 if body is None else -1.0),
-        shaft_lines=_lines(behind),
-        torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -ratio}),
-        motions=motions,
-        bearing_forces=springs.forces,
-        bearing_directions=springs.directions,
-    )
-
-
-def _body_motions(coordinates: Sequence[str], body: Body) -> dict[str, FloatArray]:
-    return {name: vector(coordinates, row) for name, row in body.motions.items()}
-
-
-class _Carried(NamedTuple):
-    """A shaft as it stands: what its bearings are called, the numbers of its gears, both bearings together.
-
-    Both gears of a common shaft stand alike about its middle. So their mean motion is held by the bearings and the
-    bending in series, and so is their difference, which does not load the seats as a whole (derived).
+    Attributes
+    ----------
+    frequency_hz, damping_ratio : (r,)
+    shapes : place/direction, or the name of a way -> (r,) [kg^-1/2]
+    seats : place/direction of every bearing
+    give_m_per_n : (seats, seats) what seats give way beyond these modes, in series with what stands on them
+    base : (r, 3) how far each mode moves at rest with x, y and the turning of what it is bolted to, `BASE`
     """
 
-    place: str
-    gears: tuple[int, ...]
-    bearing: Bearing
-    shaft: CommonShaft | None
-
-    def held(self, name: str, body: Body | None) -> Element:
-        """Return the spring between the mean motion of the gears and the seats along an axis."""
-        axis, stiffness, damping = self._bearing(name)
-        seat = {} if body is None else {key: -value for key, value in body.seats[f"{self.place}/{name}"].items()}
-        moved = {f"{axis}_{gear}": 1.0 / len(self.gears) for gear in self.gears}
-        bending = 0.0 if self.shaft is None else 0.5 * float(self.shaft.bending_m_per_n[0].sum())
-        return _in_series({**moved, **seat}, stiffness, damping, bending)
-
-    def bent(self, name: str) -> list[Element]:
-        """Return the spring between the gears of a common shaft along an axis."""
-        if self.shaft is None:
-            return []
-        axis, stiffness, damping = self._bearing(name)
-        (own, other), lever = self.shaft.bending_m_per_n[0].tolist(), 0.25 / (PLACES[1] - PLACES[0]) ** 2
-        first, second = (f"{axis}_{gear}" for gear in self.gears)
-        return [_in_series({first: 1.0, second: -1.0}, lever * stiffness, lever * damping, 2.0 * (own - other))]
-
-    def _bearing(self, name: str) -> tuple[str, float, float]:
-        axis = AXES[name]
-        stiffness, damping = (
-            getattr(self.bearing, f"{word}_{axis}_{unit}")
-            for word, unit in (("stiffness", "n_per_m"), ("damping", "n_s_per_m"))
-        )
-        return axis, stiffness, damping
-
-
-def _in_series(direction: dict[str, float], stiffness: float, damping: float, bending_m_per_n: float) -> Element:
-    """Return a spring with its damper in series with bending; the damper sees its spring's share of the motion."""
-    share = 1.0 / (1.0 + stiffness * bending_m_per_n)
-    return Element(direction, stiffness * share, damping * share**2)
-
-
-def _carried(first: GearStage, behind: Sequence[NextStage]) -> list[_Carried]:
-    """Return the shafts in the order of power."""
-    names, seats = ["gear", *(stage.name for stage in behind)], [first.gear, *(stage.gear for stage in behind)]
-    found = [_Carried("pinion_bearing", (1,), first.pinion.bearing, None)]
-    shafts_behind = [*(stage.shaft for stage in behind), None]
-    for name, rotor, gears, shaft in zip(names, seats, _gears_of_shafts(behind)[1:], shafts_behind, strict=True):
-        found.append(_Carried(f"{name}_bearing", gears, rotor.bearing, shaft))
-    return found
-
-
-def _new_rotors(stage: NextStage) -> tuple[Rotor, ...]:
-    return (stage.gear,) if stage.shaft is None else (stage.pinion, stage.gear)
-
-
-def _ends(behind: Sequence[NextStage]) -> list[tuple[int, int]]:
-    """Return the numbers of the driving and the driven gear of every mesh."""
-    found = [(1, 2)]
-    for stage in behind:
-        driving = found[-1][1] + (stage.shaft is not None)
-        found.append((driving, driving + 1))
-    return found
-
-
-def _gears_of_shafts(behind: Sequence[NextStage]) -> list[tuple[int, ...]]:
-    """Return the numbers of the gears of every shaft: an idler stands alone."""
-    ends = _ends(behind)
-    between = [tuple(dict.fromkeys((driven, driving))) for (_, driven), (driving, _) in pairwise(ends)]
-    return [(1,), *between, (ends[-1][1],)]
-
-
-def _inertias(first: GearStage, rotors: Sequence[Rotor]) -> dict[str, float]:
-    found = {"theta_m": first.motor_inertia_kg_m2}
-    for number, rotor in enumerate(rotors, start=1):
-        found |= {f"x_{number}": rotor.mass_kg, f"y_{number}": rotor.mass_kg, f"theta_{number}": rotor.inertia_kg_m2}
-    return found | {"theta_l": first.load_inertia_kg_m2}
-
-
-def _torsion(first: GearStage, behind: Sequence[NextStage]) -> list[Element]:
-    """Return the couplings at both ends, and the shafts between two gears."""
-    driving, driven = shafts(first)
-    lines = _gears_of_shafts(behind)
-    found = [driving, replace(driven, direction={f"theta_{lines[-1][0]}": 1.0, "theta_l": -1.0})]
-    inertia = first.gear.inertia_kg_m2
-    for line, stage in zip(lines[1:-1], behind, strict=True):
-        if stage.shaft is not None:
-            stiffness, other = stage.shaft.torsional_stiffness_nm_per_rad, stage.pinion.inertia_kg_m2
-            damping = 2.0 * TORSIONAL_DAMPING * sqrt(stiffness * inertia * other / (inertia + other))
-            found.append(Element({f"theta_{line[0]}": 1.0, f"theta_{line[1]}": -1.0}, stiffness, damping))
-        inertia = stage.gear.inertia_kg_m2
-    return found
-
-
-def _lines(behind: Sequence[NextStage]) -> tuple[tuple[str, ...], ...]:
-    first, *found = [tuple(f"theta_{gear}" for gear in gears) for gears in _gears_of_shafts(behind)]
-    return (("theta_m", *first), *found[:-1], (*found[-1], "theta_l"))
-
-
-def _meshes(
-    coordinates: Sequence[str], first: GearStage, behind: Sequence[NextStage], to_gear: float
-) -> tuple[MeshVectors, ...]:
-    gears = _Gears("", first.working_pressure_angle_rad, first.pinion, first.gear, 0.0)
-    found, sense = [_mesh(coordinates, gears, 1, (1.0, to_gear))], 1.0
-    for stage, (driving, _) in zip(behind, _ends(behind)[1:], strict=True):
-        sense = -sense
-        gears = _Gears(stage.name, stage.working_pressure_angle_rad, stage.pinion, stage.gear, stage.direction_rad)
-        found.append(_mesh(coordinates, gears, driving, (sense, to_gear)))
-    return tuple(found)
-
-
-class _Gears(NamedTuple):
     name: str
-    angle_rad: float
-    pinion: Rotor
-    gear: Rotor
-    direction_rad: float
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    shapes: Mapping[str, FloatArray]
+    seats: tuple[str, ...]
+    give_m_per_n: FloatArray
+    base: FloatArray
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of its coordinates."""
+        return tuple(f"{MODE}{number + 1}" for number in range(len(self.frequency_hz)))
 
 
-def _mesh(coordinates: Sequence[str], gears: _Gears, number: int, senses: tuple[float, float]) -> MeshVectors:
-    """Return the mesh of gears `number` and the next one.
+@dataclass(frozen=True, slots=True)
+class Element:
+    """A spring and a damper in parallel between places, along one direction or several at once.
 
-    `senses`: 1 if its pinion turns as the first one, else -1; 1 if x runs from the first pinion to its gear, else -1.
+    Attributes
+    ----------
+    name : what its force is called by, with the direction
+    ends : what the places count, 1 and -1 of a plain spring; without a second end it stands on the ground
+    along : directions (m)
+    stiffness, damping : (m, m); a bearing that is stiffer along a slanted load ties its directions
+    bearing : whether it holds a shaft; elements of one name are the bearings of one shaft
     """
-    a, b = str(number), str(number + 1)
-    sense, to_gear = senses
-    slope = gears.direction_rad - sense * gears.angle_rad
-    x, y = -sense * sin(slope), sense * cos(slope)
-    u, v = -sense * y, sense * x
-    radii = gears.pinion.base_radius_m, gears.gear.base_radius_m
-    line_m = (radii[0] + radii[1]) * tan(gears.angle_rad)
-    along = {**_opposed(a, b, to_gear * x, y), f"theta_{a}": radii[0], f"theta_{b}": -radii[1]}
-    still = {**_opposed(a, b, to_gear * u, v), f"theta_{b}": -line_m}
-    rolling = {f"theta_{a}": 1.0, f"theta_{b}": 1.0}
-    sliding = np.array([vector(coordinates, still), vector(coordinates, rolling)])
-    sliding.setflags(write=False)
-    by_inertia = radii[0] ** 2 / gears.pinion.inertia_kg_m2 + radii[1] ** 2 / gears.gear.inertia_kg_m2
-    return MeshVectors(
-        vector(coordinates, along),
-        sliding,
-        1.0 / by_inertia,
-        (f"theta_{a}", f"theta_{b}"),
-        centre_line=(to_gear * cos(gears.direction_rad), sin(gears.direction_rad)),
-        name=gears.name,
-    )
+
+    name: str
+    ends: tuple[tuple[float, Place], ...]
+    along: tuple[str, ...]
+    stiffness: FloatArray
+    damping: FloatArray
+    bearing: bool = False
 
 
-def _opposed(a: str, b: str, x: float, y: float) -> dict[str, float]:
-    return {f"x_{a}": x, f"y_{a}": y, f"x_{b}": -x, f"y_{b}": -y}
+def spring(
+    name: str,
+    first: Place,
+    second: Place | None,
+    along: str,
+    stiffness: float,
+    damping: float,
+    *,
+    bearing: bool = False,
+) -> Element:
+    """Return a spring with its damper along one direction between two places, or between a place and the ground."""
+    ends = ((1.0, first),) if second is None else ((1.0, first), (-1.0, second))
+    return Element(name, ends, (along,), np.array([[stiffness]]), np.array([[damping]]), bearing)
+
+
+@dataclass(frozen=True, slots=True)
+class MeshGear:
+    """Teeth on a body; `internal`: a ring. A positive helix is that of a right-handed external gear."""
+
+    body: str
+    base_radius_m: float
+    base_helix_rad: float = 0.0
+    internal: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A gear that drives another one; `sense`: 1 where the driver turns from x to y against the frame, else -1."""
+
+    name: str
+    driver: MeshGear
+    driven: MeshGear
+    pressure_angle_rad: float
+    sense: float = 1.0
+
+
+@dataclass(frozen=True)
+class Drivetrain:
+    """The graph.
+
+    Attributes
+    ----------
+    driver, load : bodies at which torque comes and goes
+    frame : body with whose turning all x and y turn; empty where they stand still
+    hand : 1 where x, y and z are right-handed, -1 where left-handed
+    seen : name -> way of a sensor
+    entries : name -> way of a force of another machine
+    """
+
+    bodies: tuple[Body | Modes, ...]
+    elements: tuple[Element, ...]
+    meshes: tuple[Mesh, ...] = ()
+    driver: str = ""
+    load: str = ""
+    frame: str = ""
+    hand: float = 1.0
+    seen: Mapping[str, Way] = field(default_factory=dict)
+    entries: Mapping[str, Way] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Refuse names that clash or stand for nothing."""
+        clashing = [name for name, count in Counter(body.name for body in self.bodies).items() if count > 1]
+        clashing += [name for name, count in Counter(mesh.name for mesh in self.meshes).items() if count > 1]
+        if clashing:
+            raise ValueError(f"drivetrain: received {', '.join(clashing)} twice; allowed is each name once")
+        named = [name for name in (self.driver, self.load, self.frame) if name]
+        named += [place.body for element in self.elements for _, place in element.ends]
+        named += [gear.body for mesh in self.meshes for gear in (mesh.driver, mesh.driven)]
+        if unknown := sorted({*named} - {*self.body}):
+            raise ValueError(f"drivetrain: received {', '.join(unknown)}; its bodies are {', '.join(self.body)}")
+
+    @cached_property
+    def body(self) -> dict[str, Body | Modes]:
+        """Bodies by name."""
+        return {body.name: body for body in self.bodies}
+
+    def rigid(self, name: str) -> Body:
+        """Return a rigid body by its name."""
+        body = self.body[name]
+        assert isinstance(body, Body)
+        return body
+
+    @cached_property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the n coordinates."""
+        return tuple(name for body in self.bodies for name in body.coordinates)
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """Number of each coordinate."""
+        return {name: number for number, name in enumerate(self.coordinates)}
+
+    def vector(self, entries: Mapping[str, float]) -> FloatArray:
+        """Return (n,) with the named entries and zeros elsewhere."""
+        result = np.zeros(len(self.coordinates))
+        for name, value in entries.items():
+            result[self.index[name]] = value
+        return result
+
+    def row(self, place: Place, along: str | Vector = TURNING) -> FloatArray:
+        """Return (n,): the motion of a place along a direction, or how far its body turns from x to y."""
+        body = self.body[place.body]
+        if isinstance(body, Modes):
+            shape = body.shapes[f"{place.at}/{along}" if along else str(place.at)]
+            return self.vector(dict(zip(body.coordinates, shape.tolist(), strict=True)))
+        return self.vector(self._moved(body, place.at, along))
+
+    def _moved(self, body: Body, at: Vector | str | None, along: str | Vector) -> dict[str, float]:
+        if along == TURNING:
+            moved = {ROUND: body.sense, ROCKING: 1.0}
+            return {f"{move}_{body.name}": share for move, share in moved.items() if move in body.moves}
+        d_x, d_y, d_z = DIRECTIONS[along] if isinstance(along, str) else along
+        place = body.at_m if at is None else at
+        assert not isinstance(place, str)
+        x, y, z = (end - middle for end, middle in zip(place, body.at_m, strict=True))
+        cosine, sine = cos(body.axes_rad), sin(body.axes_rad)
+        d_1, d_2 = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
+        turned = x * d_y - y * d_x
+        moved = {
+            "x": d_1,
+            "y": d_2,
+            "z": d_z,
+            ROUND: body.sense * turned,
+            ROCKING: turned,
+            "phi_x": z * d_1 - (cosine * x + sine * y) * d_z,
+            "phi_y": z * d_2 - (cosine * y - sine * x) * d_z,
+        }
+        row = {f"{move}_{body.name}": moved[move] for move in body.moves}
+        return row | (self._moved(self.rigid(body.on), body.at_m, (d_x, d_y, 0.0)) if body.on else {})
+
+    def way(self, way: Way) -> FloatArray:
+        """Return the row (n,) of a way."""
+        return way.factor * self.row(way.place, way.along)
+
+    def stretch(self, element: Element) -> FloatArray:
+        """Return (m, n): how far an element is stretched along each of its directions."""
+        ends = [[share * self.row(place, along) for share, place in element.ends] for along in element.along]
+        return np.array([np.add.reduce(rows) for rows in ends])
+
+    @cached_property
+    def held(self) -> dict[str, tuple[str, ...]]:
+        """What the bearings of a shaft are called -> bodies on it, in the order of the elements."""
+        return {
+            element.name: tuple(place.body for share, place in element.ends if share > 0.0)
+            for element in self.elements
+            if element.bearing and element.along == PLANE
+        }
+
+    @cached_property
+    def turning(self) -> dict[str, float]:
+        """How far theta of each body turns per theta of the driver, with flanks that roll and springs at rest.
+
+        Raises
+        ------
+        ValueError
+            If not everything turns together, or nothing can.
+        """
+        rounds = [body.name for body in self.bodies if isinstance(body, Body) and body.goes_round]
+        free = _solutions(self._rolling(rounds))
+        if len(free) == 0:
+            raise ValueError("drivetrain: received a loop of power, in which nothing can turn; allowed is a tree")
+        if len(free) > 1:
+            alone = "; ".join(", ".join(n for n, turns in zip(rounds, own, strict=True) if turns) for own in free)
+            raise ValueError(f"drivetrain: received parts that turn by themselves: {alone}; allowed is one whole")
+        turns = dict(zip(rounds, free[0].tolist(), strict=True))
+        if not turns[self.driver] or not turns[self.load]:
+            raise ValueError(f"drivetrain: received {self.driver} and {self.load} that do not turn with each other")
+        return {name: turn / turns[self.driver] for name, turn in turns.items()}
+
+    def _rolling(self, rounds: list[str]) -> FloatArray:
+        """Return equations (e, rounds) between the rotations."""
+        rows = []
+        for element in self.elements:
+            if TURNING in element.along:
+                ends = [(share, place.body) for share, place in element.ends if place.body in rounds]
+                rows.append({name: share * self.rigid(name).sense for share, name in ends})
+        for mesh in self.meshes:
+            inner = -1.0 if mesh.driver.internal or mesh.driven.internal else 1.0
+            radii = mesh.driver.base_radius_m, inner * mesh.driven.base_radius_m
+            both = zip((mesh.driver.body, mesh.driven.body), radii, strict=True)
+            row = {name: radius * self.rigid(name).sense for name, radius in both}
+            if self.frame:
+                row[self.frame] = -sum(radii) * self.rigid(self.frame).sense
+            rows.append(row)
+        return np.array([[row.get(name, 0.0) for name in rounds] for row in rows]).reshape(-1, len(rounds))
+
+    @cached_property
+    def lines(self) -> tuple[tuple[str, ...], ...]:
+        """Bodies that turn together by springs alone, those that turn at all."""
+        line_of = {name: {name} for name in self.turning}
+        for element in self.elements:
+            ends = [place.body for _, place in element.ends if place.body in line_of]
+            if TURNING in element.along and len(ends) > 1:
+                joined = line_of[ends[0]] | line_of[ends[1]]
+                line_of |= dict.fromkeys(joined, joined)
+        lines = dict.fromkeys(tuple(name for name in self.turning if name in line) for line in line_of.values())
+        return tuple(line for line in lines if self.turning[line[0]])
+
+
+def _solutions(equations: FloatArray) -> list[FloatArray]:
+    """Return a basis of what solves homogeneous equations (e, n): elimination, in one order on any processor."""
+    left, pivots, row = equations.copy(), [], 0
+    left /= np.abs(left).max(axis=1, initial=np.finfo(float).tiny)[:, None]
+    for column in range(left.shape[1]):
+        largest = row + int(np.argmax(np.abs(left[row:, column]))) if row < len(left) else row
+        if row == len(left) or abs(left[largest, column]) < SMALL:
+            continue
+        left[[row, largest]] = left[[largest, row]]
+        left[row] /= left[row, column]
+        for other in range(len(left)):
+            if other != row:
+                left[other] -= left[other, column] * left[row]
+        pivots.append(column)
+        row += 1
+    basis = []
+    for free in (column for column in range(left.shape[1]) if column not in pivots):
+        solution = np.zeros(left.shape[1])
+        solution[free] = 1.0
+        solution[pivots] = -left[: len(pivots), free]
+        basis.append(solution)
+    return basis

@@ -7,24 +7,20 @@ transfer as a Fourier series in the angle. No window: planets are heard from eve
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from siggen.arrays import FloatArray
-
-CENTRAL = ("s", "c", "r")
-"""Bodies on the common axis, whose axes are those of the frame."""
+from siggen.dynamics.structure.drivetrain import Body, Drivetrain
 
 
 def in_space(
-    coordinates: Sequence[str], states: FloatArray, static_deflection: FloatArray, angle_rad: FloatArray
+    drivetrain: Drivetrain, states: FloatArray, static_deflection: FloatArray, angle_rad: FloatArray
 ) -> FloatArray:
     """Return states (k, 2n) with the places of central bodies along fixed axes, static deflections included.
 
     Parameters
     ----------
-    coordinates : names of the n coordinates
+    drivetrain : Drivetrain
     states : (k, 2n)
         About the static deflection.
     static_deflection : (n,)
@@ -35,7 +31,7 @@ def in_space(
     """
     seen, n = states.copy(), static_deflection.size
     cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
-    for x, y in _places(coordinates):
+    for x, y in _places(drivetrain):
         along, across = states[:, x] + static_deflection[x], states[:, y] + static_deflection[y]
         seen[:, x] = cosine * along - sine * across
         seen[:, y] = sine * along + cosine * across
@@ -45,14 +41,15 @@ def in_space(
     return seen
 
 
-def at_rest_beside(coordinates: Sequence[str], static_deflection: FloatArray) -> FloatArray:
+def at_rest_beside(drivetrain: Drivetrain, static_deflection: FloatArray) -> FloatArray:
     """Return the static deflection (n,) without what `in_space` puts into states."""
     rest = static_deflection.copy()
-    rest[[row for places in _places(coordinates) for row in places]] = 0.0
+    rest[[row for places in _places(drivetrain) for row in places]] = 0.0
     return rest
 
 
-def _places(coordinates: Sequence[str]) -> list[tuple[int, int]]:
-    """Return the numbers of x and y of the central bodies."""
-    names = list(coordinates)
-    return [(names.index(f"x_{body}"), names.index(f"y_{body}")) for body in CENTRAL]
+def _places(drivetrain: Drivetrain) -> list[tuple[int, int]]:
+    """Return the numbers of x and y of the bodies on the common axis, whose axes are those of the frame."""
+    bodies = [body for body in drivetrain.bodies if isinstance(body, Body) and body.goes_round and not body.on]
+    index = drivetrain.index
+    return [(index[f"x_{body.name}"], index[f"y_{body.name}"]) for body in bodies if "x" in body.moves]

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.shaft_lines import turning_lines
 from siggen.dynamics.structure.structure import Structure
 
 FREE_SHARE = 1e-13
@@ -26,7 +25,7 @@ def free_rotations(structure: Structure, stiffness: FloatArray) -> FloatArray:
 
     `stiffness` (n, n) is that of the structure with its mesh.
     """
-    lines = np.ascontiguousarray(turning_lines(structure).T)
+    lines = np.ascontiguousarray(structure.lines.T)
     energy = lines.T @ stiffness @ lines
     scale = np.abs(lines).T @ np.abs(stiffness) @ np.abs(lines)
     values, vectors = np.linalg.eigh(energy / max(scale.max(), np.finfo(float).tiny))

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.dynamics.structure.shaft_lines import driven_and_loaded, turning_per_load
-from siggen.dynamics.structure.structure import Element, Structure, assemble
+from siggen.dynamics.structure.shaft_lines import driven_and_loaded, rigid_rotation
+from siggen.dynamics.structure.structure import Structure
 
 LOCK_HZ = 1.0
 """Natural frequency of the whole inertia on the spring."""
@@ -21,13 +21,13 @@ LOCK_DAMPING_RATIO = 0.95
 
 def locked_load(structure: Structure) -> Structure:
     """Return the structure with spring and damper on the rotation at which the load acts."""
-    _, load = driven_and_loaded(structure)
-    rotation = turning_per_load(structure)
-    inertia = float(rotation @ structure.mass @ rotation)
+    load = structure.coordinates.index(driven_and_loaded(structure)[1])
+    rotation = rigid_rotation(structure)
+    inertia = float(rotation @ structure.mass @ rotation) / rotation[load] ** 2
     omega = 2.0 * np.pi * LOCK_HZ
-    lock = Element({load: 1.0}, inertia * omega**2, 2.0 * LOCK_DAMPING_RATIO * inertia * omega)
-    stiffness, damping = assemble(structure.coordinates, [lock])
-    stiffness, damping = stiffness + structure.stiffness, damping + structure.damping
+    stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
+    stiffness[load, load] += inertia * omega**2
+    damping[load, load] += 2.0 * LOCK_DAMPING_RATIO * inertia * omega
     for matrix in (stiffness, damping):
         matrix.setflags(write=False)
     return replace(structure, stiffness=stiffness, damping=damping)

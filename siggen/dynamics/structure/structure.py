@@ -1,36 +1,87 @@
-"""Structure: mass, damping and stiffness of one gear stage, assembled from springs and dampers of rank one.
+"""Structure: mass, damping and stiffness of a drivetrain, and where its forces act and its motions are seen.
 
-Equations: 8-DOF translation-torsion model of a spur gear stage (reference: standard literature; the kind of model used
-in paper A: Influence of Tooth Pitting on TVMS and Vibration Response of a Spur Gear Pair); signs of the mesh vector
-derived. Coordinates are deviations from rigid rotation. y is vertical, along the pitch-line velocity of the pinion at
-the mesh; x runs along the centre line from pinion to gear; rotations count positive in the running sense of the shaft.
-With helical teeth shafts move along their axes too, z_1 and z_2 (`axial_motion`).
+Derived. Every mass, spring and damper of the graph counts once, as a dyad of its row. Springs k on seats of a housing
+that give way by R beyond its modes lie in series with that: K = (k^-1 + R)^-1. A damper c sees its own spring's share
+of the motion, C = K k^-1 c k^-1 K (exact for slow motion). A housing's modes of frequency ω stretch their springs ω² by
+η less what the base takes along at rest.
+
+A mesh with α, s = 1 where the driver turns from x to y, else -1, σ = -1 for a ring that drives, else 1, and the unit
+vector e from the driver's axis to the pitch point pushes along N = (cos α s z×e + σ sin α e, -s tan β_b), with the
+slope of flanks of a right-handed driver. Approaches and forces are those of the transverse plane, 1/cos β_b and cos β_b
+times those along the normal, so that power is one number. Flanks slide across N; at s from the foot of the line of
+action on the driver's base circle by r_0 + s r_1. Tilted gears feel slices at s_0 + w tan β_b, farther from the pitch
+point the farther they are from the middle of the face: a tilt counts 1 + tan² β_b there. Back flanks are those of a
+driver that turns the other way; their places count from the base point of the driven gear.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import cos, hypot, pi, sin, tan
+from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.axial_motion import axial_approach, axial_bearings, axial_inertias
-from siggen.dynamics.structure.gear_stage import Coupling, GearStage
-from siggen.dynamics.structure.mesh_vectors import MeshVectors
+from siggen.dynamics.housing.ordered_sums import squares
+from siggen.dynamics.housing.stiff_pencil import solve_lower, solve_upper, upper_root
+from siggen.dynamics.structure.drivetrain import (
+    BASE,
+    MODE,
+    PLANE,
+    ROUND,
+    TURNING,
+    Drivetrain,
+    Element,
+    Mesh,
+    Modes,
+    Place,
+    Vector,
+)
+
+
+class Flanks(NamedTuple):
+    """Flanks that a mesh has its vectors for: those that carry its torque.
+
+    `side`: 1 for drive flanks, -1 for back flanks; `ahead_pitches`: by how many base pitches a pair of them is farther
+    on its path than drive flanks are on theirs.
+    """
+
+    side: float = 1.0
+    ahead_pitches: float = 0.0
+
+
+DRIVE_FLANKS = Flanks()
+COUPLINGS = ("input_coupling", "output_coupling")
 
 
 @dataclass(frozen=True, slots=True)
-class Element:
-    """A spring and a damper in parallel along one generalised direction v: k v vᵀ and c v vᵀ."""
+class MeshVectors:
+    """One mesh over the n coordinates of a structure.
 
-    direction: Mapping[str, float]
-    stiffness: float
-    damping: float
+    Attributes
+    ----------
+    vector : (n,) p, approach along the line of action = pᵀ q; a positive mesh force acts as -p
+    sliding : (2, n) r_0, r_1: sliding speed of the flanks at s along the line of action = (r_0 + s r_1)ᵀ q̇ plus that of
+        the rigid rotation; a friction force F acts as -(r_0 + s r_1) F
+    mass_kg : J_1 J_2 / (J_1 R_b2² + J_2 R_b1²) of its two gears
+    turning : coordinates of the rotations of its driving and of its driven gear
+    friction_tilt : (n,) t_x: a friction force F at the distance ζ from the middle of the face acts as -t_x ζ F too
+    tilt : (n,) t, tilt of the driving gear's flanks against the driven one's in the plane of action = tᵀ q; None where
+        gears stay parallel. A moment of the mesh across the face acts as -t
+    flanks : Flanks
+    name : what its quantities are called by; empty for the only mesh
+    """
 
-
-MODE = "eta_"
-"""How the names of coordinates begin that are modes of a housing."""
+    vector: FloatArray
+    sliding: FloatArray
+    mass_kg: float
+    turning: tuple[str, str]
+    friction_tilt: FloatArray
+    tilt: FloatArray | None = None
+    flanks: Flanks = DRIVE_FLANKS
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,35 +90,38 @@ class Structure:
 
     Attributes
     ----------
+    drivetrain : Drivetrain it was assembled from
     coordinates : names of the n degrees of freedom
     mass, damping, stiffness : (n, n)
     meshes : MeshVectors of each mesh, in the order of power
-    shaft_lines : rotations that turn together when nothing deforms, from motor to load; a mesh stands between two
-    torque_vector : (n,) generalised force per unit motor torque, the balancing load torque included
-    motions : place/axis -> (n,), displacement at that place = vector · q
-    bearing_forces : place/axis -> two (n,), force on the housing = first · q + second · q̇
-    bearing_directions : place/axis -> (n,), 1 N between a shaft and its seat: on the shaft along the axis, and back
-    line_speeds : turns of each shaft line per turn of the first; None: meshes follow one another, and tell them
-    frame : rotation with which lines of action and coordinates turn; empty where those stand still
+    lines : (lines, n) rotations that springs alone let turn together, as far as they turn per turn of the driver
+    torque_vector : (n,) generalised force per unit torque at the driver, the balancing load torque included
+    motions : place/direction -> (n,), displacement at that place = vector · q; on the ground of shafts in bearings
+    bearing_forces : place/direction -> two (n,), force on the housing = first · q + second · q̇
+    bearing_directions : place/direction -> (n,), 1 N between a shaft and its seat: on the shaft, and back
     """
 
+    drivetrain: Drivetrain
     coordinates: tuple[str, ...]
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
     meshes: tuple[MeshVectors, ...]
-    shaft_lines: tuple[tuple[str, ...], ...]
+    lines: FloatArray
     torque_vector: FloatArray
     motions: Mapping[str, FloatArray]
     bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
     bearing_directions: Mapping[str, FloatArray]
-    line_speeds: tuple[float, ...] | None = None
-    frame: str = ""
 
     @property
     def mesh(self) -> MeshVectors:
         """The first mesh, whose driving gear turns with the motor; the only one of a single stage."""
         return self.meshes[0]
+
+    @property
+    def frame(self) -> str:
+        """Rotation with which lines of action and coordinates turn; empty where those stand still."""
+        return f"{ROUND}_{self.drivetrain.frame}" if self.drivetrain.frame else ""
 
     @property
     def bodies(self) -> list[int]:
@@ -79,38 +133,25 @@ class Structure:
         """What sensors on shafts see, of the shafts that the model has: name -> two (n,), first · q + second · q̇.
 
         `angle/<shaft>` is the rotation beyond the even one [rad], `torque/<coupling>` what the driving end of a
-        coupling passes on [N m]. Nothing but its coupling ties both ends together, so the matrices hold its numbers.
+        coupling passes on [N m].
         """
-        still = np.zeros(len(self.coordinates))
-        found = {
-            f"angle/{shaft}": (vector(self.coordinates, {name: 1.0}), still)
-            for shaft, name in self._turning.items()
-            if name in self.coordinates
+        machine, still = self.drivetrain, np.zeros(len(self.coordinates))
+        # planets are no shafts that a sensor reaches
+        gears = () if machine.frame else machine.meshes
+        turning = {"motor": machine.driver, "load": machine.load} | {
+            f"{mesh.name}.{which}" if mesh.name else which: gear.body
+            for mesh in gears
+            for which, gear in (("pinion", mesh.driver), ("gear", mesh.driven))
         }
-        for coupling, ends in self._couplings.items():
-            if set(ends) <= set(self.coordinates):
-                place = self.coordinates.index(ends[0]), self.coordinates.index(ends[1])
-                twist = vector(self.coordinates, dict(zip(ends, (-1.0, 1.0), strict=True)))
-                found[f"torque/{coupling}"] = (self.stiffness[place] * twist, self.damping[place] * twist)
-        return found
-
-    @property
-    def _turning(self) -> dict[str, str]:
-        """What turns -> coordinate of its rotation, without planets; gears of a further mesh are called by it."""
-        gears = {
-            f"{mesh.name}.{gear}" if mesh.name else gear: name
-            for mesh in (self.meshes if self.line_speeds is None else ())
-            for gear, name in zip(("pinion", "gear"), mesh.turning, strict=True)
+        readings = {
+            f"angle/{shaft}": (machine.vector({f"{ROUND}_{name}": 1.0}), still) for shaft, name in turning.items()
         }
-        return {"motor": "theta_m", **gears, "load": "theta_l"}
-
-    @property
-    def _couplings(self) -> dict[str, tuple[str, str]]:
-        """Coupling -> rotations of its driving and of its driven end; none of a planetary set."""
-        if self.line_speeds is not None:
-            return {}
-        first, last = self.meshes[0].turning[0], self.meshes[-1].turning[1]
-        return {"input_coupling": ("theta_m", first), "output_coupling": (last, "theta_l")}
+        for element in machine.elements if gears else ():
+            if element.name in COUPLINGS:
+                twist = machine.rigid(element.ends[0][1].body).sense * machine.stretch(element)[0]
+                numbers = float(element.stiffness[0, 0]), float(element.damping[0, 0])
+                readings[f"torque/{element.name}"] = (numbers[0] * twist, numbers[1] * twist)
+        return readings
 
 
 def vector(coordinates: Sequence[str], entries: Mapping[str, float]) -> FloatArray:
@@ -124,161 +165,195 @@ def vector(coordinates: Sequence[str], entries: Mapping[str, float]) -> FloatArr
     unknown = set(entries) - set(coordinates)
     if unknown:
         raise ValueError(f"received coordinates {sorted(unknown)}; allowed are {', '.join(coordinates)}")
-    result = np.array([entries.get(name, 0.0) for name in coordinates])
-    result.setflags(write=False)
-    return result
+    return _fixed(np.array([entries.get(name, 0.0) for name in coordinates]))
 
 
-def assemble(coordinates: Sequence[str], elements: Sequence[Element]) -> tuple[FloatArray, FloatArray]:
-    """Return (stiffness, damping), each (n, n), as sums of k v vᵀ and c v vᵀ over the elements."""
-    n = len(coordinates)
-    stiffness, damping = np.zeros((n, n)), np.zeros((n, n))
-    for element in elements:
-        v = vector(coordinates, element.direction)
-        dyad = v[:, None] * v[None, :]
-        stiffness += element.stiffness * dyad
-        damping += element.damping * dyad
-    return stiffness, damping
+def assembled(drivetrain: Drivetrain) -> Structure:
+    """Return the structure of a drivetrain.
 
-
-def eight_dof(stage: GearStage) -> Structure:
-    """Return motor, pinion, gear and load: q = [θ_m, x_1, y_1, θ_1, x_2, y_2, θ_2, θ_L] and z_1, z_2 of helical teeth.
-
-    Source: standard literature (8-DOF spur gear model), see the module.
+    Raises
+    ------
+    ValueError
+        As `Drivetrain.turning`.
     """
-    inertias = {"theta_m": stage.motor_inertia_kg_m2, **_gear_inertias(stage), "theta_l": stage.load_inertia_kg_m2}
-    return _grounded(stage, inertias, shafts(stage))
-
-
-def _gear_inertias(stage: GearStage) -> dict[str, float]:
-    pinion, gear = stage.pinion, stage.gear
-    return {
-        "x_1": pinion.mass_kg,
-        "y_1": pinion.mass_kg,
-        "theta_1": pinion.inertia_kg_m2,
-        "x_2": gear.mass_kg,
-        "y_2": gear.mass_kg,
-        "theta_2": gear.inertia_kg_m2,
-    }
-
-
-def shafts(stage: GearStage) -> tuple[Element, Element]:
-    """Return the couplings between motor and pinion and between gear and load."""
-    return (
-        Element({"theta_m": 1.0, "theta_1": -1.0}, *_numbers(stage.input_coupling)),
-        Element({"theta_2": 1.0, "theta_l": -1.0}, *_numbers(stage.output_coupling)),
-    )
-
-
-def stage_lines(coordinates: Sequence[str]) -> tuple[tuple[str, ...], ...]:
-    """Return the shaft lines of a single stage: motor and pinion, gear and load."""
-    lines = (("theta_m", "theta_1"), ("theta_2", "theta_l"))
-    return tuple(tuple(name for name in line if name in coordinates) for line in lines)
-
-
-def _numbers(coupling: Coupling) -> tuple[float, float]:
-    return coupling.stiffness_nm_per_rad, coupling.damping_nm_s_per_rad
-
-
-_PLACES = {
-    "pinion_bearing/vertical": "y_1",
-    "pinion_bearing/horizontal": "x_1",
-    "gear_bearing/vertical": "y_2",
-    "gear_bearing/horizontal": "x_2",
-}
-
-
-def _supports(stage: GearStage) -> dict[str, Element]:
-    """Return place/axis -> the bearing element there."""
-    numbers = {}
-    for index, rotor in (("1", stage.pinion), ("2", stage.gear)):
-        bearing = rotor.bearing
-        numbers["x_" + index] = (bearing.stiffness_x_n_per_m, bearing.damping_x_n_s_per_m)
-        numbers["y_" + index] = (bearing.stiffness_y_n_per_m, bearing.damping_y_n_s_per_m)
-    along = {place: Element({one.coordinate: 1.0}, *one[1:]) for place, one in axial_bearings(stage).items()}
-    return {place: Element({name: 1.0}, *numbers[name]) for place, name in _PLACES.items()} | along
-
-
-def _crossing(stage: GearStage) -> list[Element]:
-    """Return what ties x and y of a shaft: k (x y + y x) as springs along both diagonals, one of them negative."""
-    found = []
-    for index, rotor in (("1", stage.pinion), ("2", stage.gear)):
-        half, (x, y) = 0.5 * rotor.bearing.stiffness_xy_n_per_m, (f"x_{index}", f"y_{index}")
-        found += [Element({x: 1.0, y: 1.0}, half, 0.0), Element({x: 1.0, y: -1.0}, -half, 0.0)]
-    return found
-
-
-_OTHERS = {"vertical": "horizontal", "horizontal": "vertical", "axial": "axial"}
-
-
-def _other(place: str) -> str:
-    name, axis = place.split("/")
-    return f"{name}/{_OTHERS[axis]}"
-
-
-def _mixed(stage: GearStage, place: str) -> float:
-    rotor = stage.pinion if place.startswith("pinion") else stage.gear
-    return 0.0 if place.endswith("axial") else rotor.bearing.stiffness_xy_n_per_m
-
-
-def _grounded(stage: GearStage, inertias: Mapping[str, float], couplings: Sequence[Element]) -> Structure:
-    """Assemble grounded bearings, shafts and the gear mesh over the coordinates of `inertias` and along the axes."""
-    inertias = {**inertias, **axial_inertias(stage)}
-    coordinates = tuple(inertias)
-    supports = _supports(stage)
-    stiffness, damping = assemble(coordinates, (*supports.values(), *couplings, *_crossing(stage)))
-    mass = np.diag(list(inertias.values()))
-    for matrix in (mass, damping, stiffness):
-        matrix.setflags(write=False)
-    directions = {place: vector(coordinates, element.direction) for place, element in supports.items()}
+    turning, springs = drivetrain.turning, _springs(drivetrain)
+    mass, damping, stiffness = _matrices(drivetrain, springs)
+    pushing, braking = squares(springs.stiffness, springs.rows), squares(springs.damping, springs.rows)
+    forces, directions = {}, {}
+    for name, own in springs.bearings.items():
+        shares = np.diag(springs.plain)[own]
+        forces[name] = _fixed(np.add.reduce(pushing[own])), _fixed(np.add.reduce(braking[own]))
+        # both ends of a shaft share a force between shaft and seat as their springs do
+        directions[name] = _fixed(np.add.reduce(springs.rows[own] * (shares / shares.sum())[:, None]))
+    shafts = {name: row for name, row in directions.items() if not name.endswith(TURNING)}
+    torque = {f"{ROUND}_{drivetrain.driver}": 1.0, f"{ROUND}_{drivetrain.load}": -1.0 / turning[drivetrain.load]}
+    lines = [drivetrain.vector({f"{ROUND}_{name}": turning[name] for name in line}) for line in drivetrain.lines]
     return Structure(
-        coordinates=coordinates,
+        drivetrain=drivetrain,
+        coordinates=drivetrain.coordinates,
         mass=mass,
         damping=damping,
         stiffness=stiffness,
-        meshes=(
-            MeshVectors(
-                vector(coordinates, {**_line_of_action(stage), **axial_approach(stage)}),
-                sliding_vectors(coordinates, stage, _across_line_of_action(stage)),
-                stage.equivalent_mesh_mass_kg,
-            ),
-        ),
-        shaft_lines=stage_lines(coordinates),
-        torque_vector=vector(coordinates, {"theta_m": 1.0, "theta_l": -stage.ratio}),
-        motions=directions,
-        bearing_forces={
-            place: (
-                directions[place] * element.stiffness + directions[_other(place)] * _mixed(stage, place),
-                directions[place] * element.damping,
-            )
-            for place, element in supports.items()
-        },
+        meshes=tuple(mesh_vectors(drivetrain, mesh) for mesh in drivetrain.meshes),
+        lines=_fixed(np.array(lines)),
+        torque_vector=_fixed(drivetrain.vector(torque)),
+        motions={name: _fixed(drivetrain.way(way)) for name, way in drivetrain.seen.items()} or shafts,
+        bearing_forces=forces,
         bearing_directions=directions,
     )
 
 
-def _line_of_action(stage: GearStage) -> dict[str, float]:
-    """Return p: both gears' motions along the line of action, which runs along (sin α, cos α) from pinion to gear."""
-    sine, cosine = np.sin(stage.working_pressure_angle_rad), np.cos(stage.working_pressure_angle_rad)
-    return {
-        "x_1": sine,
-        "y_1": cosine,
-        "theta_1": stage.pinion.base_radius_m,
-        "x_2": -sine,
-        "y_2": -cosine,
-        "theta_2": -stage.gear.base_radius_m,
-    }
+def matrices(drivetrain: Drivetrain) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return mass, damping and stiffness (n, n) of bodies on their elements, which need not turn."""
+    return _matrices(drivetrain, _springs(drivetrain))
 
 
-def _across_line_of_action(stage: GearStage) -> dict[str, float]:
-    """Return the sliding of the pinion's flank against the gear's by motion of the gears, across the line of action."""
-    sine, cosine = np.sin(stage.working_pressure_angle_rad), np.cos(stage.working_pressure_angle_rad)
-    return {"x_1": -cosine, "y_1": sine, "x_2": cosine, "y_2": -sine}
+def _matrices(drivetrain: Drivetrain, springs: _Springs) -> tuple[FloatArray, FloatArray, FloatArray]:
+    mass = np.zeros((len(drivetrain.coordinates),) * 2)
+    for inertia, row in _masses(drivetrain):
+        mass += inertia * np.outer(row, row)
+    damping, stiffness = (_both_sides(one, springs.rows) for one in (springs.damping, springs.stiffness))
+    return _fixed(mass), _fixed(0.5 * (damping + damping.T)), _fixed(0.5 * (stiffness + stiffness.T))
 
 
-def sliding_vectors(coordinates: Sequence[str], stage: GearStage, across: Mapping[str, float]) -> FloatArray:
-    """Return r_0, r_1 (2, n): arms s on the pinion, T - s on the gear; `across` is the translation of the gears."""
-    still = vector(coordinates, {**across, "theta_2": -stage.line_of_action_m})
-    result = np.array([still, vector(coordinates, {"theta_1": 1.0, "theta_2": 1.0})])
-    result.setflags(write=False)
+def on_back_flanks(structure: Structure, ahead_pitches: float) -> Structure:
+    """Return the structure with the vectors of the back flanks of its first mesh; `ahead_pitches`: see `Flanks`."""
+    first, flanks = structure.drivetrain.meshes[0], Flanks(-1.0, ahead_pitches)
+    return replace(structure, meshes=(mesh_vectors(structure.drivetrain, first, flanks),))
+
+
+def mesh_vectors(drivetrain: Drivetrain, mesh: Mesh, flanks: Flanks = DRIVE_FLANKS) -> MeshVectors:
+    """Return what a mesh feels and pushes on drive or on back flanks."""
+    driver, driven = (drivetrain.rigid(gear.body) for gear in (mesh.driver, mesh.driven))
+    sense, angle = flanks.side * mesh.sense, mesh.pressure_angle_rad
+    apart, inner = (-1.0 if gear.internal else 1.0 for gear in (mesh.driver, mesh.driven))
+    across_m = tuple(inner * (b - a) for a, b in zip(driver.at_m, driven.at_m, strict=True))[:2]
+    e = tuple(part / hypot(*across_m) for part in across_m)
+    along, out = sense * cos(angle), apart * sin(angle)
+    n = out * e[0] - along * e[1], out * e[1] + along * e[0]
+    t = -sense * n[1], sense * n[0]
+    slope = drivetrain.hand * sense * tan(mesh.driver.base_helix_rad)
+    radii = mesh.driver.base_radius_m, mesh.driven.base_radius_m
+    x, y, z = driver.at_m
+    pitch = x + e[0] * radii[0] / cos(angle), y + e[1] * radii[0] / cos(angle), z
+    before_m = apart * radii[0] * tan(angle)
+    foot = pitch[0] - before_m * n[0], pitch[1] - before_m * n[1]
+    line_m = apart * (radii[0] + inner * apart * radii[1]) * tan(angle)
+
+    def between(along: Vector, at: Vector) -> FloatArray:
+        return drivetrain.row(Place(driver.name, at), along) - drivetrain.row(Place(driven.name, at), along)
+
+    def per_height(along: Vector) -> FloatArray:
+        return between(along, (pitch[0], pitch[1], z + 1.0)) - between(along, pitch)
+
+    across = t[0], t[1], 0.0
+    still = between(across, (foot[0], foot[1], z))
+    rolling = between(across, (foot[0] + n[0], foot[1] + n[1], z)) - still
+    if flanks.side < 0.0:
+        still, rolling = still + line_m * rolling, -rolling
+    tilts = any("phi_x" in body.moves for body in (driver, driven))
+    return MeshVectors(
+        vector=_fixed(between((n[0], n[1], -slope), pitch)),
+        sliding=_fixed(np.array([still, rolling])),
+        mass_kg=1.0 / (radii[0] ** 2 / driver.inertia_kg_m2 + radii[1] ** 2 / driven.inertia_kg_m2),
+        turning=(f"{ROUND}_{driver.name}", f"{ROUND}_{driven.name}"),
+        tilt=_fixed((1.0 + slope**2) * per_height((n[0], n[1], 0.0))) if tilts else None,
+        friction_tilt=_fixed(per_height(across)),
+        flanks=flanks,
+        name=mesh.name,
+    )
+
+
+class _Springs(NamedTuple):
+    """All elements as rows (M, n), with matrices (M, M), and of each bearing place/direction -> its rows.
+
+    `plain` are the springs before their seats give way.
+    """
+
+    rows: FloatArray
+    plain: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    bearings: dict[str, list[int]]
+
+
+def _springs(drivetrain: Drivetrain) -> _Springs:
+    elements = drivetrain.elements
+    named = [(element, along) for element in elements for along in element.along]
+    rows = [drivetrain.stretch(element) for element in elements]
+    stiff, damped = [element.stiffness for element in elements], [element.damping for element in elements]
+    bearings: dict[str, list[int]] = {}
+    for number, (element, along) in enumerate(named):
+        if element.bearing:
+            bearings.setdefault(f"{element.name}/{along}", []).append(number)
+    for body in drivetrain.bodies:
+        if isinstance(body, Modes):
+            omega = 2.0 * pi * body.frequency_hz
+            rows.append(_against_base(drivetrain, body))
+            stiff.append(np.diag(omega * omega))
+            damped.append(np.diag(2.0 * body.damping_ratio * omega))
+    plain, slow = _blocks(stiff), _blocks(damped)
+    stiffness, damping = plain.copy(), slow.copy()
+    for body in drivetrain.bodies:
+        if isinstance(body, Modes):
+            held = [(i, _seat(body, *one)) for i, one in enumerate(named)]
+            seated = [(i, seat) for i, seat in held if seat is not None]
+            own = np.ix_([i for i, _ in seated], [i for i, _ in seated])
+            give, seats = _inverse(plain[own]), [seat for _, seat in seated]
+            stiffness[own] = _inverse(give + body.give_m_per_n[np.ix_(seats, seats)])
+            damping[own] = _both_sides(_both_sides(slow[own], give), stiffness[own])
+    return _Springs(np.concatenate(rows), plain, stiffness, damping, bearings)
+
+
+def _seat(body: Modes, element: Element, along: str) -> int | None:
+    """Return the number of the seat of a housing on which an element stands along a direction."""
+    places = [f"{place.at}/{along}" for _, place in element.ends if place.body == body.name]
+    return body.seats.index(places[0]) if element.bearing and places else None
+
+
+def _against_base(drivetrain: Drivetrain, body: Modes) -> FloatArray:
+    """Return (r, n): by how much each mode stretches its spring."""
+    rows = np.array([drivetrain.vector({name: 1.0}) for name in body.coordinates])
+    for share, along in zip(body.base.T, (*PLANE, TURNING), strict=True):
+        rows -= np.outer(share, drivetrain.row(Place(BASE), along))
+    return rows
+
+
+def _masses(drivetrain: Drivetrain) -> list[tuple[float, FloatArray]]:
+    """Return masses [kg] and moments of inertia [kg m^2] with their rows; modes have a modal mass of 1."""
+    found = []
+    for body in drivetrain.bodies:
+        if isinstance(body, Modes):
+            found += [(1.0, drivetrain.vector({name: 1.0})) for name in body.coordinates]
+            continue
+        axes = {"x": (cos(body.axes_rad), sin(body.axes_rad), 0.0), "y": (-sin(body.axes_rad), cos(body.axes_rad), 0.0)}
+        for move, inertia in body.inertias().items():
+            moved = drivetrain.row(Place(body.name), axes[move]) if body.on and move in axes else None
+            own = drivetrain.vector({f"{move}_{body.name}": 1.0})
+            found.append((inertia, own if moved is None else moved))
+    return found
+
+
+def _blocks(matrices: Sequence[FloatArray]) -> FloatArray:
+    size = sum(map(len, matrices))
+    result, first = np.zeros((size, size)), 0
+    for matrix in matrices:
+        result[first : first + len(matrix), first : first + len(matrix)] = matrix
+        first += len(matrix)
     return result
+
+
+def _both_sides(middle: FloatArray, outer: FloatArray) -> FloatArray:
+    return squares(np.ascontiguousarray(outer), squares(np.ascontiguousarray(middle), np.ascontiguousarray(outer)))
+
+
+def _inverse(matrix: FloatArray) -> FloatArray:
+    """Return the inverse of a small positive definite matrix; a library's last bits depend on the processor."""
+    root = upper_root(matrix)
+    inverse = solve_upper(root, solve_lower(root, np.eye(len(matrix))))
+    return np.asarray(0.5 * (inverse + inverse.T))
+
+
+def _fixed(array: FloatArray) -> FloatArray:
+    array.setflags(write=False)
+    return array

@@ -21,9 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
 from siggen.dynamics.structure.shaft_lines import without_drift
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.structure import MeshVectors, Structure
 from siggen.dynamics.time.equations import Equations, inverse_times, state_matrix
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
 from siggen.dynamics.time.pair_equations import PairEquations
@@ -140,7 +139,7 @@ def _forces(structure: Structure) -> FloatArray:
     for mesh in structure.meshes:
         vectors += [mesh.vector, *without_drift(structure, mesh.sliding)]
         if mesh.tilt is not None:
-            vectors += [mesh.tilt, friction_tilt(structure.coordinates, mesh)]
+            vectors += [mesh.tilt, mesh.friction_tilt]
     return -inverse_times(structure.mass, np.array(vectors).T).T
 
 

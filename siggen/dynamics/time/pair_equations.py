@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.mesh_vectors import MeshVectors, friction_tilt
 from siggen.dynamics.structure.shaft_lines import rolling, without_drift
-from siggen.dynamics.structure.structure import Structure, vector
+from siggen.dynamics.structure.structure import MeshVectors, Structure, vector
 from siggen.dynamics.time.equations import Equations, inverse_times
 
 FORCE, APPROACH, TILT = range(3)
@@ -57,7 +56,7 @@ def _mesh_rows(structure: Structure, equations: Equations, number: int) -> list[
     inputs = inverse_times(structure.mass, without_drift(structure, mesh.sliding).T).T
     rows = [mesh.vector[None], mesh.sliding, equations.mesh_input[number][None], inputs]
     if mesh.tilt is not None:
-        arms = np.stack([mesh.tilt, friction_tilt(structure.coordinates, mesh)], axis=1)
+        arms = np.stack([mesh.tilt, mesh.friction_tilt], axis=1)
         rows += [mesh.tilt[None], inverse_times(structure.mass, arms).T]
     return rows
 

@@ -57,13 +57,13 @@ class Run:
         if not motion.structure.frame:
             return states
         turned = self.drive.angle_rad(self.time_s(first, len(states))) * frame_turns(motion.structure)
-        return in_space(motion.structure.coordinates, states, motion.equations.static_deflection, turned)
+        return in_space(motion.structure.drivetrain, states, motion.equations.static_deflection, turned)
 
     @property
     def seen_from(self) -> FloatArray:
         """The static deflection (n,) that states as `seen` count from."""
         structure, static = self.motion.structure, self.motion.equations.static_deflection
-        return at_rest_beside(structure.coordinates, static) if structure.frame else static
+        return at_rest_beside(structure.drivetrain, static) if structure.frame else static
 
     def inputs(self, first: int, pitches: FloatArray, each: int = 1) -> FloatArray:
         """Return the external inputs (k, m) at the steps as for `time_s` whose pinion angles are given."""

@@ -16,12 +16,13 @@ from siggen.dynamics.drive.external_forces import (
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.varying_drive import VaryingDrive
 from siggen.dynamics.structure.gear_stage import Bearing, GearStage
-from siggen.dynamics.structure.structure import Structure, eight_dof, vector
+from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.response import Response, SampleGrid, response_of
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.casing_stage import make_structure as casing
 from tests.dynamics.conftest import BASE_RADIUS_1, BASE_RADIUS_2, make_stage
+from tests.dynamics.trains import eight_dof
 
 FS, SPEED = 51200.0, 32.0
 MASS, STIFFNESS, DAMPING = 0.412, 0.412 * (2.0 * np.pi * 40.0) ** 2, 12.0

@@ -11,7 +11,7 @@ from siggen.dynamics.housing.housing_modes import (
     housing_modes,
 )
 from siggen.dynamics.housing.modes import TableModes, table_motion
-from siggen.dynamics.housing.motion import Place, bolt_motions, box_motions, motion_at
+from siggen.dynamics.housing.motion import PlatePlace, bolt_motions, box_motions, motion_at
 from siggen.dynamics.housing.plate_energy import sheet
 from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
@@ -29,7 +29,7 @@ def damped(modes: HousingModes, ratio: float = 0.02) -> np.ndarray:
 
 
 def lid(box: Box, modes: HousingModes, shares: tuple[float, float] = (0.6, 0.3)):
-    return motion_at(modes.halves, Place("lid", shares[0] * box.size_m[0], shares[1] * box.size_m[2], Axis.Y))
+    return motion_at(modes.halves, PlatePlace("lid", shares[0] * box.size_m[0], shares[1] * box.size_m[2], Axis.Y))
 
 
 def test_a_very_stiff_box_is_a_rigid_body_on_its_bolts() -> None:
@@ -145,7 +145,7 @@ def test_bolts_carry_the_weight_of_a_static_force(iron: HousingModes) -> None:
 
 def test_a_place_beyond_the_plate_is_refused(iron: HousingModes) -> None:
     with pytest.raises(ValueError, match="lid"):
-        motion_at(iron.halves, Place("lid", 0.4, 0.05, Axis.Y))
+        motion_at(iron.halves, PlatePlace("lid", 0.4, 0.05, Axis.Y))
 
 
 def test_a_box_is_refused_by_name() -> None:

@@ -12,7 +12,7 @@ from siggen.dynamics.housing.box import Axis
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.housing_modes import HousingModes, housing_modes
 from siggen.dynamics.housing.loose_foot import LoosenedModes, loosened, springs
-from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, box_motions, motion_at
+from siggen.dynamics.housing.motion import Motion, PlatePlace, bolt_motions, box_motions, motion_at
 from tests.dynamics.housing.boxes import IRON, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
 from tests.reference.housing.solid_box import solid_box
@@ -53,7 +53,7 @@ class Joint:
 
 
 def seen(modes: HousingModes | LoosenedModes) -> list[Motion]:
-    place = Place("lid", 0.6 * BOX.size_m[0], 0.3 * BOX.size_m[2], Axis.Y)
+    place = PlatePlace("lid", 0.6 * BOX.size_m[0], 0.3 * BOX.size_m[2], Axis.Y)
     motions = box_motions(BOX, modes.halves)
     return [motions["gear/front/y"], motions["pinion/back/x"], motion_at(modes.halves, place)]
 

@@ -7,14 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.axial_motion import axial_bearings
-from siggen.dynamics.structure.back_flanks import on_back_flanks
-from siggen.dynamics.structure.body import Body, axis_vector, rigid_body
-from siggen.dynamics.structure.casing_structure import carried_structure, casing_structure
 from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import Structure, eight_dof, vector
-from siggen.dynamics.structure.tilting_shaft import Shaft
+from siggen.dynamics.structure.gear_stage import Shaft
+from siggen.dynamics.structure.makers import train
+from siggen.dynamics.structure.structure import Structure, assembled, on_back_flanks, vector
 from tests.dynamics.casing_stage import BASE_RADIUS_1, MEAN_STIFFNESS, PRESSURE_ANGLE, make_casing, make_stage
+from tests.dynamics.trains import casing_of, casing_structure, eight_dof
 
 BASE_HELIX = np.radians(14.0)
 SLOPE = float(np.tan(BASE_HELIX))
@@ -84,7 +82,7 @@ def test_turning_or_shifting_both_gears_as_one_body_brings_no_flanks_nearer() ->
     structure = tilting()
     angle = PRESSURE_ANGLE
     apart_m = (make_stage().pinion.base_radius_m + make_stage().gear.base_radius_m) / np.cos(angle)
-    to_gear = -apart_m * np.array(axis_vector("horizontal", angle))
+    to_gear = np.array([-apart_m, 0.0])
     for turn in (np.array([1e-4, 0.0]), np.array([0.0, 1e-4]), np.array([0.7e-4, -0.4e-4])):
         tilts = {f"phi_{axis}_{i}": float(turn[k]) for i in "12" for k, axis in enumerate("xy")}
         q = vector(structure.coordinates, {**tilts, "z_1": 0.0, "z_2": float(-turn @ to_gear)})
@@ -98,24 +96,17 @@ def test_moments_of_bearings_and_axial_force_balance_on_each_shaft() -> None:
     """Both ends of a shaft, found from the gear's motion by hand, bear force and moment of the mesh."""
     structure, stage = tilting(), helical_stage()
     q = static(structure)
-    seats, u = body().seats, axis_vector("horizontal", PRESSURE_ANGLE)
+    machine, moving = structure.drivetrain, np.array(list(q.values()))
+    seats = casing_of(stage, make_casing()).seats
     gears = (("1", "pinion", stage.pinion, SHAFTS[0]), ("2", "gear", stage.gear, SHAFTS[1]))
     for index, which, rotor, shaft in gears:
         moment = 0.0
         for lever in shaft.levers_m.values():
-            seat = sum(share * q[name] for name, share in seats[f"{which}_bearing/horizontal"].items())
-            moved = (q[f"{axis}_{index}"] + lever * q[f"phi_{axis}_{index}"] for axis in "xy")
-            across = sum(share * way for share, way in zip(u, moved, strict=True))
+            seat = machine.row(seats[f"{which}_bearing"], "horizontal") @ moving
+            across = q[f"x_{index}"] + lever * q[f"phi_x_{index}"]
             moment += lever * end_stiffness(shaft, lever) * (across - seat)
         pitch_radius_m = rotor.base_radius_m / np.cos(PRESSURE_ANGLE)
         assert moment == pytest.approx(SLOPE * FORCE_N * pitch_radius_m, rel=1e-9)
-
-
-def body() -> Body:
-    casing, stage = make_casing(), make_stage()
-    apart_m = (stage.pinion.base_radius_m + stage.gear.base_radius_m) / np.cos(PRESSURE_ANGLE)
-    gear_place = (casing.pinion_place_m[0] - apart_m, casing.pinion_place_m[1])
-    return rigid_body(casing, {"gear_bearing": gear_place}, PRESSURE_ANGLE)
 
 
 def end_stiffness(shaft: Shaft, lever_m: float) -> float:
@@ -127,12 +118,11 @@ def end_stiffness(shaft: Shaft, lever_m: float) -> float:
 
 
 def test_seats_of_a_body_take_the_axial_force_and_give_way_along_it() -> None:
-    """A body with one more coordinate, along which both seats move: 2 masses on their bearings on a third."""
-    own = body()
-    along = {name: {"w_c": 1.0} for name in axial_bearings(helical_stage())}
-    carried = replace(own, inertias={**own.inertias, "w_c": 20.0}, seats={**own.seats, **along})
-    structure = carried_structure(helical_stage(), carried)
-    place = {name: structure.coordinates.index(name) for name in ("z_1", "z_2", "w_c")}
+    """A casing that moves along the shafts too: 2 masses on their bearings on a third."""
+    own = casing_of(helical_stage(), make_casing())
+    carried = replace(own, body=replace(own.body, moves=(*own.body.moves, "z")))
+    structure = assembled(train(helical_stage(), housing=carried))
+    place = {name: structure.coordinates.index(name) for name in ("z_1", "z_2", "z_c")}
     chosen = list(place.values())
     expected = 1e8 * np.array([[1.0, 0.0, -1.0], [0.0, 1.0, -1.0], [-1.0, -1.0, 2.0]])
     np.testing.assert_allclose(structure.stiffness[np.ix_(chosen, chosen)], expected, rtol=1e-12)
@@ -141,10 +131,10 @@ def test_seats_of_a_body_take_the_axial_force_and_give_way_along_it() -> None:
 def test_back_flanks_push_the_other_way_along_the_shafts() -> None:
     """By hand: half a turn about the centre line maps teeth of one hand on themselves, drive flanks on back flanks."""
     drive = tilting()
-    back = on_back_flanks(drive, helical_stage().line_of_action_m, 0.0)
+    back = on_back_flanks(drive, 0.0)
     row = dict(zip(back.coordinates, back.mesh.vector, strict=True))
     one = dict(zip(drive.coordinates, drive.mesh.vector, strict=True))
-    h = np.array(axis_vector("horizontal", PRESSURE_ANGLE))
+    h = np.array([1.0, 0.0])
     for i in "12":
         for kind, turned in (("", 1.0), ("phi_", -1.0)):
             own = np.array([one[f"{kind}{axis}_{i}"] for axis in "xy"])

@@ -3,10 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.free_rotation import elastic_basis, free_rotations, static_solution
 from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.structure.structure import Structure, eight_dof
+from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import equations_about
 from siggen.dynamics.time.modes import slowest_decay_per_s
 from tests.dynamics.casing_stage import (
@@ -18,6 +17,7 @@ from tests.dynamics.casing_stage import (
     torsional,
 )
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
+from tests.dynamics.trains import casing_structure, eight_dof
 
 STRUCTURES = {
     "8dof": eight_dof(make_stage()),

@@ -10,10 +10,10 @@ from scipy.linalg import eigh
 
 from siggen.dynamics.structure.fixed_frame import in_space
 from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
-from siggen.dynamics.structure.planetary import planetary_structure
 from siggen.dynamics.structure.shaft_lines import rigid_rotation, rolling
 from siggen.dynamics.time.equations import equations_about, mesh_springs
 from tests.dynamics.planetary_set import pairs, planetary_stage
+from tests.dynamics.trains import planetary_structure
 
 K = 3e8
 
@@ -151,7 +151,7 @@ def test_a_circling_point_stands_still_in_space():
     static[[x, y]] = 3e-6, -1e-6
     states = np.zeros((angle.size, 2 * n))
     states[:, x], states[:, y] = np.cos(angle) - static[x], -np.sin(angle) - static[y]  # (1, 0) seen from the frame
-    seen = in_space(names, states, static, angle)
+    seen = in_space(structure.drivetrain, states, static, angle)
     assert seen[:, x] == pytest.approx(np.ones(7), abs=1e-15)
     assert seen[:, y] == pytest.approx(np.zeros(7), abs=1e-15)
     others = [i for i in range(2 * n) if names[i % n][-2:] not in {"_s", "_c", "_r"}]

@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.casing_structure import casing_structure
-from siggen.dynamics.structure.structure import Element, Structure, assemble
-from siggen.dynamics.structure.tilting_shaft import Shaft, cantilever_compliance_m_per_n, crossed_ends, tilting_ends
-from tests.dynamics.casing_stage import MEAN_STIFFNESS, make_casing, make_stage, make_structure
+from siggen.dynamics.structure.drivetrain import Element
+from siggen.dynamics.structure.gear_stage import Bearing, Shaft, cantilever_compliance_m_per_n
+from siggen.dynamics.structure.structure import Structure
+from tests.dynamics.casing_stage import MEAN_STIFFNESS, PRESSURE_ANGLE, make_casing, make_stage, make_structure
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
+from tests.dynamics.trains import casing_structure
 
 SHAFT = Shaft(0.12, 0.35, 0.025, 206e9, 0.3, 1e-4)
 STIFF = Shaft(0.12, 0.5, 10.0, 206e9, 0.3, 1e-4)
-BEARING = Element({"x_1": 0.6, "y_1": 0.8}, 2e8, 1000.0)
 
 
 def tilting_structure(shaft: Shaft = SHAFT, **changes) -> Structure:
@@ -55,27 +55,27 @@ def beam_stiffness(shaft: Shaft, bearing: float, elements: int) -> np.ndarray:
 @pytest.mark.parametrize("share", [0.2, 0.35, 0.5, 0.8])
 def test_the_closed_form_is_a_timoshenko_beam_of_finite_elements(share: float) -> None:
     shaft = replace(SHAFT, gear_share=share)
-    upright = Element({"x_1": 0.0, "y_1": 1.0}, 2e8, 0.0)
-    found, _ = assemble(["y_1", "phi_y_1"], [without(e, {"x_1", "phi_x_1"}) for e in ends(shaft, upright)])
+    structure = casing_structure(make_stage(), make_casing(), (shaft, shaft))
+    rows = [structure.coordinates.index(name) for name in ("y_1", "phi_y_1")]
+    found = structure.stiffness[np.ix_(rows, rows)]
     # Timoshenko elements are exact at their nodes, so that one and four per side differ by rounding only.
     for elements in (1, 4):
         np.testing.assert_allclose(found, beam_stiffness(shaft, 2e8, elements), rtol=1e-8, atol=1e-7 * found.max())
 
 
-def ends(shaft: Shaft, bearing: Element) -> list[Element]:
-    return list(tilting_ends(bearing, shaft, "1").values())
-
-
-def without(element: Element, names: set[str]) -> Element:
-    kept = {name: value for name, value in element.direction.items() if name not in names}
-    return Element(kept, element.stiffness, element.damping)
+def ends(shaft: Shaft, bearing: Bearing) -> list[Element]:
+    """Return what holds the pinion at both ends of its shaft."""
+    stage = make_stage()
+    stage = replace(stage, pinion=replace(stage.pinion, bearing=bearing))
+    machine = casing_structure(stage, make_casing(), (shaft, shaft)).drivetrain
+    return [element for element in machine.elements if element.name == "pinion_bearing"]
 
 
 def test_a_stiff_shaft_with_its_gear_in_the_middle_leaves_the_bearings_as_they_were() -> None:
     stiff = replace(STIFF, diameter_m=1e3)
-    found = ends(stiff, BEARING)
-    assert sum(e.stiffness for e in found) == pytest.approx(BEARING.stiffness, rel=1e-9)
-    assert sum(e.damping for e in found) == pytest.approx(BEARING.damping, rel=1e-9)
+    found = ends(stiff, Bearing(2e8, 1e8, 1000.0, 700.0))
+    assert sum(e.stiffness for e in found) == pytest.approx(np.diag([2e8, 1e8]), rel=1e-9)
+    assert sum(e.damping for e in found) == pytest.approx(np.diag([1000.0, 700.0]), rel=1e-9)
     bare = natural_frequencies_hz(make_structure(), MEAN_STIFFNESS)
     tilting = natural_frequencies_hz(tilting_structure(stiff), MEAN_STIFFNESS)
     # Tilts stand apart: what is left after the eleven modes of the parallel gears are the four of the tilts, which
@@ -91,13 +91,13 @@ def test_a_bending_shaft_takes_motion_from_the_bearings_damper() -> None:
 
     At 10 rad/s the damper's force is 1e-4 of the spring's, so terms of second order are 1e-8.
     """
-    bearing, slow_rad_s = Element({"x_1": 0.0, "y_1": 1.0}, 2e8, 1000.0), 10.0
+    bearing, slow_rad_s = Bearing(1e8, 2e8, 0.0, 1000.0), 10.0
     for element, lever in zip(ends(SHAFT, bearing), SHAFT.levers_m.values(), strict=True):
         gives_way = 1.0 / beam_stiffness_of_end(abs(lever))
-        half = 0.5 * (bearing.stiffness + 1j * slow_rad_s * bearing.damping)
+        half = 0.5 * (2e8 + 1j * slow_rad_s * 1000.0)
         series = 1.0 / (1.0 / half + gives_way)
-        assert element.stiffness == pytest.approx(series.real, rel=1e-6)
-        assert element.damping == pytest.approx(series.imag / slow_rad_s, rel=1e-6)
+        assert element.stiffness[1, 1] == pytest.approx(series.real, rel=1e-6)
+        assert element.damping[1, 1] == pytest.approx(series.imag / slow_rad_s, rel=1e-6)
 
 
 def beam_stiffness_of_end(length: float) -> float:
@@ -110,7 +110,9 @@ def test_the_tilt_vector_takes_the_pinion_against_the_gear_in_the_plane_of_actio
     structure = tilting_structure()
     assert structure.mesh.tilt is not None
     tilts = dict(zip(structure.coordinates, structure.mesh.tilt, strict=True))
-    assert {name: value for name, value in tilts.items() if value} == {"phi_y_1": 1.0, "phi_y_2": -1.0}
+    sine, cosine = np.sin(PRESSURE_ANGLE), np.cos(PRESSURE_ANGLE)
+    push = {"phi_x_1": -sine, "phi_y_1": cosine, "phi_x_2": sine, "phi_y_2": -cosine}
+    assert {name: value for name, value in tilts.items() if value} == pytest.approx(push)
     assert make_structure().mesh.tilt is None
 
 
@@ -119,13 +121,10 @@ def test_a_bearing_that_pushes_across_is_one_without_seen_from_turned_axes() -> 
     turn, along, damping = 0.4, np.array([3e8, 1e8]), 900.0
     axes = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     whole = axes @ np.diag(along) @ axes.T
-    ways = ({"x_1": 1.0, "y_1": 0.0}, {"x_1": 0.0, "y_1": 1.0})
-    bearings = [Element(way, float(whole[i, i]), damping) for i, way in enumerate(ways)]
-    ends = crossed_ends((bearings[0], bearings[1]), float(whole[0, 1]), SHAFT, "1")
-    for end, lever_m in zip(ends, SHAFT.levers_m.values(), strict=True):
+    bearing = Bearing(whole[0, 0], whole[1, 1], damping, damping, whole[0, 1])
+    for end, lever_m in zip(ends(SHAFT, bearing), SHAFT.levers_m.values(), strict=True):
         series = 1.0 / (2.0 / along + cantilever_compliance_m_per_n(SHAFT, abs(lever_m)))
         stiffness = axes @ np.diag(series) @ axes.T
         damped = axes @ np.diag(0.5 * damping * (2.0 * series / along) ** 2) @ axes.T
-        assert (end.stiffness, end.damping) == pytest.approx((stiffness[0, 1], damped[0, 1]), rel=1e-9)
-        for i, one in enumerate(end.elements):
-            assert (one.stiffness, one.damping) == pytest.approx((stiffness[i, i], damped[i, i]), rel=1e-9)
+        assert end.stiffness == pytest.approx(stiffness, rel=1e-9)
+        assert end.damping == pytest.approx(damped, rel=1e-9)

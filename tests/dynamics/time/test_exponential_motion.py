@@ -10,11 +10,12 @@ from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_columns import FRICTION, NORMAL, POSITION
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.structure.shaft_lines import without_drift
+from siggen.dynamics.structure.structure import vector
 from siggen.dynamics.time.equations import no_inputs, state_matrix
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
 from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
-from tests.dynamics.casing_stage import make_structure
+from tests.dynamics.casing_stage import PRESSURE_ANGLE, make_structure
 from tests.dynamics.pair_runs import TORQUE, constant_tables, exact_involutes, law, tables
 
 FS = 25600.0
@@ -59,10 +60,12 @@ def test_a_linear_mesh_is_propagated_exactly() -> None:
     step = 1.0 / FS
     run = motion(ExponentialMotion, chosen, step, stiffness=3.0e8)  # not the 3.14e8 N/m that the pairs have
     pitches = 18 * 30.0 * step * np.arange(201) + 0.3
-    found = np.empty((201, 2 * len(run.structure.coordinates)))
+    n = len(run.structure.coordinates)
+    found = np.empty((201, 2 * n))
     found[0] = run.start(pitches[0])
     rest = found[0].copy()
-    found[0, 4] += 1e-7
+    across = {"x_1": np.cos(PRESSURE_ANGLE), "y_1": np.sin(PRESSURE_ANGLE)}
+    found[0, :n] += 1e-7 * vector(run.structure.coordinates, across)
     run.advance(pitches, no_inputs(pitches), found)
     damping = chosen.damping_root_kg * np.sqrt(3.14e8)
     exact = matrix_exponential(state_matrix(run.equations, np.array([3.14e8]), np.array([damping])) * step)
@@ -70,7 +73,6 @@ def test_a_linear_mesh_is_propagated_exactly() -> None:
     for _ in range(200):
         deviation = exact @ deviation
         wanted.append(deviation)
-    n = len(run.structure.coordinates)
     moved = np.array(wanted)[:, :n]
     # What is left is the cubic force within a step, times the 5 % by which the mesh deviates from the linear part.
     assert np.abs(found[1:, :n] - rest[:n] - moved).max() < 1e-7 * np.abs(moved).max()
@@ -167,7 +169,7 @@ def thrown_back(kind: type[PairMotion], substeps: int) -> np.ndarray:
     pitches = 18 * 30.0 * step * np.arange(400 * substeps + 1) + 0.3
     path = np.empty((pitches.size, 2 * len(run.structure.coordinates)))
     path[0] = run.start(pitches[0])
-    path[0, len(run.structure.coordinates) + 1] = -30.0
+    path[0, len(run.structure.coordinates) + run.structure.coordinates.index("theta_1")] = -30.0
     run.advance(pitches, no_inputs(pitches), path)
     if substeps == 1:
         assert run.steps_apart(path, pitches) > 10

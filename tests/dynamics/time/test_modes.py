@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.structure import Structure, eight_dof
+from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.modes import slowest_decay_per_s
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.conftest import make_stage
 from tests.dynamics.integration_runs import model
+from tests.dynamics.trains import eight_dof
 
 
 def test_the_torsional_mode_of_the_soft_shafts_decays_slowest(

@@ -10,7 +10,6 @@ from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
 from siggen.dynamics.structure.shaft_lines import rigid_rotation
-from siggen.dynamics.structure.structure import eight_dof
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
@@ -27,6 +26,7 @@ from tests.dynamics.pair_runs import (
     settled,
     tables,
 )
+from tests.dynamics.trains import eight_dof
 
 FORCE = TORQUE / (0.5 * 3e-3 * 18 * np.cos(np.radians(20.0)))
 STEPS_PER_MESH = 400

@@ -15,9 +15,8 @@ from siggen.dynamics.mesh.pair_columns import FRICTION, MOMENT, NODE_ROWS, NODE_
 from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.structure.casing_structure import casing_structure
+from siggen.dynamics.structure.gear_stage import Shaft
 from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
@@ -30,6 +29,7 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.contact import whole_face
 from tests.dynamics.casing_stage import make_casing, make_stage, make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
+from tests.dynamics.trains import casing_structure
 from tests.gears.geometry.test_helical import helical_pair
 
 SHAFT = Shaft(0.1, 0.4, 0.025, 206e9, 0.3, 3e-4)

@@ -1,0 +1,35 @@
+"""Structures of machines that tests build from numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from siggen.dynamics.structure.gear_stage import Casing, GearStage, NextStage, PlanetaryStage, Shaft
+from siggen.dynamics.structure.makers import Housing, planetary_train, rigid_housing, shaft_places_m, train
+from siggen.dynamics.structure.structure import Structure, assembled
+
+
+def eight_dof(stage: GearStage) -> Structure:
+    """Return a pair on bearings on the ground."""
+    return assembled(train(stage))
+
+
+def stages(first: GearStage, behind: Sequence[NextStage]) -> Structure:
+    """Return meshes in a row on bearings on the ground."""
+    return assembled(train(first, behind))
+
+
+def casing_of(stage: GearStage, casing: Casing) -> Housing:
+    """Return a rigid casing round a pair."""
+    pinion, gear = shaft_places_m([stage], -1.0, casing.pinion_place_m)
+    return rigid_housing(casing, {"pinion_bearing": pinion, "gear_bearing": gear})
+
+
+def casing_structure(stage: GearStage, casing: Casing, shafts: tuple[Shaft, Shaft] | None = None) -> Structure:
+    """Return a pair in a rigid casing, on shafts that bend or do not."""
+    return assembled(train(stage, housing=casing_of(stage, casing), bending=shafts))
+
+
+def planetary_structure(stage: PlanetaryStage, housing: Housing | None = None) -> Structure:
+    """Return a planetary set on the ground, or in a housing."""
+    return assembled(planetary_train(stage, housing))
