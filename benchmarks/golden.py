@@ -11,6 +11,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import llvmlite.binding
@@ -20,6 +21,7 @@ from benchmarks.shipped import ROOT, shipped
 from siggen.columns.record import SimulatedRecord
 from siggen.columns.versions import SIMULATION_VERSION
 from siggen.config import Config
+from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import simulate_specimen
 
@@ -34,8 +36,43 @@ PRESETS = (
     "two_stage",
     "planetary",
     "helical",
+    "kinds",
 )
-"""`industrial` is `bench` with longer records."""
+"""`industrial` is `bench` with longer records; `kinds` has every kind of damage and of sensor, and a run-up."""
+KINDS = ROOT / "tests" / "golden_kinds.yaml"
+REFUSED = (
+    ("paper_a", "gears.pinion.teeth=3"),
+    ("paper_a", "gears.gear.module_mm=3"),
+    ("paper_a", "gears.pinion.bore_mm=70"),
+    ("paper_a", "operating_points=[{speed_hz: 0, torque_nm: 60}]"),
+    ("paper_a", "operating_points=[{speed_hz: 30, torque_nm: 1e9}]"),
+    ("paper_a", "states.2.damage.first_height_mm=30"),
+    ("paper_a", "dynamics.steps_per_sample=0"),
+    ("paper_a", "sensors=[]"),
+    ("quickstart", "specimens=0"),
+    ("quickstart", "splits={train: 1, validation: 1, test: 1}"),
+    ("quickstart", "fs_hz=100"),
+    ("quickstart", "duration_s=0"),
+    ("quickstart", "sensors.0.place=roof"),
+    ("quickstart", "sensors.0.bits=3"),
+    ("quickstart", "states.1.damage.face_share=2"),
+    ("quickstart", "states.1.damage.kind=rust"),
+    ("quickstart", "dynamics.model=12dof"),
+    ("quickstart", "dynamics.shafts.pinion.gear_position=1.5"),
+    ("quickstart", "manufacture.accuracy_class=0"),
+    ("quickstart", "seed=minus"),
+    ("helical", "gears.helix_deg=60"),
+    ("helical", "gears.pressure_angle_deg=60"),
+    ("two_stage", "housing.bolts.positions_mm=[[0, 0]]"),
+    ("two_stage", "states.1.damage.gear=third"),
+    ("two_stage", "stages.0.direction_deg=1000"),
+    ("planetary", "planetary.positions_deg=[0, 10, 20]"),
+    ("planetary", "planetary.ring_teeth=79"),
+    ("planetary", "states.1.damage.gear=slow.pinion"),
+    ("kinds", "sensors.3.gear_encoder=none"),
+    ("kinds", "states.9.damage.bearing=motor_bearing"),
+)
+"""Preset and override whose message is kept word for word."""
 DURATION_S = 0.1
 SAMPLES = 8
 """Kept of every signal, evenly spread."""
@@ -63,12 +100,35 @@ class Moved(NamedTuple):
 
 def records(preset: str) -> Iterator[SimulatedRecord]:
     """Yield a short record of every state of the first gearbox of a preset, at its first operating point."""
-    config = shipped(ROOT / "configs" / f"{preset}.yaml", f"duration_s={DURATION_S}")
+    config = shipped(_file(preset), f"duration_s={DURATION_S}")
     found = simulate_specimen(config, [_first_record(config, state) for state in range(len(config.states))])
     for record in found:
         if not isinstance(record, SimulatedRecord):
             raise RuntimeError(f"{preset}: {record.reason}")
         yield record
+
+
+def _file(preset: str) -> Path:
+    return KINDS if preset == KINDS.stem.removeprefix("golden_") else ROOT / "configs" / f"{preset}.yaml"
+
+
+def refusals() -> dict[str, str]:
+    """Return preset and override -> what is said of it, without the folder of the checkout.
+
+    Raises
+    ------
+    ValueError
+        If one is not refused.
+    """
+    said = {}
+    for preset, override in REFUSED:
+        try:
+            shipped(_file(preset), override)
+        except ConfigError as error:
+            said[f"{preset} {override}"] = str(error).replace(f"{ROOT}/", "")
+        else:
+            raise ValueError(f"{preset} {override}: is not refused; give REFUSED another")
+    return said
 
 
 def compared(numbers: dict[str, Any]) -> Iterator[Moved]:
@@ -104,7 +164,12 @@ def write(found: dict[str, Any]) -> None:
     presets = {**before["presets"], **found}
     if len(presets) > len(found) and before["processor"] != processor():
         raise ValueError(f"kept on {before['processor']}, this is {processor()}: write all presets, not some")
-    kept = {"simulation_version": SIMULATION_VERSION, "processor": processor(), "presets": presets}
+    kept = {
+        "simulation_version": SIMULATION_VERSION,
+        "processor": processor(),
+        "presets": presets,
+        "refusals": refusals(),
+    }
     KEPT.write_text(_text(kept), encoding="utf-8")
 
 
@@ -140,11 +205,15 @@ def main(arguments: Sequence[str]) -> int:
     for one in found:
         print(f"{one.preset:12} {one.state:16} {one.channel:28} {one.text}")
     moved = sum(not one.equal for one in found)
-    print(f"{len(found) - moved} equal, {moved} moved")
+    said = json.loads(KEPT.read_text(encoding="utf-8")).get("refusals", {})
+    others = {case: text for case, text in refusals().items() if text != said.get(case)}
+    for case, text in others.items():
+        print(f"{case}\n  now {text}\n  was {said.get(case)}")
+    print(f"{len(found) - moved} equal, {moved} moved; {len(others)} of {len(REFUSED)} refusals in other words")
     if asked.write:
         write(numbers)
         return 0
-    return int(moved > 0)
+    return int(moved > 0 or len(others) > 0)
 
 
 def _first_record(config: Config, state: int) -> int:
