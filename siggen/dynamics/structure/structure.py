@@ -53,6 +53,8 @@ class Flanks(NamedTuple):
 
 
 DRIVE_FLANKS = Flanks()
+MISPLACED = 1e-5
+"""Share of a centre distance by which axes may stand off: rows at the pitch point err by as much."""
 COUPLINGS = ("input_coupling", "output_coupling")
 
 
@@ -223,17 +225,30 @@ def on_back_flanks(structure: Structure, ahead_pitches: float) -> Structure:
 
 
 def mesh_vectors(drivetrain: Drivetrain, mesh: Mesh, flanks: Flanks = DRIVE_FLANKS) -> MeshVectors:
-    """Return what a mesh feels and pushes on drive or on back flanks."""
+    """Return what a mesh feels and pushes on drive or on back flanks.
+
+    Raises
+    ------
+    ValueError
+        If the axes stand where its base circles do not meet at its pressure angle.
+    """
     driver, driven = (drivetrain.rigid(gear.body) for gear in (mesh.driver, mesh.driven))
     sense, angle = flanks.side * mesh.sense, mesh.pressure_angle_rad
     apart, inner = (-1.0 if gear.internal else 1.0 for gear in (mesh.driver, mesh.driven))
     across_m = tuple(inner * (b - a) for a, b in zip(driver.at_m, driven.at_m, strict=True))[:2]
-    e = tuple(part / hypot(*across_m) for part in across_m)
+    centre_m = hypot(*across_m)
+    e = tuple(part / centre_m for part in across_m)
     along, out = sense * cos(angle), apart * sin(angle)
     n = out * e[0] - along * e[1], out * e[1] + along * e[0]
     t = -sense * n[1], sense * n[0]
     slope = drivetrain.hand * sense * tan(mesh.driver.base_helix_rad)
     radii = mesh.driver.base_radius_m, mesh.driven.base_radius_m
+    fitting_m = abs(apart * radii[0] + inner * radii[1]) / cos(angle)
+    if abs(centre_m - fitting_m) > MISPLACED * centre_m:
+        raise ValueError(
+            f"mesh of {driver.name} and {driven.name}: received axes {1e3 * centre_m:.6g} mm apart; "
+            f"allowed: {1e3 * fitting_m:.6g} mm, where their base circles meet at the pressure angle"
+        )
     x, y, z = driver.at_m
     pitch = x + e[0] * radii[0] / cos(angle), y + e[1] * radii[0] / cos(angle), z
     before_m = apart * radii[0] * tan(angle)

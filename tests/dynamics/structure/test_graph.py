@@ -358,6 +358,11 @@ def free_shaft() -> Drivetrain:
     return replace(graph, bodies=(*graph.bodies, gear("flywheel", 0.3)))
 
 
+def apart() -> Drivetrain:
+    mesh = Mesh("mesh", MeshGear("1", 0.03), MeshGear("2", 0.05), ANGLE)
+    return with_gears((mesh,), gear("1", 0.0), gear("2", 0.09))
+
+
 @pytest.mark.parametrize(
     ("made", "said"),
     [
@@ -365,6 +370,7 @@ def free_shaft() -> Drivetrain:
         (loop_of_power, r"loop of power"),
         (lambda: with_gears((), gear("1", 0.0), gear("1", 0.1)), r"received 1 twice"),
         (lambda: replace(with_gears((), gear("1", 0.0)), load="brake"), r"received brake; its bodies are m, 1, l"),
+        (apart, r"mesh of 1 and 2: received axes 90 mm apart; allowed: 85.1342 mm"),
         (lambda: replace(with_gears((), gear("1", 0.0)), elements=()), r"turn by themselves: m; 1; l"),
     ],
 )

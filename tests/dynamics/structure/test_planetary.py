@@ -10,6 +10,7 @@ from scipy.linalg import eigh
 
 from siggen.dynamics.structure.fixed_frame import in_space
 from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
+from siggen.dynamics.structure.gear_stage import Coupling, PlanetaryBody, PlanetaryStage
 from siggen.dynamics.structure.shaft_lines import rigid_rotation, rolling
 from siggen.dynamics.time.equations import equations_about, mesh_springs
 from tests.dynamics.planetary_set import pairs, planetary_stage
@@ -165,3 +166,38 @@ def test_each_mesh_speeds_up_its_two_bodies_like_its_reduced_mass():
         # A force F along the line of action gives the angles J^-1 p F, which part the flanks by p^T J^-1 p F = F / m.
         turned = np.linalg.solve(structure.mass[np.ix_(rows, rows)], mesh.vector[rows])
         assert 1.0 / (mesh.vector[rows] @ turned) == pytest.approx(mesh.mass_kg, rel=1e-12)
+
+
+PUBLISHED_HZ = {
+    3: "743.2 743.2 1102.4 1102.4 1475.7 1896.0 1896.0 1930.3 2276.4 2276.4 2658.3 6986.3 6986.3 7462.8 9647.9 9647.9 "
+    "11775.3",
+    4: "727.0 727.0 1091.0 1091.0 1536.6 1808.2 1892.8 1892.8 1970.6 2342.5 2342.5 2625.7 5963.8 6981.7 7189.9 7189.9 "
+    "7773.6 10437.6 10437.6 13071.1",
+}
+"""Lin & Parker 1999 (Journal of Vibration and Acoustics 121), the example of a helicopter's planetary gear."""
+
+
+@pytest.mark.parametrize("planets", PUBLISHED_HZ)
+def test_natural_frequencies_are_those_that_lin_and_parker_published(planets):
+    """Within 0.04 %, for three planets within all digits; radii count by their ratios alone."""
+    base_mm, angle = (77.42, 100.35), np.radians(24.6)
+    ring_mm, apart_m = base_mm[0] + 2.0 * base_mm[1], 0.5e-3 * sum(base_mm) / np.cos(angle)
+
+    def body(radius_m, mass_kg, inertia, held=0.0):
+        return PlanetaryBody(radius_m, mass_kg, inertia * radius_m**2, 1e8, 0.0, held * radius_m**2)
+
+    free = Coupling(1e-6, 0.0)
+    stage = PlanetaryStage(
+        angle, angle, apart_m, body(0.5e-3 * base_mm[0], 0.4, 0.39), body(0.5e-3 * base_mm[1], 0.66, 0.61),
+        body(0.5e-3 * ring_mm, 2.35, 3.0, 1e9), body(apart_m, 5.43, 6.29), tuple(i / planets for i in range(planets)),
+        1e-9, 1e-9, free, free,
+    )  # fmt: skip
+    structure = planetary_structure(stage)
+    rows = [mesh.vector for mesh in structure.meshes]
+    stiffness = structure.stiffness + 5e8 * np.sum([np.outer(row, row) for row in rows], axis=0)
+    kept = [i for i, name in enumerate(structure.coordinates) if name not in {"theta_m", "theta_l"}]
+    values = eigh(stiffness[np.ix_(kept, kept)], structure.mass[np.ix_(kept, kept)], eigvals_only=True)
+    found = np.sqrt(np.abs(values)) / (2.0 * np.pi)
+    expected = np.array(PUBLISHED_HZ[planets].split(), dtype=float)
+    assert found[0] < 0.1
+    np.testing.assert_allclose(found[1:], expected, rtol=4e-4)
