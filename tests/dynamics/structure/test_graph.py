@@ -113,6 +113,23 @@ def test_planets_that_are_unevenly_spread_leave_one_free_motion_and_the_ratio() 
     assert rigid_rotation(structure)[structure.coordinates.index("theta_c")] == pytest.approx(1 / 4.25, rel=1e-12)
 
 
+def test_compound_planets_turn_the_carrier_by_both_of_their_radii() -> None:
+    """Each planet has two gears: one in the sun, a smaller one in the ring; ratio 1 + R_p1 R_r/(R_s R_p2)."""
+    a, turns = 0.05 / cos(ANGLE), (0.0, 1 / 3, 2 / 3)
+    middle = [Body(name, 1.0, 1e-3) for name in ("s", "c", "r")]
+    planets = [
+        Body(f"p{i}", 0.5, 1e-4, at_m=(a * cos(2.0 * pi * turn), a * sin(2.0 * pi * turn), 0.0), on="c")
+        for i, turn in enumerate(turns)
+    ]
+    meshes = [Mesh(f"sun_{one.name}", MeshGear("s", 0.02), MeshGear(one.name, 0.03), ANGLE) for one in planets]
+    ring = MeshGear("r", 0.07, internal=True)
+    meshes += [Mesh(f"ring_{one.name}", MeshGear(one.name, 0.02), ring, ANGLE, -1.0) for one in planets]
+    held = spring("ring", Place("r"), None, "turning", 1e6, 1.0)
+    structure = assembled(Drivetrain((*middle, *planets), (held,), tuple(meshes), "s", "c", "c"))
+    free_body_moves_nothing(structure)
+    assert structure.drivetrain.turning["c"] == pytest.approx(1.0 / (1.0 + 0.03 * 0.07 / (0.02 * 0.02)), rel=1e-12)
+
+
 def test_back_flanks_of_a_mesh_are_the_drive_flanks_of_one_that_turns_the_other_way() -> None:
     structure = assembled(train(make_stage()))
     back = on_back_flanks(structure, 0.0).mesh
