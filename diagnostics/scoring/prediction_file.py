@@ -123,7 +123,9 @@ def _columns(table: pa.Table, truth: Truth, problems: list[str]) -> dict[str, np
         elif name.startswith(PROBABILITY):
             problems.append(f"column {name} is of no class")
     for task in TASKS:
-        problems += [_bad(what, record_id[bad], allowed) for what, bad, allowed in task.problems(columns, truth)]
+        problems += [
+            _bad(what, record_id[np.flatnonzero(bad)], allowed) for what, bad, allowed in task.problems(columns, truth)
+        ]
     if not problems and all(task.answers(columns, truth) is None for task in TASKS):
         problems.append(f"no columns of a task; received {', '.join(table.column_names)}{_of_lives(table)}")
     return columns

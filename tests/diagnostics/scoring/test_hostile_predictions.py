@@ -29,6 +29,12 @@ def renamed(table: pa.Table) -> pa.Table:
     return doubled.rename_columns(["record_id", "damage", "damage"])
 
 
+def short_and_misspelt(table: pa.Table) -> pa.Table:
+    """Give a probability of one class only, under a name that is none, and leave out a record."""
+    half = pa.array(np.full(table.num_rows, 0.5))
+    return table.append_column("p_healthy", half).append_column("p_sevre", half).slice(1)
+
+
 def bomb(path: Path, _table: pa.Table) -> None:
     """Write a file of a hundred kilobytes that claims 40 million rows."""
     group = pa.table({"record_id": pa.array(np.zeros(4_000_000, np.int64)), "damage": np.zeros(4_000_000)})
@@ -57,6 +63,7 @@ def with_classifier(names: Callable[[int], list[object]]) -> Write:
 
 
 HOSTILE: dict[str, tuple[Write, str]] = {
+    "a record and a class missing": (written(short_and_misspelt), "column p_sevre is of no class"),
     "a doubled column": (written(renamed), "the column damage is there more than once"),
     "a bomb": (bomb, "40000000 rows of 2 columns"),
     "one long text": (long_text, "longer than any names"),
