@@ -16,28 +16,26 @@ if TYPE_CHECKING:
     from siggen.dataset.spreadsheet import write_csv
     from siggen.gears.geometry.gear_pair import Gear, GearPair
     from siggen.library.damage import BearingSpall, Chip, Crack, Damage, Pit, Spall, Wear, pits_in_layers, random_pits
-    from siggen.library.gearbox import Gearbox, Point, State, draw
+    from siggen.library.gearbox import Case, Gearbox, Point, State, draw
     from siggen.library.machines import machine, planetary
     from siggen.library.makers import single_stage
     from siggen.library.pairs import Curve, flank_picture, mesh_stiffness
     from siggen.library.record import LineOrders, Record, Spectrum
-    from siggen.library.running import Case, run, runs
+    from siggen.library.running import run, runs
     from siggen.library.sensors import Channel, Reading, Sensor
     from siggen.planning.plan import plan
     from siggen.publication.publish import publish
-    from siggen.record.simulation import simulate
     from siggen.sets.extension import extend
     from siggen.sets.generation import generate
     from siggen.sets.parts import generate_part, merge
     from siggen.sets.recorded_set import write_recorded_set
-    from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
 __all__ = [
     "BearingSpall", "Case", "Channel", "Chip", "Crack", "Curve", "Damage", "Gear", "GearPair", "Gearbox",
     "LineOrders", "Pit", "Point", "Reading", "Record", "Sensor", "Spall", "Spectrum", "State", "Wear", "draw",
     "extend", "flank_picture", "generate", "generate_part", "load_config", "machine", "merge", "mesh_stiffness",
-    "mesh_stiffness_curves", "mesh_stiffness_meaning", "open", "pits_in_layers", "plan", "planetary", "publish",
-    "random_pits", "run", "runs", "simulate", "single_stage", "write_csv", "write_recorded_set",
+    "open", "pits_in_layers", "plan", "planetary", "publish",
+    "random_pits", "run", "runs", "single_stage", "write_csv", "write_recorded_set",
 ]  # fmt: skip
 
 _NAMES = {
@@ -46,21 +44,19 @@ _NAMES = {
     "siggen.dataset.spreadsheet": "write_csv",
     "siggen.gears.geometry.gear_pair": "Gear GearPair",
     "siggen.library.damage": "BearingSpall Chip Crack Damage Pit Spall Wear pits_in_layers random_pits",
-    "siggen.library.gearbox": "Gearbox Point State draw",
+    "siggen.library.gearbox": "Case Gearbox Point State draw",
     "siggen.library.machines": "machine planetary",
     "siggen.library.makers": "single_stage",
     "siggen.library.pairs": "Curve flank_picture mesh_stiffness",
     "siggen.library.record": "LineOrders Record Spectrum",
-    "siggen.library.running": "Case run runs",
+    "siggen.library.running": "run runs",
     "siggen.library.sensors": "Channel Reading Sensor",
     "siggen.planning.plan": "plan",
     "siggen.publication.publish": "publish",
-    "siggen.record.simulation": "simulate",
     "siggen.sets.extension": "extend",
     "siggen.sets.generation": "generate",
     "siggen.sets.parts": "generate_part merge",
     "siggen.sets.recorded_set": "write_recorded_set",
-    "siggen.views.stiffness_curves": "mesh_stiffness_curves mesh_stiffness_meaning",
 }
 """Module -> public names that it defines."""
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}

@@ -28,7 +28,7 @@ from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
 from diagnostics.recordings.configured_train import config_train
 from diagnostics.records.gear_train import train_labels
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
-from siggen.errors import UsageError
+from siggen.errors import SolverFailure, UsageError
 from siggen.keys.column import Role
 
 TRAIN, VALIDATION, TEST = "train", "validation", "test"
@@ -227,16 +227,20 @@ def simulated_differences(mine: Path, block: Block, gearbox: int) -> Iterator[Di
     wanted = min((block.pulses_s.size - 1 + SPARE_TURNS) / block.speed_hz, LONGEST_S)
     duration = np.ceil(wanted * block.fs_hz) / block.fs_hz
     changes = _quiet(mine, block, duration, gearbox)
-    healthy: Any = siggen.simulate(siggen.load_config({**changes, "states": [{"name": "healthy"}]}), [gearbox])[0]
+    try:
+        healthy = siggen.run(siggen.draw(siggen.load_config({**changes, "states": [{"name": "healthy"}]}), gearbox))
+    except SolverFailure:
+        return
     for state in damage_states(mine):
         alone = {**state, "grows_from": "none"} if "grows_from" in state else state
         config = siggen.load_config({**changes, "states": [alone]})
-        damaged: Any = siggen.simulate(config, [gearbox])[0]
-        if not (hasattr(healthy, "channels") and hasattr(damaged, "channels")):
+        try:
+            damaged = siggen.run(siggen.draw(config, gearbox), config.state_names[0])
+        except SolverFailure:
             continue
         pairs = zip(block.channels, healthy.channels.values(), damaged.channels.values(), strict=True)
-        found = {name: b.astype(np.float64) - a.astype(np.float64) for name, a, b in pairs}
-        yield Difference(found, config.fs_hz, np.asarray(damaged.tacho_s), damaged.labels, config.identity)
+        found = {name: b - a for name, a, b in pairs}
+        yield Difference(found, config.fs_hz, damaged.tacho_s, damaged.labels, config.identity)
 
 
 def _quiet(mine: Path, block: Block, duration_s: float, gearbox: int) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import mesh_words
 from diagnostics.page.provenance import without_path
@@ -51,21 +52,20 @@ BEHIND_COLOUR, LOWEST = "#b9c4cd", 1e-12
 FIRST_HARMONICS = (1, 2)
 
 
-def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colours: dict[str, str]) -> Figure:
+def stiffness_figure(curves: Mapping[str, siggen.Curve], colours: dict[str, str]) -> Figure:
     """Return mesh stiffness over the pinion's angle, all states in one frame.
 
     Parameters
     ----------
-    curves : mapping of state to (angle_deg (k,), stiffness_n_per_m (k,))
-        What `siggen.mesh_stiffness_curves` returns.
+    curves : mapping of state to Curve
     colours : dict of str
         Colour by state.
     """
     figure, axes = new_figure(height_in=3.4)
     axis = axes[0, 0]
-    for place, (state, (angle_deg, stiffness_n_per_m)) in enumerate(curves.items()):
+    for place, (state, curve) in enumerate(curves.items()):
         style = {"color": colours.get(state), "linestyle": DASHES[place % len(DASHES)], "linewidth": 1.2}
-        axis.plot(angle_deg, 1e-6 * np.asarray(stiffness_n_per_m), label=state, **style)
+        axis.plot(np.degrees(curve.angle_rad), 1e-6 * curve.stiffness_n_per_m, label=state, **style)
     axis.set_xlabel("Pinion angle [°]")
     axis.set_ylabel("Mesh stiffness [N/µm]")
     axis.margins(x=0.01)
@@ -263,17 +263,14 @@ def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], c
     drawing.damage["stiffness_loss"] = (figure, caption)
     drawing.behind["stiffness_loss"] = records_line("Records", state_links(classes))
     try:
-        import siggen
-
-        # provided lazily by the package, computed from the configuration; a set can be read without its physics
-        config = siggen.load_config(dataset.config)
-        curves = siggen.mesh_stiffness_curves(config)
-        meaning = siggen.mesh_stiffness_meaning(config)
+        # what siggen names is loaded when it is used: a set can be read without its physics
+        gearbox = siggen.draw(siggen.load_config(dataset.config))
+        curves = {state.name: siggen.mesh_stiffness(gearbox, state.name) for state in gearbox.states}
         figure = stiffness_figure(curves, colours)
     except Exception as error:
         drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {without_path(error, dataset)}")
         return
-    caption = f"Specimen 0 in every state while the damaged teeth mesh: {meaning}."
+    caption = f"Specimen 0 in every state while the damaged teeth mesh: {next(iter(curves.values())).meaning}."
     drawing.damage["stiffness"] = (figure, caption)
     records = {"specimen 0": records_link(specimen_id=0)}
     drawing.behind["stiffness"] = records_line("Records", records)

@@ -38,8 +38,8 @@ def recordings(folder: Path, seed: int) -> HealthyBlocks:
         "repeats": FITTED + JUDGED,
         "operating_points": [point],
     }
-    config = siggen.load_config({**base, "states": [{"name": "healthy"}]})
-    records = siggen.simulate(config, range(FITTED + JUDGED))
+    gearbox = siggen.draw(siggen.load_config({**base, "states": [{"name": "healthy"}]}))
+    records = siggen.runs(gearbox, gearbox.cases)
     files = [write_recording(one, folder / f"run{k}.npz") for k, one in enumerate(records)]
     return healthy_blocks(
         [(file, None) for file in files],

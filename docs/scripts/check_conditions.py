@@ -26,7 +26,6 @@ from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import Mesh
 from diagnostics.signal.shaft_angle import shaft_angle
 from diagnostics.statistics.change_score import FEWEST, change_score
-from siggen.columns.record import SimulatedRecord
 from siggen.errors import UsageError
 
 DURATION_S, RANGE = 4.0, (0.95, 1.06)
@@ -68,24 +67,24 @@ def recorded(number: int, folder: Path, over: str) -> dict[str, np.ndarray]:
         states = [{"name": HEALTHY}, {"name": "again"}, STATES[3], BROKEN]
         changes = {"operating_points": conditions, "states": states, "specimens": 1, "duration_s": DURATION_S}
         config = siggen.load_config({**raw, **changes})
-        count = len(states) * len(conditions)
-        records = [one for one in siggen.simulate(config, range(count)) if isinstance(one, SimulatedRecord)]
+        gearbox = siggen.draw(config)
+        records = list(siggen.runs(gearbox, gearbox.cases))
         angles = [pulses(one) for one in records]
         rows = [features(one.channels, own) if own.size else None for one, own in zip(records, angles, strict=True)]
         unknown = np.full(next(row for row in rows if row is not None).size, np.nan)
         np.savez(
             kept,
             rows=np.array([unknown if row is None else row for row in rows]),
-            state=np.array([one.labels["state"] for one in records]),
-            load=np.array([100.0 * one.labels["torque_nm"] / FULL_NM for one in records]),
-            speed=np.array([one.labels["speed_hz"] for one in records]),
+            state=np.array([one.state for one in records]),
+            load=np.array([100.0 * one.torque_nm / FULL_NM for one in records]),
+            speed=np.array([one.speed_hz for one in records]),
         )
     return dict(np.load(kept))
 
 
-def pulses(record: SimulatedRecord) -> np.ndarray:
+def pulses(record: siggen.Record) -> np.ndarray:
     """Return the pulse times [s] of the pinion by the mesh lines, (0,) where they give no angle."""
-    low, high = (factor * float(record.labels["speed_hz"]) for factor in RANGE)
+    low, high = (factor * record.speed_hz for factor in RANGE)
     try:
         found = shaft_angle(record.channels, FS_HZ, TEETH, (low, high))
     except UsageError:

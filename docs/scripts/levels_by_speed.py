@@ -14,9 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import welch
 
-from siggen.checks.loading import load_config
-from siggen.columns.record import SimulatedRecord
-from siggen.record.simulation import simulate
+import siggen
 
 SPEEDS_HZ = (5.0, 10.0, 20.0, 40.0)
 TORQUE_NM = 40.0
@@ -43,15 +41,13 @@ class Levels(NamedTuple):
         return 20.0 * float(np.polyfit(np.log10(SPEEDS_HZ), np.log10(self.noise), 1)[0])
 
 
-def records(gearboxes: int, changes: list[str]) -> Iterator[tuple[float, int, SimulatedRecord]]:
+def records(gearboxes: int, changes: list[str]) -> Iterator[tuple[float, int, siggen.Record]]:
     """Yield speed, gearbox and its healthy record."""
     for speed_hz in SPEEDS_HZ:
         point = [f"operating_points.0.speed_hz={speed_hz}", f"operating_points.0.torque_nm={TORQUE_NM}"]
-        config = load_config("configs/quickstart.yaml", [*point, "duration_s=1.2", *changes])
+        config = siggen.load_config("configs/quickstart.yaml", [*point, "duration_s=1.2", *changes])
         for gearbox in range(gearboxes):
-            (found,) = simulate(config, [gearbox * config.records_per_specimen])
-            assert isinstance(found, SimulatedRecord), found
-            yield speed_hz, gearbox, found
+            yield speed_hz, gearbox, siggen.run(siggen.draw(config, gearbox))
 
 
 def channel_levels(signal: np.ndarray, fs_hz: float) -> tuple[float, float, float, float]:

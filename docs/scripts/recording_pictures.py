@@ -17,7 +17,6 @@ from hidden_machine import CHANNELS, FS_HZ, STATES, machine
 from page_pictures import FIGURES
 
 import siggen
-from siggen.columns.record import SimulatedRecord
 
 GEARS = ("--fs", f"{FS_HZ:g}", "--unit", "m/s2", "--teeth", "18,47", "--speed-range", "33,37")
 REFERENCES, HEALTHY, DURATION_S = 4, 7, 4.0
@@ -28,11 +27,9 @@ def recorded(folder: Path) -> list[str]:
     """Write the recordings, healthy ones first; return their files."""
     raw = machine(1, folder)
     changes = {"specimens": 1, "repeats": HEALTHY, "duration_s": DURATION_S, "states": [STATES[0], STATES[3]]}
-    config = siggen.load_config({**raw, **changes})
-    records = [one for one in siggen.simulate(config, range(2 * HEALTHY)) if isinstance(one, SimulatedRecord)]
-    records.sort(key=lambda one: one.labels["state"] != STATES[0]["name"])
+    gearbox = siggen.draw(siggen.load_config({**raw, **changes}))
     files = [f"{k}.npz" for k in range(1, HEALTHY + 2)]
-    for file, record in zip(files, records[: HEALTHY + 1], strict=True):
+    for file, record in zip(files, siggen.runs(gearbox, gearbox.cases[: HEALTHY + 1]), strict=True):
         np.savez(folder / file, **dict(zip(CHANNELS, record.channels.values(), strict=True)))
     return files
 

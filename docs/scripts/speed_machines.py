@@ -27,7 +27,6 @@ import siggen
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_angle import AGREEMENT, shaft_angle
 from siggen.checks.face_accuracy import covering_classes
-from siggen.columns.record import SimulatedRecord
 from siggen.config import inherited, parse_yaml
 from siggen.errors import UsageError
 from siggen.rig.rig_answers import rig_of
@@ -88,13 +87,10 @@ def machine(index: int) -> tuple[dict[str, Any], tuple[int, int]]:
 def recordings(index: int) -> Iterator[Known]:
     """Yield the recordings of a machine; one of the two has a load step."""
     raw, teeth = machine(index)
-    config = siggen.load_config(raw)
-    for number, record in enumerate(siggen.simulate(config, range(2))):
-        if isinstance(record, SimulatedRecord):
-            channels = {name: signal.astype(np.float64) for name, signal in record.channels.items()}
-            pulses = np.asarray(record.tacho_s, dtype=np.float64)
-            one = Known(channels, config.fs_hz, teeth, pulses, np.arange(float(pulses.size)))
-            yield stepped(one, index) if (index + number) % 2 else one
+    gearbox = siggen.draw(siggen.load_config(raw))
+    for number, record in enumerate(siggen.runs(gearbox, gearbox.cases)):
+        one = Known(record.channels, record.fs_hz, teeth, record.tacho_s, np.arange(float(record.tacho_s.size)))
+        yield stepped(one, index) if (index + number) % 2 else one
 
 
 def stepped(one: Known, index: int) -> Known:

@@ -106,7 +106,7 @@ def tvms(
             curves = varied_curves(loaded, gearbox.specimen, torque)
         else:
             curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque)
-        meaning = stiffness_meaning(usable, torque)
+        meaning = stiffness_meaning(usable.dynamics, torque)
     if out is not None:
         table = curve_table(curves, **asdict(further))
         write_table_file(table.rename_columns([usable.names.column(name) for name in table.column_names]), out)

@@ -9,7 +9,7 @@ from math import isfinite
 from numbers import Real
 from typing import Any, TypeVar
 
-from siggen.errors import ConfigError, SolverFailure, UsageError
+from siggen.errors import ConfigError, UsageError
 from siggen.keys.problems import nearest_word
 
 __all__ = ["finite", "named", "of_kind", "one_of", "refused", "saying"]
@@ -87,7 +87,7 @@ def saying(arguments: Mapping[str, str]) -> Iterator[None]:
     Raises
     ------
     UsageError
-        For every refusal within, a record that cannot be simulated among them.
+        For every refusal within.
     """
     try:
         yield
@@ -95,8 +95,6 @@ def saying(arguments: Mapping[str, str]) -> Iterator[None]:
         problems = (f"{one.path}: received {one.received}; {one.allowed}" for one in error.problems)
         lines = [_said(problem, arguments) for problem in problems]
         raise UsageError("\n".join(dict.fromkeys(lines))) from None
-    except SolverFailure as error:
-        raise UsageError(f"this record cannot be simulated: {error.reason}") from None
     except UsageError as error:
         raise UsageError(_said(str(error), arguments)) from None
 

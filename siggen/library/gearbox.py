@@ -24,7 +24,7 @@ from siggen.sensing.inputs import Input
 from siggen.sensors.places import PLATE_OF
 from siggen.specimen.planetary_numbers import planets_in_ring
 
-__all__ = ["Gearbox", "Point", "State", "draw"]
+__all__ = ["Case", "Gearbox", "Point", "State", "draw"]
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,23 @@ class Point:
 
     speed_hz: float
     torque_nm: float
+
+
+@dataclass(frozen=True)
+class Case:
+    """State, point and repeat of one record; repeats differ in noise, start and varying speed.
+
+    Attributes
+    ----------
+    state : str
+    point : Point, or int
+        An int is the index of one of the gearbox's points.
+    repeat : int
+    """
+
+    state: str
+    point: Point | int = 0
+    repeat: int = 0
 
 
 @dataclass(frozen=True, repr=False)
@@ -102,6 +119,13 @@ class Gearbox:
     def readable(self) -> tuple[str, ...]:
         """What sensors of the user's own may read: places, bearings, couplings and gears."""
         return tuple(self._words)
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """What its set holds of it, in the order of the records; none where it is of no set."""
+        repeats = range(self._config.repeats)
+        points = range(len(self.points))
+        return tuple(Case(state.name, point, k) for state in self.states for point in points for k in repeats)
 
     @property
     def labels(self) -> Mapping[str, object]:

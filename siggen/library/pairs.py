@@ -31,14 +31,24 @@ from siggen.keys.problems import section_problems
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.axes import drawing, legend_above, new_axes
 from siggen.library.damage import Damage, DamagedPlace, all_damages, entries
+from siggen.library.gearbox import Gearbox
 from siggen.library.shape_fault import ShapeFault
 from siggen.rig.rating import bearable_torque_nm, rated_torque_nm
 from siggen.specimen.contact import tooth_tables
 from siggen.specimen.static_mesh import static_mesh
 from siggen.specimen.worn_loads import load_at_rest
+from siggen.views.chosen_mesh import chosen_mesh
 from siggen.views.flank_figure import draw_flank
 from siggen.views.flank_views import flank_view
-from siggen.views.stiffness_curves import damaged_engagements
+from siggen.views.stiffness_curves import (
+    BY_ENERGY,
+    POINTS_PER_PITCH,
+    damaged_engagements,
+    pitches_shown,
+    static_torque_nm,
+    stiffness_curves,
+    stiffness_meaning,
+)
 
 __all__ = ["Curve", "flank_picture", "mesh_stiffness"]
 
@@ -55,18 +65,18 @@ class Curve:
     angle_rad : (points,)
         From one pitch before the first damaged tooth enters contact, at 0, to two pitches after the last one does.
     stiffness_n_per_m : (points,)
-    law : str
-        As `mesh_stiffness` was told.
+    meaning : str
+        What it is, with the torque.
     """
 
     angle_rad: FloatArray
     stiffness_n_per_m: FloatArray
-    law: str
+    meaning: str
 
     def __repr__(self) -> str:
         """One line."""
         low, high = self.stiffness_n_per_m.min(), self.stiffness_n_per_m.max()
-        return f"Curve({self.angle_rad.size} points, {low:.3g} to {high:.3g} N/m, law {self.law})"
+        return f"Curve({self.angle_rad.size} points, {low:.3g} to {high:.3g} N/m; {self.meaning})"
 
     def plot(self, ax: Any = None, *, label: str = "") -> Any:
         """Draw it and return the axes; None: those that are current, or of a new figure."""
@@ -81,55 +91,90 @@ class Curve:
 
 
 def mesh_stiffness(
-    pair: GearPair,
-    damages: Iterable[Damage] = (),
+    of: GearPair | Gearbox,
+    damages: Iterable[Damage] | str = (),
     *,
-    law: str = "pairs",
+    law: str | None = None,
     torque_nm: float | None = None,
-    tooth: str = "calibrated",
-    points: int = 800,
+    tooth: str | None = None,
+    mesh: str | None = None,
+    points_per_pitch: int = POINTS_PER_PITCH,
 ) -> Curve:
-    """Return the mesh stiffness of a pair with damage on its teeth.
+    """Return the mesh stiffness of a pair with damage on its teeth, or of a gearbox in a state.
 
     Parameters
     ----------
-    pair : GearPair
-        Its gears are `pinion` and `gear`.
-    damages : iterable of Damage
-        On teeth of these.
+    of : GearPair or Gearbox
+        Gears of a pair are `pinion` and `gear`. A gearbox has its errors, tooth model and law.
+    damages : iterable of Damage, or str
+        On teeth of the pair. Of a gearbox the name of a state; default `healthy`.
     law : str
-        'pairs': force over approach at rest under a torque, the contact solved across the face. 'linear': by potential
-        energy, the contact as long as damage leaves it (paper A, section 2.2).
+        Of a pair; default 'pairs': force over approach at rest under a torque, the contact solved across the face.
+        'linear': by potential energy, the contact as long as damage leaves it (paper A, section 2.2).
     torque_nm : float
-        On the driving gear, for `pairs` [N m]; default what the pair is rated for (ISO 6336-5, case-hardened).
+        On the driving gear, for `pairs` [N m]; default what the pair is rated for (ISO 6336-5, case-hardened), of a
+        gearbox its first point above 0.
     tooth : str
-        The tooth that bends: 'calibrated' (finite elements), 'base_circle' (paper A), 'root_circle', 'rack_trochoid'.
-    points : int
+        Of a pair, the tooth that bends; default 'calibrated' (finite elements). 'base_circle' (paper A),
+        'root_circle', 'rack_trochoid'.
+    mesh : str
+        Of a gearbox with several; default the first.
+    points_per_pitch : int
+        1 to 100000 of them over one angular pitch of the driving gear.
 
     Returns
     -------
     Curve
+        All states of a gearbox have the same angles.
 
     Raises
     ------
     UsageError
         If an argument or a damage cannot be: names it, what came and what is allowed.
     """
+    allowed = "1 to 100000"
+    finite("points_per_pitch", of_kind("points_per_pitch", points_per_pitch, int, allowed), allowed, 1, 100_000)
+    if isinstance(of, Gearbox):
+        for argument, value in (("law", law), ("tooth", tooth)):
+            if value is not None:
+                raise refused(argument, repr(value), "nothing for a gearbox, which has its own")
+        return _of_gearbox(of, damages or "healthy", torque_nm, mesh, points_per_pitch)
+    if mesh is not None:
+        raise refused("mesh", repr(mesh), "nothing for a pair, which is one mesh")
+    return _of_pair(of, damages, law or LAWS[0], torque_nm, tooth or "calibrated", points_per_pitch)
+
+
+def _of_gearbox(
+    gearbox: Gearbox, state: object, torque_nm: float | None, mesh: str | None, points_per_pitch: int
+) -> Curve:
+    name = one_of("damages", state, [one.name for one in gearbox.states])
+    whole = gearbox._with_passed(gearbox._config)
+    with saying({"torque": "torque_nm"}):
+        config = chosen_mesh(whole, gearbox.number, mesh, "mesh")
+        torque = static_torque_nm(config, gearbox.number)
+        torque = torque if torque_nm is None else finite("torque_nm", torque_nm, "a number above 0", 1e-9)
+        (curve,) = stiffness_curves(config, gearbox.number, points_per_pitch, torque_nm=torque, states=(name,))
+    return Curve(curve.angle_rad, curve.mesh_stiffness_n_per_m, stiffness_meaning(config.dynamics, torque))
+
+
+def _of_pair(
+    pair: GearPair, damages: Iterable[Damage] | str, law: str, torque_nm: float | None, tooth: str, points: int
+) -> Curve:
     one_of("law", law, LAWS)
-    finite("points", of_kind("points", points, int, "2 to 100000"), "2 to 100000", 2, 100_000)
     options = StiffnessOptions(one_of("tooth", tooth, TOOTH_MODELS), coupling="body" if law == "pairs" else "none")
     dynamics = draw(Dynamics(), lambda _: 0.5, "dynamics")
     parts = _parts(pair, damages, law, partial(load_at_rest, dynamics, pair, options))
     on_tooth = on_teeth(parts)
-    first, last = damaged_engagements(pair, tuple(with_outlines(parts, pair)) or on_tooth)
-    pitches = np.linspace(-1.0, last - first + 2.0, points)
+    shown = damaged_engagements(pair, tuple(with_outlines(parts, pair)) or on_tooth)
+    # in the middle of steps: at a whole pitch, where pairs come and go, rounding would decide how many there are
+    pitches = pitches_shown(shown, points)[:-1] + 0.5 / points
     angle = pitches * 2.0 * pi / pair.pinion.teeth
     if law == "linear":
         try:
-            stiffness = by_potential_energy(pair, angle + first * 2.0 * pi / pair.pinion.teeth, options, on_tooth)
+            stiffness = by_potential_energy(pair, angle + shown[0] * 2.0 * pi / pair.pinion.teeth, options, on_tooth)
         except ValueError as error:
             raise refused("damages", str(error), "pits that leave contact and section, or law='pairs'") from None
-        return Curve(angle, stiffness, law)
+        return Curve(angle, stiffness, BY_ENERGY)
     sizes = (pair.pinion.teeth, pair.gear.teeth), 1e3 * pair.driver.module_m, 1e3 * pair.face_width_m
     most = bearable_torque_nm(*sizes)
     torque = rated_torque_nm(*sizes) if torque_nm is None else torque_nm
@@ -137,7 +182,8 @@ def mesh_stiffness(
     force = torque / pair.pinion.base_radius_m
     tables = tooth_tables(dynamics, pair, on_tooth, options, TABLE_POINTS, force)
     static = static_mesh(dynamics, pair, tables, TABLE_POINTS, parts)
-    return Curve(angle, static.stiffness_n_per_m(torque, pitches + first), law)
+    stiffness = static.stiffness_n_per_m(torque, pitches + shown[0])
+    return Curve(angle, stiffness, stiffness_meaning(dynamics, torque))
 
 
 def flank_picture(pair: GearPair, damages: Iterable[Damage], ax: Any = None, *, on: str = "", tooth: int = -1) -> Any:
@@ -192,7 +238,7 @@ def _draw_shapes(ax: Any, pair: GearPair, shapes: Sequence[LostShape], shades: A
                   cmap=shades.cmap, norm=shades.norm, shading="nearest", rasterized=True)  # fmt: skip
 
 
-def _parts(pair: GearPair, damages: Iterable[Damage], law: str, loads: Any) -> Parts:
+def _parts(pair: GearPair, damages: Iterable[Damage] | str, law: str, loads: Any) -> Parts:
     """Return damages on the teeth of a pair."""
     of_kind("pair", pair, GearPair, "a GearPair, such as GearPair.of(teeth=(18, 47), module_mm=3.5, face_width_mm=20)")
     damages = all_damages(damages)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import groupby
 from math import floor
 
@@ -16,14 +16,15 @@ from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mes
 from siggen.config.planetary import pitches_per_turn
 from siggen.config.stage_problems import most_teeth_per_turn
 from siggen.config.stages import turned
+from siggen.errors import SolverFailure
 from siggen.keys.number import constant
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
-from siggen.library.gearbox import Gearbox, Point
+from siggen.library.gearbox import Case, Gearbox, Point
 from siggen.library.record import LineOrders, Record
 from siggen.record.simulation import simulate_specimen
 from siggen.rig.rating import bearable_torque_nm
 
-__all__ = ["Case", "run", "runs"]
+__all__ = ["run", "runs"]
 
 MESH_HARMONICS = 10
 """That a record carries where no sampling rate is given."""
@@ -35,15 +36,6 @@ KEYS = {
 """Key of a file -> argument that it comes from."""
 
 
-@dataclass(frozen=True)
-class Case:
-    """State, point and repeat of one record; repeats differ in noise, start and varying speed."""
-
-    state: str
-    point: Point
-    repeat: int = 0
-
-
 def run(
     gearbox: Gearbox,
     state: str = "healthy",
@@ -52,6 +44,7 @@ def run(
     *,
     duration_s: float | None = None,
     fs_hz: float | None = None,
+    point: int = 0,
     repeat: int = 0,
     truth: Sequence[str] = (),
 ) -> Record:
@@ -63,33 +56,36 @@ def run(
     state : str
         One of its states.
     speed_hz, torque_nm : float
-        Of the first shaft [Hz, N m]. Of a gearbox that `draw` returned the first of its points where both are left out;
-        its record then is that of the set, sample by sample.
+        Of the first shaft [Hz, N m]; of a gearbox that `draw` returned, those of its `point` where both are left out.
     duration_s : float
         Length [s]; default 1, of a gearbox of a set that of the set.
     fs_hz : float
         Sampling rate [Hz]; default: the least of 25,600, 51,200 ... that carries ten mesh harmonics, or that of the
         set.
-    repeat : int
-        From 0: the same again with other noise, start and variation of speed.
+    point, repeat : int
+        From 0. Point: which of the gearbox's points, where speed and torque are left out. Repeat: the same again with
+        other noise, start and variation of speed.
     truth : sequence of str
         What no sensor sees, such as `mesh_force_n`; "all" for everything.
 
     Returns
     -------
     Record
-        The same for the same arguments.
+        The same for the same arguments. Of a gearbox that `draw` returned it is that of the set, sample by sample:
+        `run(draw(config, specimen_id), state, point=operating_point_id, repeat=repeat)`, after the set's columns.
 
     Raises
     ------
     UsageError
-        If an argument cannot be: names it, what came and what is allowed. Also where the record cannot be simulated.
+        If an argument cannot be: names it, what came and what is allowed.
+    SolverFailure
+        If the record cannot be simulated.
     """
     of_kind("gearbox", gearbox, Gearbox, "what single_stage, machine, planetary and draw return")
     given = speed_hz is not None or torque_nm is not None
-    point = _point(gearbox, speed_hz, torque_nm) if given or not gearbox.points else None
-    config = _config_of(gearbox, point, duration_s, fs_hz, truth)
-    return next(_records(gearbox, config, [(state, repeat)]))
+    at = Point(speed_hz, torque_nm) if given or not gearbox.points else point  # type: ignore[arg-type]
+    at = _point(gearbox, at)
+    return next(_records(gearbox, _config_of(gearbox, at, duration_s, fs_hz, truth), [Case(state, at, repeat)]))
 
 
 def runs(
@@ -97,22 +93,29 @@ def runs(
 ) -> Iterator[Record]:
     """Yield the records of cases in their order, each the same as `run` returns.
 
-    Parameters as of `run`. Neighbours at one point share what their states do not change, so sort cases by point.
+    Parameters as of `run`; `gearbox.cases` are those of its set. Neighbours at one speed and torque share what their
+    states do not change, and all that are drawn points do.
 
     Raises
     ------
-    UsageError
+    UsageError, SolverFailure
         As `run`.
     """
     of_kind("gearbox", gearbox, Gearbox, "what single_stage, machine, planetary and draw return")
     for case in cases:
         of_kind("cases", case, Case, "objects of Case")
-    for point, group in groupby(cases, key=lambda case: case.point):
-        config = _config_of(gearbox, _point(gearbox, point.speed_hz, point.torque_nm), duration_s, fs_hz, ())
-        yield from _records(gearbox, config, [(case.state, case.repeat) for case in group])
+    placed = [replace(case, point=_point(gearbox, case.point)) for case in cases]
+    for point, group in groupby(placed, key=lambda case: case.point if isinstance(case.point, Point) else 0):
+        yield from _records(gearbox, _config_of(gearbox, point, duration_s, fs_hz, ()), list(group))
 
 
-def _point(gearbox: Gearbox, speed_hz: float | None, torque_nm: float | None) -> Point:
+def _point(gearbox: Gearbox, point: Point | int) -> Point | int:
+    """Return a point that the teeth bear, or the index of a drawn one."""
+    if not isinstance(point, Point):
+        last = len(gearbox.points) - 1
+        allowed = f"an index of its points, 0 to {last}" if last >= 0 else "a Point; this gearbox has none of its own"
+        return int(finite("point", of_kind("point", point, int, allowed), allowed, 0, last))
+    speed_hz, torque_nm = point.speed_hz, point.torque_nm
     if speed_hz is None or torque_nm is None:
         missing, what = ("speed_hz", "Hz") if speed_hz is None else ("torque_nm", "N m")
         raise refused(missing, "nothing", f"a number in {what} of the first shaft; this gearbox has none of its own")
@@ -137,11 +140,13 @@ def _bearable_nm(gearbox: Gearbox) -> float:
 
 
 def _config_of(
-    gearbox: Gearbox, point: Point | None, duration_s: float | None, fs_hz: float | None, truth: Sequence[str]
+    gearbox: Gearbox, point: Point | int, duration_s: float | None, fs_hz: float | None, truth: Sequence[str]
 ) -> Config:
     """Return the configuration of a run, checked as every file is."""
     base = gearbox._config
-    speed_hz = gearbox.points[0].speed_hz if point is None else point.speed_hz
+    if isinstance(point, int) and duration_s is None and fs_hz is None and not truth:
+        return gearbox._with_passed(base)
+    speed_hz = (point if isinstance(point, Point) else max(gearbox.points, key=lambda one: one.speed_hz)).speed_hz
     teeth = most_teeth_per_turn({name: getattr(base, name) for name in type(base).model_fields})
     highest_hz = speed_hz * base.variation.speed_ratios[1]
     rate = _rate_hz(gearbox, fs_hz, teeth, highest_hz)
@@ -153,7 +158,7 @@ def _config_of(
                       f"at least {1.0 / speed_hz:.4g} s, one turn of the first shaft")  # fmt: skip
     harmonics = min(carried_mesh_harmonics(rate, teeth, highest_hz), base.mesh_harmonics)
     changes: dict[str, object] = {"fs_hz": rate, "duration_s": samples / rate, "mesh_harmonics": harmonics}
-    if point is not None:
+    if isinstance(point, Point):
         changes["operating_points"] = [{"speed_hz": point.speed_hz, "torque_nm": point.torque_nm}]
     if truth:
         if not isinstance(truth, Sequence):
@@ -177,22 +182,20 @@ def _rate_hz(gearbox: Gearbox, fs_hz: float | None, teeth: float, highest_hz: fl
     return rate
 
 
-def _records(gearbox: Gearbox, config: Config, wanted: Sequence[tuple[str, int]]) -> Iterator[Record]:
-    """Yield the records of states and repeats at the first point of a configuration."""
-    names, each = [one.name for one in gearbox.states], len(config.operating_points)
-    ids, repeats = [], max((repeat for _, repeat in wanted), default=0) + 1
-    for state, repeat in wanted:
-        if not isinstance(repeat, int) or repeat < 0:
-            raise refused("repeat", repr(repeat), "0, 1, 2 and so on")
-        index = names.index(one_of("state", state, names))
-        ids.append(((gearbox.number * config.state_count + index) * each) * repeats + repeat)
-    many = config.model_copy(update={"repeats": repeats})
+def _records(gearbox: Gearbox, config: Config, cases: Sequence[Case]) -> Iterator[Record]:
+    """Yield the records of cases, all at points of a configuration."""
+    names, each, allowed = [one.name for one in gearbox.states], len(config.operating_points), "0, 1, 2 and so on"
+    repeats = 1 + max(int(finite("repeat", of_kind("repeat", c.repeat, int, allowed), allowed, 0)) for c in cases)
+    ids = []
+    for case in cases:
+        index = gearbox.number * config.state_count + names.index(one_of("state", case.state, names))
+        place = case.point if isinstance(case.point, int) else 0
+        ids.append((index * each + place) * repeats + case.repeat)
     with saying(KEYS):
-        for record_id in ids:
-            for found in simulate_specimen(many, [record_id]):
-                if isinstance(found, RecordFailure):
-                    raise refused("state", found.reason, "a record that can be simulated")
-                yield _record(gearbox, config, found)
+        for found in simulate_specimen(config.model_copy(update={"repeats": repeats}), ids):
+            if isinstance(found, RecordFailure):
+                raise SolverFailure(found.status, found.reason)
+            yield _record(gearbox, config, found)
 
 
 def _record(gearbox: Gearbox, config: Config, found: SimulatedRecord) -> Record:

@@ -37,7 +37,7 @@ from siggen.specimen.instrument import Instrument, history_s
 from siggen.specimen.step_choice import stepped_motion
 from siggen.specimen.structure import structure
 
-__all__ = ["damage_rows", "record_response", "simulate", "simulate_specimen", "simulated", "start_angle_rad"]
+__all__ = ["damage_rows", "record_response", "simulate_specimen", "simulated", "start_angle_rad"]
 
 
 def record_response(
@@ -239,16 +239,3 @@ def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[Sim
             f"records of one specimen expected, received specimens {sorted({r.specimen_id for r in records})}"
         )
     return _results(config, records)
-
-
-def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
-    """Simulate any records; a record is a pure function of (config, record_id), so order and grouping do not matter."""
-    by_specimen: dict[int, list[int]] = {}
-    for record_id in record_ids:
-        by_specimen.setdefault(planned_record(config, record_id).specimen_id, []).append(record_id)
-    done = {
-        record_id: result
-        for ids in by_specimen.values()
-        for record_id, result in zip(ids, simulate_specimen(config, ids), strict=True)
-    }
-    return [done[i] for i in record_ids]

@@ -39,7 +39,7 @@ def varied_curves(
     """Return the curve of the first state, then that of the varied state at each value, under its label."""
     found: list[StiffnessCurve] = []
     for label, config, state in loaded:
-        curves = stiffness_curves(config, specimen_id, torque_nm=torque_nm)
-        found += [] if found else [curves[0]]
-        found.append(replace(curves[state], state=label))
+        names = (*(() if found else config.state_names[:1]), config.state_names[state])
+        curves = stiffness_curves(config, specimen_id, torque_nm=torque_nm, states=names)
+        found += [*curves[:-1], replace(curves[-1], state=label)]
     return found

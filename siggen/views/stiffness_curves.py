@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, replace
 from math import pi
-from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.checks.loading import load_config
-from siggen.config import Config
+from siggen.config import Config, Dynamics
 from siggen.errors import UsageError
 from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
@@ -30,6 +28,8 @@ from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
 
 TOOTH_PARTS = ("foundation", "bending", "shear", "axial")
+POINTS_PER_PITCH = 400
+BY_ENERGY = "mesh stiffness by potential energy"
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +71,19 @@ def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
     return ordered[0], ordered[-1]
 
 
+def pitches_shown(engagements: tuple[int, int], points_per_pitch: int, pitches: int | None = None) -> FloatArray:
+    """Return places in pitches from the first damaged engagement, from one before it to two behind the last (k,)."""
+    count = engagements[1] - engagements[0] + 3 if pitches is None else pitches
+    return np.arange(-points_per_pitch, (count - 1) * points_per_pitch + 1) / points_per_pitch
+
+
 def stiffness_curves(
     config: Config,
     specimen_id: int = 0,
-    points_per_pitch: int = 400,
+    points_per_pitch: int = POINTS_PER_PITCH,
     pitches: int | None = None,
     torque_nm: float | None = None,
+    states: Container[str] | None = None,
 ) -> list[StiffnessCurve]:
     """Return the curve of every state of one specimen, from one pitch before the damage to two pitches behind it.
 
@@ -87,6 +94,7 @@ def stiffness_curves(
     points_per_pitch : int, samples over one angular pitch of the pinion
     pitches : int, angular pitches from one before the damage on; None: to two pitches behind the last damaged tooth
     torque_nm : float, on the pinion, for damage that acts as geometry; None: that of the first operating point
+    states : names of those wanted; None: all. The angles are the same for all
 
     Raises
     ------
@@ -107,18 +115,17 @@ def stiffness_curves(
     specimen = draw_specimen(config, specimen_id)
     pair = gear_pair(specimen.gears)
     damages = [on_teeth(state_damage(config, specimen_id, pair, i)) for i in range(len(config.states))]
-    first, last = damaged_engagements(pair, max(damages, key=len))
-    count = last - first + 3 if pitches is None else pitches
-    steps = np.arange(-points_per_pitch, (count - 1) * points_per_pitch + 1) / points_per_pitch
-    angle = steps * 2 * pi / pair.pinion.teeth
-    curves = [
-        _curve(specimen, pair, state.name, damage, angle, first)
-        for state, damage in zip(config.states, damages, strict=True)
-    ]
+    hit = [damaged_engagements(pair, one) for one in damages if one] or [(0, 0)]
+    shown = min(first for first, _ in hit), max(last for _, last in hit)
+    angle = pitches_shown(shown, points_per_pitch, pitches) * 2 * pi / pair.pinion.teeth
+    wanted = [i for i, state in enumerate(config.states) if states is None or state.name in states]
+    curves = [_curve(specimen, pair, config.states[i].name, damages[i], angle, shown[0]) for i in wanted]
     if not solves_across_the_face(specimen.dynamics):
         return curves
     torque = static_torque_nm(config, specimen_id) if torque_nm is None else torque_nm
-    return [_as_simulated(config, specimen, i, curve, first, torque) for i, curve in enumerate(curves)]
+    return [
+        _as_simulated(config, specimen, i, curve, shown[0], torque) for i, curve in zip(wanted, curves, strict=True)
+    ]
 
 
 def static_torque_nm(config: Config, specimen_id: int = 0) -> float:
@@ -131,11 +138,11 @@ def static_torque_nm(config: Config, specimen_id: int = 0) -> float:
     return next((torque for torque in points if torque > 0.0), light_force_n(pair) * pair.pinion.base_radius_m)
 
 
-def stiffness_meaning(config: Config, torque_nm: float) -> str:
-    """Return in words what a curve of mesh stiffness of this configuration is."""
-    if solves_across_the_face(config.dynamics):
+def stiffness_meaning(dynamics: Dynamics, torque_nm: float) -> str:
+    """Return in words what a curve of mesh stiffness is."""
+    if solves_across_the_face(dynamics):
         return f"quasi-static mesh stiffness at {torque_nm:.3g}\u00a0N\u00a0m: force over approach, as simulated"
-    return "mesh stiffness by potential energy"
+    return BY_ENERGY
 
 
 def _as_simulated(
@@ -215,38 +222,3 @@ def curve_table(curves: list[StiffnessCurve], *, parts: bool = False, potential_
             for name, values in curve.parts_m_per_n.items():
                 columns[f"{curve.state}_{name}_m_per_n"] = pa.array(values, mask=np.isnan(values))
     return pa.table(columns)
-
-
-def mesh_stiffness_curves(
-    config: Config | Path | str, specimen_id: int = 0
-) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """Return state -> (angle in degrees (k,), mesh stiffness in N/m (k,)) of one specimen, as simulated.
-
-    What the stiffness is, says `mesh_stiffness_meaning`.
-
-    Parameters
-    ----------
-    config : Config, or path of a YAML file
-    specimen_id : int
-
-    Raises
-    ------
-    ConfigError
-        If the file holds no usable configuration.
-    ValueError
-        If the drawn damage cannot be computed by the stiffness model.
-    """
-    usable = config if isinstance(config, Config) else load_config(config)
-    return {c.state: (np.degrees(c.angle_rad), c.mesh_stiffness_n_per_m) for c in stiffness_curves(usable, specimen_id)}
-
-
-def mesh_stiffness_meaning(config: Config | Path | str, specimen_id: int = 0) -> str:
-    """Return in words what `mesh_stiffness_curves` returns for this configuration.
-
-    Raises
-    ------
-    ConfigError
-        If the file holds no usable configuration.
-    """
-    usable = config if isinstance(config, Config) else load_config(config)
-    return stiffness_meaning(usable, static_torque_nm(usable, specimen_id))

@@ -12,8 +12,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.record.simulation import simulate
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 

@@ -15,11 +15,11 @@ from siggen.checks.tilt_problems import MEMBERS, NEEDED, flank_tilts, static_til
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import simulate
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 ROOT = Path(__file__).resolve().parents[2]
 

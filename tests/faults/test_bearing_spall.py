@@ -18,7 +18,7 @@ from siggen.dynamics.drive.drive import Drive
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
 from siggen.specimen.drive import record_rotation, start_angle_rad
@@ -26,6 +26,7 @@ from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import structure
 from siggen.views.exported_model import exported_model
 from tests.config.minimal import config, minimal
+from tests.simulated import simulate
 
 SPEED_HZ, BALLS = 30.0, 9
 CAGE = 0.5 * (1.0 - 7.94 / 39.04)

@@ -14,10 +14,10 @@ from siggen.errors import ConfigError
 from siggen.gears.damage.chip import WholeChip
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import simulate
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import config_with, damage_of
+from tests.simulated import simulate
 
 CHIP: dict[str, Any] = {"kind": "chip", "height_mm": 1.5}
 BROKEN: dict[str, Any] = {"kind": "chip", "height_mm": "whole"}

@@ -14,11 +14,11 @@ from siggen.gears.damage.wear import LABEL_POINTS, WornFlanks
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.record.simulation import simulate
 from siggen.record.specimen_state import specimen_state, state_teeth
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.static_mesh import static_mesh
 from tests.faults.test_damage import config_with, damage_of
+from tests.simulated import simulate
 
 WEAR: dict[str, Any] = {"kind": "wear", "depth_um": 20.0}
 

@@ -76,10 +76,10 @@ def test_the_study_of_paper_a_is_a_loop_of_two_lines() -> None:
     """The curves of the preset, whose 16 pits of one row stand at 1.9 mm; elsewhere the loss moves with the pits."""
     config = siggen.load_config("paper_a", [f"states.{i}.damage.teeth=[0]" for i in (1, 2, 3)])
     (of_file,) = (curve for curve in stiffness_curves(config) if curve.state == "moderate")
-    sound, worst, losses = mesh_stiffness(PAIR, law="linear", tooth="base_circle", points=1199), [], []
+    sound, worst, losses = mesh_stiffness(PAIR, law="linear", tooth="base_circle"), [], []
     for height_mm in (1.0, 1.9, 2.8):
         pits = pits_in_layers("pinion", layers=1, pits_per_layer=16, first_height_mm=height_mm)
-        curve = mesh_stiffness(PAIR, pits, law="linear", tooth="base_circle", points=1199)
+        curve = mesh_stiffness(PAIR, pits, law="linear", tooth="base_circle")
         loss = 1.0 - curve.stiffness_n_per_m / sound.stiffness_n_per_m
         worst.append(curve.angle_rad[np.argmax(loss)])
         losses.append(loss.max())
@@ -88,6 +88,36 @@ def test_the_study_of_paper_a_is_a_loop_of_two_lines() -> None:
             assert np.mean(np.abs(curve.stiffness_n_per_m / known - 1.0) > 1e-3) < 0.02  # but where pairs come and go
     assert np.all(np.diff(worst) > 0.02)  # the contact climbs the driving flank
     assert losses[1] > max(losses[0], losses[2])  # in single contact nothing else carries
+
+
+def test_a_state_of_a_gearbox_has_the_curve_of_its_mesh_under_the_torque_of_its_first_point() -> None:
+    config = siggen.load_config("quickstart")
+    gearbox = siggen.draw(config, 1)
+    torque_nm = gearbox.points[0].torque_nm
+    curves = {state.name: mesh_stiffness(gearbox, state.name) for state in gearbox.states}
+    for known in stiffness_curves(config, 1, torque_nm=torque_nm):
+        assert np.array_equal(curves[known.state].angle_rad, known.angle_rad)
+        assert np.array_equal(curves[known.state].stiffness_n_per_m, known.mesh_stiffness_n_per_m)
+    assert f"{torque_nm:.3g}\u00a0N\u00a0m" in curves["healthy"].meaning
+    loss = 1.0 - curves["severe"].stiffness_n_per_m / curves["healthy"].stiffness_n_per_m
+    measured = siggen.run(gearbox, "severe", duration_s=0.1).labels["mesh_stiffness_loss_as_simulated"]
+    assert loss.max() == pytest.approx(measured, rel=0.02)
+    dented = gearbox.with_(State("dented", (Dent("pinion", depth_um=200.0),)))
+    assert mesh_stiffness(dented, "dented").stiffness_n_per_m.min() < mesh_stiffness(dented).stiffness_n_per_m.min()
+
+
+def test_a_gearbox_has_its_own_law_and_teeth_and_a_pair_one_mesh() -> None:
+    gearbox = siggen.single_stage((23, 61), 2.5)
+    for given, said in (
+        ({"law": "linear"}, "law: received 'linear'; allowed: nothing for a gearbox"),
+        ({"damages": "pitted"}, "damages: received 'pitted'; allowed: healthy"),
+        ({"mesh": "slow"}, "mesh: received 'slow'; allowed: none, the gearbox has one mesh"),
+        ({"torque_nm": 1e6}, r"torque_nm: received 1e\+06 N m; allowed: up to"),
+    ):
+        with pytest.raises(UsageError, match=said):
+            mesh_stiffness(gearbox, **given)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="mesh: received 'slow'; allowed: nothing for a pair"):
+        mesh_stiffness(PAIR, mesh="slow")
 
 
 def test_a_hole_of_ones_own_lets_rigid_flanks_sink_as_a_spall_does() -> None:
@@ -115,7 +145,8 @@ def test_a_shape_that_is_the_same_all_along_the_profile_is_a_misalignment() -> N
 
 
 def test_a_dent_softens_the_mesh_where_it_is_and_nowhere_else() -> None:
-    sound, dented, deeper = (mesh_stiffness(PAIR, d, points=241) for d in ((), [Dent()], [Dent(depth_um=60.0)]))
+    dents: tuple[list[Damage], ...] = ([], [Dent()], [Dent(depth_um=60.0)])
+    sound, dented, deeper = (mesh_stiffness(PAIR, one, points_per_pitch=80) for one in dents)
     angle = np.degrees(sound.angle_rad)
     beside = (angle < 5.0) | (angle > 27.0)
     assert np.allclose(dented.stiffness_n_per_m[beside], sound.stiffness_n_per_m[beside], rtol=1e-12)
@@ -194,8 +225,8 @@ def test_what_a_law_or_a_gearbox_has_not_is_refused() -> None:
         mesh_stiffness(PAIR, [Dent()], law="linear")
     with pytest.raises(UsageError, match="torque_nm: received 1000000"):
         mesh_stiffness(PAIR, torque_nm=1e6)
-    with pytest.raises(UsageError, match=r"points: received 10\.5; allowed: 2 to 100000"):
-        mesh_stiffness(PAIR, points=10.5)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match=r"points_per_pitch: received 10\.5; allowed: 1 to 100000"):
+        mesh_stiffness(PAIR, points_per_pitch=10.5)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="pair: received 'pair'; allowed: a GearPair"):
         siggen.flank_picture("pair", [])  # type: ignore[arg-type]
     with pytest.raises(UsageError, match=r"teeth=\(5, 6\) of module 2 mm: "):

@@ -12,7 +12,7 @@ import pytest
 import siggen
 from siggen.columns.record import SimulatedRecord
 from siggen.errors import UsageError
-from siggen.record.simulation import simulate
+from tests.simulated import simulate
 
 mpl.use("Agg")
 
@@ -52,16 +52,25 @@ def test_the_same_arguments_give_the_same_record_and_other_numbers_others(gearbo
 
 
 def test_a_gearbox_that_is_drawn_from_a_set_gives_the_records_of_the_set() -> None:
-    config = siggen.load_config("quickstart", ["duration_s=0.1"])
+    """All of them, at each of its points, repeats included; one alone by the set's columns."""
+    points = [{"speed_hz": speed_hz, "torque_nm": 40.0} for speed_hz in (20.0, 30.0)]
+    raw = {"extends": "quickstart", "duration_s": 0.1, "operating_points": points, "repeats": 2}
+    config = siggen.load_config(raw)
     third = siggen.draw(config, 3)
-    index = 3 * config.records_per_specimen + config.state_names.index("severe")
-    (of_set,) = simulate(config, [index])
-    assert isinstance(of_set, SimulatedRecord)
-    own = siggen.run(third, "severe")
-    assert all(np.array_equal(own.channels[name], values) for name, values in of_set.channels.items())
-    assert own.labels == of_set.labels
+    severe = [case for case in third.cases if case.state == "severe"]
+    assert len(third.cases) == config.records_per_specimen
+    ids = [3 * config.records_per_specimen + third.cases.index(case) for case in severe]
+    for own, of_set in zip(siggen.runs(third, severe), simulate(config, ids), strict=True):
+        assert isinstance(of_set, SimulatedRecord)
+        assert own.labels == of_set.labels
+        for name, values in of_set.channels.items():
+            assert own.channels[name].astype(np.float32).tobytes() == values.tobytes()
+    place = of_set.planned
+    alone = siggen.run(third, "severe", point=place.operating_point_id, repeat=place.repeat)
+    assert (place.operating_point_id, place.repeat) == (1, 1)
+    assert all(np.array_equal(alone.channels[name], values) for name, values in own.channels.items())
     assert [one.name for one in third.states] == list(config.state_names)
-    assert own.speed_hz == third.points[0].speed_hz
+    assert (own.speed_hz, own.torque_nm) == (third.points[1].speed_hz, third.points[1].torque_nm)
 
 
 def test_runs_give_what_run_gives_one_by_one(gearbox: siggen.Gearbox) -> None:
@@ -148,6 +157,7 @@ BAD_RUNS = [
     ({"fs_hz": 100}, "fs_hz: received 100; allowed: 1991 to 1e7 Hz, for the first mesh line"),
     ({"truth": ["mesh_force"]}, "truth.0: received 'mesh_force'; allowed: all, or .*nearest: mesh_force_n"),
     ({"truth": 3}, "truth: received 3; allowed: names such as mesh_force_n, or all"),
+    ({"speed_hz": None, "torque_nm": None, "point": 1}, "speed_hz: received nothing; allowed: a number in Hz"),
     ({"repeat": -1}, "repeat: received -1; allowed: 0, 1, 2"),
     ({"speed_hz": -25}, "speed_hz: received -25; allowed: above 0 up to 1000"),
     ({"speed_hz": "25"}, "speed_hz: received '25'; allowed: above 0 up to 1000"),

@@ -73,10 +73,9 @@ def record(pair: str, folder: Path) -> None:
     }
     spall = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 0.5 * module_mm, "face_share": 1.0}
     damaged = {**raw, "states": [{"name": "spalled", "severity": "severe", "damage": spall}]}
-    records = [
-        *siggen.simulate(siggen.load_config(raw), [4, 0, 1, 2, 3]),  # the last one is the oddest
-        siggen.simulate(siggen.load_config(damaged), [1])[0],
-    ]
+    sound, worn = (siggen.draw(siggen.load_config(one)) for one in (raw, damaged))
+    records = [siggen.run(sound, repeat=k) for k in (4, 0, 1, 2, 3)]  # the last one is the oddest
+    records.append(siggen.run(worn, "spalled", repeat=1))
     folder.mkdir()
     for month, found in zip(MONTHS, records, strict=True):
         write_recording(found, folder / f"{month}.csv", tacho=tacho)

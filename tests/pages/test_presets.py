@@ -20,8 +20,8 @@ from siggen.config.inheritance import inherited
 from siggen.config.yaml_source import read_yaml
 from siggen.planning.gearbox import pair_of
 from siggen.planning.plan import SPLITS, split_of
-from siggen.record.simulation import simulate
 from siggen.sets.verification import verify
+from tests.simulated import simulate
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 PRESETS = ("bench", "industrial")

@@ -22,7 +22,7 @@ from siggen.record.background_course import course_at
 from siggen.record.bearing_noise import velocity_density
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.rubbing import RubbingForce, force_spectrum
-from siggen.record.simulation import simulate, simulate_specimen
+from siggen.record.simulation import simulate_specimen
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import resonance_response
 from siggen.sensing.spectral_filter import frequencies
@@ -30,6 +30,7 @@ from siggen.specimen.background import ChannelWay, SpecimenBackground, drawn_bac
 from siggen.specimen.background_numbers import BaseNumbers, BearingNumbers, RubbingNumbers
 from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 from tests.specimen.fixed_numbers import fix
 
 ON_LID = {"name": "lid", "place": "lid", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}

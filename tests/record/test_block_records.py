@@ -15,13 +15,14 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import MOTION
 from siggen.specimen.background_numbers import BaseNumbers, BurstNumbers
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 from tests.specimen.fixed_numbers import fix
 
 LID = {"name": "lid", "place": "lid", "bits": None, "range_m_s2": 1e6, "cross_axis": 0.04, "high_pass_hz": 2.0,

@@ -12,8 +12,8 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
-from siggen.record.simulation import simulate
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 SPREAD = {"kind": "uniform", "low": 0.05, "high": 0.10}
 HOT = {"name": "hot", "fault": "lubrication", "severity": "moderate"}

@@ -11,8 +11,9 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.record.simulation import damage_rows, simulate
+from siggen.record.simulation import damage_rows
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 SIZE = {"face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.3}
 PITS = {

@@ -17,10 +17,11 @@ from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.internals import internals_table, stored_quantities
 from siggen.record.quantities import internal_quantities
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import structure
+from tests.simulated import simulate
 
 SHORT = ["duration_s=0.05", "specimens=2"]
 

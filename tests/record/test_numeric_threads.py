@@ -12,9 +12,10 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.sensing.test_measurement import measured
+from tests.simulated import simulate
 
 THREADS = (1, 3, 16)
 """Linear algebra libraries split work by their number, also beyond the cores; for two most results still agree."""

@@ -9,7 +9,7 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.record.simulation import simulate
+from tests.simulated import simulate
 
 OWN = "{speed_hz: 32, torque_nm: {kind: uniform, low: 50, high: 60}}"
 HEAVIER = "{speed_hz: 64, torque_nm: 180}"

@@ -8,7 +8,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import read_yaml
-from siggen.record.simulation import simulate
+from tests.simulated import simulate
 
 # Perfect gears on stiff shafts in the middle of the ranges of paper_b: only the damage is beside the mesh lines.
 MIDDLE = [

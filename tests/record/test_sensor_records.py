@@ -13,11 +13,12 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.measured_path import INPUTS
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 LID = {"name": "lid", "place": "lid", "axes": ["vertical", "axial"], "bits": None, "range_m_s2": 1e6}
 UP = {**LID, "axes": ["vertical"]}

@@ -13,6 +13,7 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.record import simulation
 from tests.config.planets import planets
+from tests.simulated import simulate
 from tests.specimen.test_two_stages import WITHOUT_FRICTION, two_stages
 
 EARLIER_S = 0.3
@@ -32,7 +33,7 @@ def planetary() -> dict[str, Any]:
 
 
 def signals(config: Config) -> dict[str, Any]:
-    (record,) = simulation.simulate(config, [0])
+    (record,) = simulate(config, [0])
     assert isinstance(record, SimulatedRecord)
     return dict(record.channels)
 

@@ -12,9 +12,10 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.faults.registry import BY_WORD
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import damage_rows, simulate
+from siggen.record.simulation import damage_rows
 from siggen.record.specimen_state import specimen_state
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 PIT = {"semi_axis_face_mm": 0.6, "semi_axis_profile_mm": 0.4, "depth_mm": 0.3}
 EXAMPLES: dict[str, dict[str, Any]] = {

@@ -11,7 +11,8 @@ from siggen.config import Config
 from siggen.planning.gearbox import pair_config, pair_of
 from siggen.record.damage_rows import damage_rows
 from siggen.record.internals import internals_table
-from siggen.record.simulation import simulate, simulate_specimen
+from siggen.record.simulation import simulate_specimen
+from tests.simulated import simulate
 
 SMALL = ["specimens=2", "duration_s=0.1", "dynamics.input_coupling.damping_nm_s_per_rad=2.0"]
 

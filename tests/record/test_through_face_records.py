@@ -11,7 +11,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.record.simulation import simulate
+from tests.simulated import simulate
 
 SPALL = {
     "kind": "spall", "gear": "pinion", "teeth": 1, "centre_height_mm": "pitch",

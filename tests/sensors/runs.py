@@ -10,8 +10,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.record.simulation import simulate
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 GEAR_RATIO = 18 / 47
 

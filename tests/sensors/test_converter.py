@@ -12,10 +12,10 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.planning.state_config import state_config
-from siggen.record.simulation import simulate
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.converter import MOST_BITS, bits_of_noise
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 FLOOR = {"kind": "loguniform", "low": 0.003, "high": 0.01}
 STEP = 2.0**-11

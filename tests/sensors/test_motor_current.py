@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from siggen.columns.record import RecordFailure
-from siggen.record.simulation import simulate
 from tests.sensors.runs import line, loaded, record
 from tests.sensors.test_encoder import OFF, PERFECT
+from tests.simulated import simulate
 
 CLAMP = {"kind": "motor_current", "name": "clamp", "rated_torque_nm": 80.0, "bits": None}
 MOTOR = {**PERFECT, "name": "motor", "place": "motor"}

@@ -13,10 +13,10 @@ from siggen.columns.record import SimulatedRecord, channels
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import simulate
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.staged_structure import axis_places_m
 from tests.config.staged import SLOW, staged
+from tests.simulated import simulate
 
 TORQUE_NM = 20.0
 DIRECTION_DEG = 35.0

@@ -12,7 +12,7 @@ from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.columns.record import RecordFailure
 from siggen.errors import EXIT_RECORDS_FAILED, ConfigError
-from siggen.record.simulation import simulate
+from tests.simulated import simulate
 
 CONFIG = "tests/configs/casing.yaml"
 SHORT = ["specimens=1", "duration_s=0.02", "operating_points=[{speed_hz: 30.0, torque_nm: 20.0}]"]

@@ -7,9 +7,9 @@ import numpy as np
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.record.internals import internals_table
-from siggen.record.simulation import simulate
 from siggen.views.natural_modes import specimen_modes
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 
 def test_the_default_gearbox_shakes_its_casing_without_losing_contact() -> None:

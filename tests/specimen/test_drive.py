@@ -12,9 +12,10 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import simulate, simulate_specimen
+from siggen.record.simulation import simulate_specimen
 from siggen.specimen.drive import RecordDrive, drawn_variation, record_drive
 from siggen.specimen.structure import structure
+from tests.simulated import simulate
 
 SMALL = ["specimens=2", "duration_s=0.2", "dynamics.input_coupling.damping_nm_s_per_rad=2.0", "mesh_harmonics=3"]
 VARYING = [

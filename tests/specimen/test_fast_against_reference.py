@@ -15,12 +15,13 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, by_reference
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import simulate, start_angle_rad
+from siggen.record.simulation import start_angle_rad
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.sets.precision import record_error, reference_config, unrounded
 from siggen.specimen.drive import record_drive
 from siggen.specimen.motion import specimen_motion
 from siggen.specimen.step_choice import stepped_motion
+from tests.simulated import simulate
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 PRESETS = ("bench", "confusers", "families", "paper_b", "quickstart", "two_stage")

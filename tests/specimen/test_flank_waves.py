@@ -11,10 +11,10 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import simulate
 from siggen.specimen import flank_waves
 from siggen.specimen.flank_waves import CLAMPING, specimen_waves
 from siggen.specimen.gears import gear_pair
+from tests.simulated import simulate
 
 
 class Fixed(NamedTuple):

@@ -35,7 +35,7 @@ def test_what_the_model_does_not_give_is_refused_by_the_name_of_the_sensor(monke
     monkeypatch.setattr(Accelerometer, "shows", shows)
     config = siggen.load_config("tests/configs/ideal.yaml")
     with pytest.raises(ValueError, match=f"sensor {config.sensors[0].name}: shows angle pinion"):
-        siggen.simulate(config, [0])
+        siggen.run(siggen.draw(config))
 
 
 def test_nothing_settles_where_bearings_are_seats_and_no_path_was_measured() -> None:

@@ -13,12 +13,12 @@ from siggen.config import Config
 from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
 from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
-from siggen.record.simulation import simulate
 from siggen.specimen.bearing_spalls import mean_force_n
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 from siggen.specimen.structure import specimen_bearings, structure
 from tests.config.minimal import config, minimal
+from tests.simulated import simulate
 
 CLEARANCE = "dynamics.pinion.bearing.clearance_um"
 STIFFNESS = "dynamics.gear.bearing_stiffness_y_n_per_m"

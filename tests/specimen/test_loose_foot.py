@@ -15,9 +15,9 @@ from siggen.dynamics.structure.drivetrain import Drivetrain
 from siggen.dynamics.structure.gear_stage import Casing
 from siggen.dynamics.structure.makers import GROUND, rigid_housing
 from siggen.dynamics.structure.structure import matrices
-from siggen.record.simulation import simulate
 from tests.config.minimal import minimal
 from tests.dynamics.casing_stage import BOLT_PLACES, make_casing
+from tests.simulated import simulate
 
 SHEAR, AXIAL, ARM, MASS, INERTIA = 8e7, 1.5e8, 0.09, 20.0, 0.25
 

@@ -19,12 +19,13 @@ from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.measured_path import INPUTS
 from tests.config.mill import mill
 from tests.config.minimal import minimal
 from tests.sensing.resonances import accelerance
+from tests.simulated import simulate
 
 SENSOR = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 

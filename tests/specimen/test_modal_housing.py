@@ -19,10 +19,11 @@ from siggen.dataset.card_making import making
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import record_response, simulate
+from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.measured_path import INPUTS
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 SHAPES = {"pinion_bearing/vertical": (0.2, 0.10), "pinion_bearing/horizontal": (0.05, -0.15),

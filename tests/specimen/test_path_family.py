@@ -13,9 +13,9 @@ from siggen.cli.app import app
 from siggen.config import Config, parse, parse_yaml, yaml_text
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import simulate
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import minimal
+from tests.simulated import simulate
 
 FLAT = np.arange(0.0, 12_801.0, 25.0)
 

@@ -15,13 +15,14 @@ from siggen.dynamics.time.response import SampleGrid, Wanted, response_of
 from siggen.dynamics.time.transient import DECAY_TIMES, TRANSIENT_CAP_S, forgotten
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import simulate, start_angle_rad
+from siggen.record.simulation import start_angle_rad
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen import step_choice
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.integration import rule_grid
 from siggen.specimen.motion import specimen_motion
 from siggen.specimen.step_choice import MARGIN, MOST_STEPS, START_SHARE, Stepped, refined_steps, stepped_motion
+from tests.simulated import simulate
 
 QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
 FINE_STEPS, RECORD = 64, 3

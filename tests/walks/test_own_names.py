@@ -22,12 +22,12 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import yaml_text
 from siggen.errors import UsageError
-from siggen.record.simulation import simulate
 from siggen.views.face_pressure import face_pressure
 from tests.command import command
 from tests.config.mill import mill
 from tests.config.staged import SLOW, SPALL, staged
 from tests.diagnostics.explore.unpacked import held
+from tests.simulated import simulate
 
 COMMON: dict[str, Any] = {
     "specimens": 4, "fs_hz": 12_800.0, "duration_s": 0.3, "manufacture": {"accuracy_class": 6, "flank_waves": "on"},

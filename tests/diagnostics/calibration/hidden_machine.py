@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 import siggen
-from siggen.columns.record import RecordFailure
 
 FS_HZ = 25_600.0
 TEETH = (18, 47)
@@ -32,7 +31,7 @@ def tacho_waveform(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
     return np.asarray(5.0 * np.clip(0.5 + since * FS_HZ / 4.0, 0.0, 1.0) * (since < 0.003))
 
 
-def write_recording(record: Any, file: Path, *, tacho: bool = True) -> Path:
+def write_recording(record: siggen.Record, file: Path, *, tacho: bool = True) -> Path:
     """Write channels as text, a tacho's waveform beside them if there is one."""
     signals = {f"ch{k + 1} [m/s2]": signal for k, signal in enumerate(record.channels.values())}
     if tacho:
@@ -46,8 +45,8 @@ def write_recording(record: Any, file: Path, *, tacho: bool = True) -> Path:
 
 def hidden_recordings(folder: Path, **changes: Any) -> list[Path]:
     """Write four healthy recordings of the hidden machine, with these sections changed; return the files."""
-    config = siggen.load_config({**HIDDEN, **changes})
-    records = siggen.simulate(config, range(4))
+    gearbox = siggen.draw(siggen.load_config({**HIDDEN, **changes}))
+    records = siggen.runs(gearbox, gearbox.cases)
     return [write_recording(record, folder / f"run{k}.csv") for k, record in enumerate(records)]
 
 
@@ -58,6 +57,5 @@ def channel_data(file: Path) -> np.ndarray:
 
 def hidden_record() -> tuple[dict[str, np.ndarray], np.ndarray]:
     """Return channels and pulse times of the hidden machine's first recording."""
-    record = siggen.simulate(siggen.load_config(HIDDEN), [0])[0]
-    assert not isinstance(record, RecordFailure)
-    return {name: signal.astype(np.float64) for name, signal in record.channels.items()}, np.asarray(record.tacho_s)
+    record = siggen.run(siggen.draw(siggen.load_config(HIDDEN)))
+    return dict(record.channels), record.tacho_s

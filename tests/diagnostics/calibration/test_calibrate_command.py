@@ -32,8 +32,8 @@ def band_levels_db(signal: np.ndarray) -> np.ndarray:
 def distance_db(source: Path, held_out: list[Path]) -> np.ndarray:
     """Return the rms difference in band level between the median of some gearboxes and held-out recordings, (2,)."""
     config = siggen.load_config(source, ["states=[{name: healthy}]", "specimens=8"])
-    records = [siggen.simulate(config, [k])[0] for k in range(GEARBOXES)]
-    simulated = [[band_levels_db(x.astype(float)) for x in record.channels.values()] for record in records]
+    records = [siggen.run(siggen.draw(config, k)) for k in range(GEARBOXES)]
+    simulated = [[band_levels_db(x) for x in record.channels.values()] for record in records]
     real = [[band_levels_db(column) for column in channel_data(file).T] for file in held_out]
     return np.sqrt(np.square(np.median(simulated, axis=0) - np.mean(real, axis=0)).mean(axis=-1))
 
@@ -107,8 +107,8 @@ def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
 
 def test_every_gearbox_of_the_set_draws_its_own_path(calibrated: tuple[Path, Path, str]) -> None:
     config = siggen.load_config(calibrated[1], ["states=[{name: healthy}]", "specimens=8", "duration_s=1.0"])
-    records = [siggen.simulate(config, [k])[0] for k in range(3)]
-    numbers = {record.labels["path_number_sensor_1_vertical"] for record in records}  # type: ignore[union-attr]
+    records = [siggen.run(siggen.draw(config, k)) for k in range(3)]
+    numbers = {record.labels["path_number_sensor_1_vertical"] for record in records}
     assert len(numbers) > 1
 
 

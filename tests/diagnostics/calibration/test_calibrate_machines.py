@@ -77,9 +77,9 @@ def run(*arguments: object) -> str:
 def recorded(folder: Path, hidden: dict[str, Any]) -> None:
     """Write four recordings of one gearbox."""
     (folder / "hidden.yaml").write_text(yaml.safe_dump({**hidden, "seed": 4711, "specimens": 1, "repeats": 4}))
-    for k, record in enumerate(siggen.simulate(siggen.load_config(folder / "hidden.yaml"), range(4))):
-        signals = {name: signal.astype(float) for name, signal in record.channels.items()}  # type: ignore[union-attr]
-        np.savez(folder / f"run{k}.npz", **signals, tacho_s=record.tacho_s)  # type: ignore[union-attr]
+    gearbox = siggen.draw(siggen.load_config(folder / "hidden.yaml"))
+    for k, record in enumerate(siggen.runs(gearbox, gearbox.cases)):
+        np.savez(folder / f"run{k}.npz", **record.channels, tacho_s=record.tacho_s)
 
 
 @pytest.fixture(scope="module")
