@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from diagnostics.recordings.recorded_columns import Columns, numbered, refuse_twice
+from diagnostics.recordings.recorded_columns import Columns, as_numbers, numbered, refuse_twice
 from diagnostics.recordings.recorder_files import (
     INCREMENTS,
     RATES,
@@ -48,12 +48,13 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
     from pyarrow import parquet
 
     try:
-        schema = parquet.read_schema(path)
-        refuse_twice(path, schema.names)
-        audio = [field.name for field in schema if _is_audio(field.type)]
-        lists = [field.name for field in schema if _is_list(field.type)]
-        numbers = [field.name for field in schema if _is_number(field.type) or pa.types.is_timestamp(field.type)]
-        table = parquet.read_table(path, columns=[*audio, *lists] or numbers, use_threads=False)
+        with parquet.ParquetFile(path) as file:
+            schema = file.schema_arrow
+            refuse_twice(path, schema.names)
+            audio = [field.name for field in schema if _is_audio(field.type)]
+            lists = [field.name for field in schema if _is_list(field.type)]
+            numbers = [field.name for field in schema if _is_number(field.type) or pa.types.is_timestamp(field.type)]
+            table = file.read([*audio, *lists] or numbers, use_threads=False)
     except (OSError, pa.ArrowInvalid) as error:
         raise UsageError(f"{path}: cannot be read as Parquet ({error})") from error
     about: Any = {"simulated": IDENTITY in (schema.metadata or {}), "layout": {"format": "Parquet"}}
@@ -122,14 +123,13 @@ def _is_list(kind: Any) -> bool:
 def _numbers(array: Any) -> np.ndarray:
     """Return a column as numbers; times of a calendar in seconds from the first one."""
     import pyarrow as pa
+    import pyarrow.compute as pc
 
     if pa.types.is_timestamp(array.type):
-        ticks = np.asarray(array.cast(pa.int64()).to_numpy(zero_copy_only=False))
+        ticks = array.cast(pa.int64())
         unit = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[array.type.unit]
-        return np.asarray((ticks - ticks[0]) * unit, dtype=np.float64)
-    if pa.types.is_boolean(array.type):
-        array = array.cast(pa.int8())
-    return np.asarray(array.to_numpy(zero_copy_only=False), dtype=np.float64)
+        return as_numbers(pc.subtract(ticks, ticks[0])) * unit
+    return as_numbers(array)
 
 
 def read_mat(path: Path) -> Columns:

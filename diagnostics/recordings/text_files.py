@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from diagnostics.recordings.recorded_columns import Columns, refuse_many
+from diagnostics.recordings.recorded_columns import Columns, as_numbers, refuse_many
 from diagnostics.recordings.units import known_unit
 from siggen.errors import UsageError, counted
 
@@ -381,7 +381,7 @@ def _values(
     stamped = set()
     for k, kind in enumerate(block.kinds):
         if kind == "number":
-            found.append(np.asarray(table.column(k).to_numpy(), dtype=np.float64))
+            found.append(as_numbers(table.column(k).combine_chunks()))
         elif kind == "stamp":
             found.append(stamps_s(path, names[k] or str(k + 1), table.column(k).to_pylist(), first))
             stamped.add(names[k] or str(k + 1))

@@ -55,12 +55,15 @@ UNDER_A_LIMIT = """
 import resource, sys
 from pathlib import Path
 from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.file_columns import file_columns
 resource.setrlimit(resource.RLIMIT_AS, (4_000_000 << 10,) * 2)
 print(*read_columns(Path(sys.argv[1])).values)
+file_columns(Path(sys.argv[1]))
+assert "pandas" not in sys.modules
 """
 
 
-def test_a_good_file_is_read_below_a_memory_limit_of_the_user(tmp_path: Path) -> None:
+def test_a_good_file_is_read_below_a_memory_limit_of_the_user_and_without_pandas(tmp_path: Path) -> None:
     path = recordings(tmp_path)[0]
     done = subprocess.run(
         [sys.executable, "-P", "-c", UNDER_A_LIMIT, path], capture_output=True, text=True, timeout=300, check=False
