@@ -13,6 +13,7 @@ PACKAGE = Path(__file__).resolve().parent
 CHARACTERS = 16
 
 
+@cache
 def installed_version(distribution: str = DISTRIBUTION) -> str:
     """Return the version of an installed distribution, of siggen itself by default, or "not installed"."""
     try:

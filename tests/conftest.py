@@ -27,6 +27,14 @@ def one_worker() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True, scope="session")
+def nothing_forced_to_the_disk() -> Iterator[None]:
+    """Wait for no disk, hundreds of times: no test cuts the power, and files are as whole without."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("os.fsync", lambda descriptor: None)
+        yield
+
+
 @pytest.fixture(autouse=True)
 def nothing_said_yet(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each test says whole what it takes of a file: a process says the same table only once."""

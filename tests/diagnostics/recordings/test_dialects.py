@@ -25,9 +25,9 @@ KINDS = [*dialects.texts(), *dialects.arrays()]
 CUTS = 16
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture(autouse=True, scope="module")
 def readers_that_fail_to_close() -> Iterator[None]:
-    """Collect what libraries leave of a damaged file here, where its complaints are ignored, not in a later test."""
+    """Collect what libraries leave of damaged files at the end of the last test here, which ignores its complaints."""
     yield
     gc.collect()
 
