@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-SPEED, TORQUE = {"kind": "uniform", "low": 32.5, "high": 37.0}, {"kind": "uniform", "low": 30.0, "high": 60.0}
+SPEED, TORQUE = [32.5, 37.0], [30.0, 60.0]
 HEALTHY = ({"name": "healthy"}, {"name": "healthy_again"})
 MODERATE = {"severity": "moderate", "grows_from": "none"}
 SPALL = {
@@ -20,7 +20,7 @@ SPALL = {
     "centre_height_mm": "below_pitch",
     "profile_length_mm": 0.3,
     "face_share": 1.0,
-    "skew_mm_per_10mm": {"kind": "uniform", "low": -0.054, "high": 0.054},
+    "skew_mm_per_10mm": [-0.054, 0.054],
 }
 OTHER_FAULTS = (
     *HEALTHY,
@@ -30,19 +30,19 @@ OTHER_FAULTS = (
         "damage": {
             "kind": "crack",
             "gear": "pinion",
-            "depth_share": {"kind": "uniform", "low": 0.15, "high": 0.35},
-            "angle_deg": {"kind": "uniform", "low": 45.0, "high": 65.0},
+            "depth_share": [0.15, 0.35],
+            "angle_deg": [45.0, 65.0],
         },
     },
     {
         "name": "chip",
         **MODERATE,
-        "damage": {"kind": "chip", "gear": "pinion", "height_mm": {"kind": "uniform", "low": 0.3, "high": 1.0}},
+        "damage": {"kind": "chip", "gear": "pinion", "height_mm": [0.3, 1.0]},
     },
     {
         "name": "wear",
         **MODERATE,
-        "damage": {"kind": "wear", "depth_um": {"kind": "uniform", "low": 10.0, "high": 30.0}},
+        "damage": {"kind": "wear", "depth_um": [10.0, 30.0]},
     },
     {
         "name": "bearing",
@@ -50,7 +50,7 @@ OTHER_FAULTS = (
         "damage": {
             "kind": "bearing_spall",
             "element": "outer",
-            "length_mm": {"kind": "uniform", "low": 1.0, "high": 3.0},
+            "length_mm": [1.0, 3.0],
         },
     },
     {"name": "sham", "sham": True, "damage": SPALL},
@@ -59,16 +59,12 @@ OTHER_FAULTS = (
 
 TEETH = ((20, 51), (22, 45), (23, 37), (24, 61))
 PAIRS = [{"teeth": list(teeth), "module_mm": 3.0, "face_width_mm": 20.0} for teeth in TEETH]
-SHAFTS = {"shafts": {"pinion": {"diameter_mm": {"kind": "uniform", "low": 30.0, "high": 38.0}}}}
+SHAFTS = {"shafts": {"pinion": {"diameter_mm": [30.0, 38.0]}}}
 """Diameters for 18 teeth, which grow with the pair: 45 mm would not fit the root circles of all."""
 CONDITIONS: Mapping[str, Mapping[str, Any]] = {
     "same": {},
-    "other_speed": {
-        "operating_points": [{"speed_hz": {"kind": "uniform", "low": 25.0, "high": 29.0}, "torque_nm": TORQUE}]
-    },
-    "other_torque": {
-        "operating_points": [{"speed_hz": SPEED, "torque_nm": {"kind": "uniform", "low": 12.0, "high": 20.0}}]
-    },
+    "other_speed": {"operating_points": [{"speed_hz": [25.0, 29.0], "torque_nm": TORQUE}]},
+    "other_torque": {"operating_points": [{"speed_hz": SPEED, "torque_nm": [12.0, 20.0]}]},
     "new_pair": {"gears": {"pairs": PAIRS}, "dynamics": SHAFTS},
     "other_place": {"places": {"first": "wall", "second": "pinion_end"}},
     "other_fault": {"states": OTHER_FAULTS},
@@ -101,7 +97,7 @@ def changed(config: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, 
 
 
 def _merged(section: Any, value: Any) -> Any:
-    """Return a section with the keys of a mapping, or the value itself; a distribution is a value."""
+    """Return a section with the keys of a mapping, or the value itself; a section of another kind is a value."""
     if not isinstance(value, Mapping) or not isinstance(section, Mapping) or "kind" in value:
         return value
     return {**section, **{name: _merged(section.get(name), own) for name, own in value.items()}}

@@ -130,7 +130,7 @@ def _sensor(channel: ChannelFit, called: tuple[str, str], folder: str, depth_key
     level = noise.level_db
     yield f"    noise_spectrum:             # {level.value:.1f} dB re 1 (m/s2)2 in all, {_interval(level)}"
     yield f"      file: {folder}/noise_{name}.csv"
-    yield f"      factor: {_range(1.0 / ratio, ratio, 'loguniform')}"
+    yield f"      factor: {_range(1.0 / ratio, ratio, log=True)}"
     depths = dict(zip(depth_keys, noise.depths, strict=True)) | {"level_std": noise.level_std}
     inner = ", ".join(f"{key}: {_depth(value)}" for key, value in depths.items())
     yield f"      modulation: {{{inner}}}"
@@ -140,7 +140,7 @@ def _sensor(channel: ChannelFit, called: tuple[str, str], folder: str, depth_key
         stage = f", {len(channel.stage)} of the second stage" if channel.stage else ""
         yield f"    lines:                      # {len(channel.own)} beside the mesh{stage}"
         yield f"      file: {folder}/lines_{name}.csv"
-        yield f"      factor: {_range(1.0 / usual, usual, 'loguniform')}    # the widest differs by {widest:.2g}"
+        yield f"      factor: {_range(1.0 / usual, usual, log=True)}    # the widest differs by {widest:.2g}"
 
 
 def calibration_facts(found: Calibration) -> dict[str, Any]:
@@ -288,13 +288,11 @@ def _set_name(out: Path) -> str:
 
 
 def _number(value: Any) -> str:
-    if not isinstance(value, dict):
-        return f"{value:.6g}"
-    inner = ", ".join(
-        f"{key}: {item if isinstance(item, (str, list)) else f'{item:.6g}'}" for key, item in value.items()
-    )
-    return f"{{{inner}}}"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_number(item)}' for key, item in value.items())}}}"
+    return f"[{', '.join(map(_number, value))}]" if isinstance(value, (list, tuple)) else f"{value:.6g}"
 
 
-def _range(low: float, high: float, kind: str = "uniform") -> str:
-    return f"{{kind: {kind}, low: {low:.4g}, high: {high:.4g}}}"
+def _range(low: float, high: float, log: bool = False) -> str:
+    text = f"[{low:.4g}, {high:.4g}]"
+    return f"{{log: {text}}}" if log else text

@@ -281,20 +281,16 @@ def path_gains(paths: int, recordings: int, rng: np.random.Generator) -> np.ndar
     return np.asarray(10.0 ** (rng.uniform(-UNKNOWN_SPREAD_DB, UNKNOWN_SPREAD_DB, paths) / 20.0))
 
 
-def _speeds(blocks: HealthyBlocks) -> dict[str, Any] | float:
+def _speeds(blocks: HealthyBlocks) -> list[float]:
     speeds = [block.speed_hz for block in blocks.blocks]
-    return {
-        "kind": "uniform",
-        "low": min(speeds) * (1.0 - SPEED_MARGIN),
-        "high": max(speeds) * (1.0 + SPEED_MARGIN),
-    }
+    return [min(speeds) * (1.0 - SPEED_MARGIN), max(speeds) * (1.0 + SPEED_MARGIN)]
 
 
 def _torque(config: dict[str, Any], said: tuple[float, float] | None) -> Any:
     """Return the torque of the recordings as said, or the first of the rig."""
     if said is None:
         return config["operating_points"][0]["torque_nm"]
-    return said[0] if said[0] == said[1] else {"kind": "uniform", "low": said[0], "high": said[1]}
+    return said[0] if said[0] == said[1] else list(said)
 
 
 def _random_rms(blocks: HealthyBlocks) -> tuple[float, float]:

@@ -25,6 +25,7 @@ import pyarrow as pa
 import siggen
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
+from diagnostics.calibration.path_draws import number_limits
 from diagnostics.recordings.configured_train import config_train
 from diagnostics.records.gear_train import train_labels
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
@@ -183,8 +184,7 @@ def write_injected(
 def _complete(rows: Sequence[dict[str, Any]], config: Any) -> None:
     """Add what rows of one set have in common: numbers of the states, teeth, the torque that is assumed."""
     torque = config.canonical()["operating_points"][0]["torque_nm"]
-    drawn = torque.get("values") or (torque["low"], torque["high"]) if isinstance(torque, dict) else (torque,)
-    torque_nm = 0.5 * (min(drawn) + max(drawn))
+    torque_nm = 0.5 * sum(number_limits(torque))
     states = dict.fromkeys(["healthy", *(row["state"] for row in rows)])
     numbers = {state: number for number, state in enumerate(states)}
     teeth = {config.names.column(name): count for name, count in train_labels(config_train(config)).items()}

@@ -50,7 +50,7 @@ def housing_mass_kg(config: Mapping[str, Any]) -> Any:
     teeth = gears["pinion"]["teeth"] + gears["gear"]["teeth"]
     centre_mm = gears.get("centre_distance_mm") or 0.5 * number_limits(gears["module_mm"])[1] * teeth
     size = (number_limits(centre_mm)[1] / BENCH_CENTRE_MM) ** 3
-    return {"low": BENCH_HOUSING_KG[0] * size, "high": BENCH_HOUSING_KG[1] * size}
+    return [BENCH_HOUSING_KG[0] * size, BENCH_HOUSING_KG[1] * size]
 
 
 def path_level_doubt(mass_kg: Any, grid_hz: np.ndarray, accelerance: np.ndarray) -> str:
@@ -58,7 +58,7 @@ def path_level_doubt(mass_kg: Any, grid_hz: np.ndarray, accelerance: np.ndarray)
 
     Parameters
     ----------
-    mass_kg : float or mapping
+    mass_kg : float, list or mapping
         Of the housing, as in a configuration.
     grid_hz : (k,) float64
     accelerance : (paths, k) complex128
@@ -80,11 +80,9 @@ def path_level_doubt(mass_kg: Any, grid_hz: np.ndarray, accelerance: np.ndarray)
 
 def number_limits(number: Any) -> tuple[float, float]:
     """Return the bounds of a number of a configuration, which may be drawn."""
-    if not isinstance(number, dict):
-        return float(number), float(number)
-    values = number.get("values") or [number[name] for name in ("low", "high") if number.get(name) is not None]
-    values = values or [number["mean"]]
-    return float(min(values)), float(max(values))
+    if isinstance(number, dict):
+        number = number.get("within") or next(iter(number.values()))
+    return float(np.min(number)), float(np.max(number))
 
 
 def family_size(wanted: int, sensors: int, forces: int) -> int:

@@ -56,8 +56,8 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
         "background": {"bearings": {}},
         "operating_points": [
             {
-                "speed_hz": {"kind": "uniform", "low": 33.0, "high": 36.0},
-                "torque_nm": {"kind": "uniform", "low": 25.0, "high": 45.0},
+                "speed_hz": [33.0, 36.0],
+                "torque_nm": [25.0, 45.0],
             }
         ],
         "dynamics": {
@@ -69,7 +69,7 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
         "manufacture": {"accuracy_class": int(rng.integers(4, 9)), "tolerance_share": float(rng.uniform(0.3, 0.6))},
         "variation": {"speed": {"random_rms": log(1e-4, 8e-4)}},
         "housing": {
-            "damping_ratio": {"kind": "uniform", "low": 0.015, "high": 0.05},
+            "damping_ratio": [0.015, 0.05],
             "wall_mm": wall_mm,
         },
         "sensors": [

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-DISTRIBUTIONS = ("Uniform", "LogUniform", "Normal", "Choice")
+NUMBERS = ("Uniform", "LogUniform", "Normal", "Choice", "Each")
 
 
 @dataclass(frozen=True)
@@ -67,5 +67,5 @@ class Schema:
 
 
 def is_number_part(option: Mapping[str, Any]) -> bool:
-    """Tell whether an alternative is one of the distributions."""
-    return option.get("$ref", "").rsplit("/", 1)[-1] in DISTRIBUTIONS
+    """Tell whether an alternative is one of the ranges of a number, or a number for each of several things."""
+    return option.get("$ref", "").rsplit("/", 1)[-1] in NUMBERS

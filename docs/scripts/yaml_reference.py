@@ -11,10 +11,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from schema_keys import DISTRIBUTIONS, Key, Schema, is_number_part
+from schema_keys import Key, Schema, is_number_part
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
+from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform, is_written_number, written_text
 
 SECTION_DEFAULT = "by its keys"
 SECTION_KIND = "section (kind: "
@@ -24,8 +25,8 @@ HEAD = """# Keys of the YAML file
 This page is printed by `make reference` from `siggen schema`. Begin with
 [the twenty keys that matter](twenty_keys.md).
 
-* **Number**, or a range alone, may be a constant, or a distribution that siggen draws once per gearbox
-  ([below](#distributions)).
+* **Number**, or a limit alone, may be a constant, or a range such as `[1, 2]` from which siggen draws once per gearbox
+  ([below](#ranges)).
 * A key of `pinion` stands for that of `gear` too, where the gear has no line of its own.
 * **extends** names a preset or another file. Mappings are merged key by key, all else is replaced. The set's own
   `config.yaml` holds the result.
@@ -35,10 +36,11 @@ This page is printed by `make reference` from `siggen schema`. Begin with
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
   `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
 """
-DISTRIBUTION_TEXT = """## Distributions
+RANGES_TEXT = """## Ranges
 
-Any Number may be written as one of these mappings. Every gearbox draws its own value, except where a key says
-otherwise.
+Any Number may be written in one of these forms. Every gearbox draws its own value, except where a key says otherwise.
+Two numbers in a list are always a range. `{each: [1.0, [0.9, 1.1]]}` gives a number or range for each of several
+things, where a key says so; a place `[x, y]` has a number or range for each of its two.
 """
 
 
@@ -104,6 +106,8 @@ def listing(schema: Schema, value: Mapping[str, Any]) -> str:
     """Return what a list may hold."""
     if "prefixItems" in value:
         return f"list of {len(value['prefixItems'])} numbers"
+    if value.get("minItems") == value.get("maxItems") is not None:
+        return f"list of {value['minItems']}, each a {allowed(schema, value['items'])}"
     least = f" ≥{value['minItems']}" if value.get("minItems") else ""
     return f"list{least} of {allowed(schema, value['items'])}"
 
@@ -116,17 +120,10 @@ def default(key: Key) -> str:
         return "see meaning"
     value = key.schema["default"]
     if isinstance(value, dict) and value:
-        return f"`{mapping(value)}`" if "kind" in value else SECTION_DEFAULT
+        return f"`{written_text(value)}`" if is_written_number(value) else SECTION_DEFAULT
     if isinstance(value, float):
         return f"`{digits(value)}`"
     return f"`{value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)}`"
-
-
-def mapping(value: Mapping[str, Any]) -> str:
-    """Return a distribution as one would write it."""
-    return (
-        f"{{{', '.join(f'{key}: {digits(each) if isinstance(each, float) else each}' for key, each in value.items())}}}"
-    )
 
 
 def row(*cells: str) -> str:
@@ -283,21 +280,16 @@ def page() -> str:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
                 lines += ["### " + re.sub(r" \(kind: \w+\)", "", place), ""]
             lines += [*listing_of(schema, rows)]
-    lines += [DISTRIBUTION_TEXT, *distributions(schema)]
+    lines += [RANGES_TEXT, *ranges(schema)]
     return "\n".join(lines).rstrip() + "\n"
 
 
-def distributions(schema: Schema) -> Iterator[str]:
-    """Yield the table of distributions."""
-    yield row("mapping", "meaning")
+def ranges(schema: Schema) -> Iterator[str]:
+    """Yield the table of ranges."""
+    yield row("form", "meaning")
     yield row("---", "---")
-    for name in DISTRIBUTIONS:
-        found = schema.content["$defs"][name]
-        names = ", ".join(
-            f"{key}: {value['const']}" if "const" in value else f"{key}: ..."
-            for key, value in found["properties"].items()
-        )
-        yield row(f"`{{{names}}}`", described(schema, found))
+    for model in (Uniform, LogUniform, Normal, Choice):
+        yield row(f"`{model.form}`", described(schema, schema.content["$defs"][model.__name__]))
 
 
 if __name__ == "__main__":

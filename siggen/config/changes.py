@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN, Changed
-from siggen.keys.number import Number, Within, at
+from siggen.keys.number import Each, Number, Within, at
 from siggen.keys.problems import joined, nearest, received_text, refusal, refused_problems, section_problems
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -26,7 +26,7 @@ WORDS = ("oil",)
 FIXED = ("position_mm", "integration_tolerance", "steps_per_sample")
 """Numbers that say where a channel is or how it is computed."""
 HOW = ("times", "add")
-ALLOWED = "a number, a distribution, {times: x} or {add: x}"
+ALLOWED = "a number, a range such as [1, 2], {times: x} or {add: x}"
 
 
 class Change(Section):
@@ -65,14 +65,14 @@ def _parsed(value: object) -> object:
 
 
 def _change(path: str, given: object) -> Change:
-    if isinstance(given, Mapping) and "kind" not in given:
-        keys = [*given]
-        if len(keys) != 1 or keys[0] not in HOW:
+    if isinstance(given, Mapping) and any(key in HOW for key in given):
+        if len(given) != 1:
             raise refusal([Problem("", received_text(given), f"allowed: {ALLOWED}")])
-        return Change(path=path, how=keys[0], value=Within().parse(given[keys[0]]))
+        how = next(iter(given))
+        return Change(path=path, how=how, value=Within().parse(given[how]))
     if isinstance(given, str):
         return Change(path=path, value=given)
-    if given is None or isinstance(given, (bool, list, tuple)):
+    if given is None or isinstance(given, bool):
         raise refusal([Problem("", received_text(given), f"allowed: {ALLOWED}")])
     return Change(path=path, value=Within().parse(given))
 
@@ -153,12 +153,10 @@ def _leaf(section: Section, name: str, own: Any, change: Change) -> Any:
         raise _refused(change, "allowed: keys with numbers of the machine or of a sensor, and dynamics.friction.oil")
     if change.how == "to":
         return change.value
-    if isinstance(own, tuple) and all(isinstance(one, (float, *DRAWN)) for one in own):
-        return tuple(_number(one, change) for one in own)
+    if isinstance(own, Each):
+        return own.model_copy(update={"each": tuple(_number(one, change) for one in own.each)})
     if not isinstance(own, (float, *DRAWN)):
-        raise _refused(
-            change, f"allowed: a number or a distribution in its place, since the key is {received_text(own)}"
-        )
+        raise _refused(change, f"allowed: a number or a range in its place, since the key is {received_text(own)}")
     return _number(own, change)
 
 

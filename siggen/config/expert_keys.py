@@ -11,6 +11,7 @@ from siggen.config.inheritance import EXTENDS, inherited
 from siggen.config.parsing import parse
 from siggen.config.presets import presets
 from siggen.config.yaml_source import read_yaml
+from siggen.keys.distributions import is_written_number
 from siggen.keys.section import Section
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -61,7 +62,7 @@ def _written(value: object, raw: object) -> Iterator[tuple[str, Iterable[str]]]:
     if isinstance(value, tuple) and isinstance(raw, list):
         for item, of_item in zip(value, raw, strict=True):
             yield from _written(item, of_item)
-    if isinstance(value, Section) and isinstance(raw, Mapping):
+    if isinstance(value, Section) and isinstance(raw, Mapping) and not is_written_number(raw):
         yield type(value).__name__, raw
         for key in raw:
             yield from _written(getattr(value, key), raw[key])

@@ -10,6 +10,7 @@ from siggen.config.data_file import is_file
 from siggen.config.presets import config_file
 from siggen.config.yaml_source import read_yaml
 from siggen.errors import ConfigError, Problem, UsageError
+from siggen.keys.distributions import is_written_number
 from siggen.keys.problems import received_text
 
 EXTENDS = "extends"
@@ -24,7 +25,7 @@ def inherited(raw: Mapping[str, Any], folder: Path = Path(), source: str = "conf
     """Return a raw configuration in which `extends` is resolved; without that key, a copy.
 
     Mappings are merged key by key. Everything else replaces what it extends: numbers, lists, null, and mappings that
-    have a `kind` of their own, such as distributions. A `machine` takes the place of gears and of their shafts.
+    have a `kind` of their own or stand for a number. A `machine` takes the place of gears and of their shafts.
 
     Parameters
     ----------
@@ -117,5 +118,6 @@ def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in own.items():
         below = result.get(key)
         both = isinstance(below, Mapping) and isinstance(value, Mapping)
-        result[key] = merged(below, value) if both and "kind" not in value else value  # type: ignore[arg-type]
+        replaces = not both or "kind" in value or is_written_number(value)
+        result[key] = value if replaces else merged(below, value)  # type: ignore[arg-type]
     return result

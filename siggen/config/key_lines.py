@@ -11,8 +11,11 @@ import yaml
 
 from siggen.config.yaml_source import yaml_node
 from siggen.errors import Problem
+from siggen.keys.distributions import WORDS
 
 MERGE = "tag:yaml.org,2002:merge"
+REPLACING = ("kind", *WORDS)
+"""Keys of a mapping that takes nothing from a file that its own file extends."""
 MOST_MERGES = 20
 """Merged mappings within each other that are followed; a mapping may merge itself."""
 
@@ -21,7 +24,7 @@ class KeyLine(NamedTuple):
     """Where a path leads in a file: the line, from 1, of the last part that is there, and how many parts are there.
 
     `own`: whether what is missing is missing in this file, since nothing below is taken from a file that it extends:
-    entries of lists, and mappings with a `kind`.
+    entries of lists, and mappings with a `kind` or that stand for a number.
     """
 
     line: int
@@ -41,7 +44,7 @@ def key_line(node: yaml.Node | None, path: str) -> KeyLine | None:
         if child is None:
             break
         line, node = child
-        own |= not isinstance(node, yaml.MappingNode) or _child(node, "kind") is not None
+        own |= not isinstance(node, yaml.MappingNode) or any(_child(node, word) is not None for word in REPLACING)
         found = KeyLine(line, depth, own)
     return found
 

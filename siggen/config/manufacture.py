@@ -13,7 +13,7 @@ from siggen.keys.problems import refusal
 from siggen.keys.section import Section
 
 CLASS = (
-    "flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or kind: choice of some; of the driven gear, null: "
+    "flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or {one_of: [a, b]}; of the driven gear, null: "
     "drawn like the pinion's, for itself"
 )
 CROWNING = (
@@ -69,7 +69,7 @@ class Manufacture(Section):
             number = getattr(self, key)
             values = number.values if isinstance(number, Choice) else (number,)
             if any((isinstance(v, float) and not v.is_integer()) or not isinstance(v, float | None) for v in values):
-                allowed = "allowed: a whole number from 1 to 11, or kind: choice of whole numbers"
+                allowed = "allowed: a whole number from 1 to 11, or {one_of: [a, b]} of whole numbers"
                 problems.append(Problem(key, str(number), allowed))
         if problems:
             raise refusal(problems)

@@ -179,6 +179,15 @@ class _Dumper(yaml.SafeDumper):
         return True
 
 
+def _list(dumper: yaml.SafeDumper, values: list[Any]) -> yaml.Node:
+    """Represent a list of plain values on one line, as one would write a range."""
+    plain = not any(isinstance(value, (list, dict)) for value in values)
+    return dumper.represent_sequence("tag:yaml.org,2002:seq", values, flow_style=plain)
+
+
+_Dumper.add_representer(list, _list)
+
+
 def _children(node: yaml.Node) -> list[yaml.Node]:
     if isinstance(node, yaml.MappingNode):
         return [part for pair in node.value for part in pair]

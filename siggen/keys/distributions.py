@@ -6,32 +6,75 @@ One uniform per number, whatever its distribution, is what keeps a draw in its p
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from statistics import NormalDist
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import Field, GetJsonSchemaHandler, ValidationError, model_serializer, model_validator
+from pydantic_core import CoreSchema
 
 from siggen.errors import Problem
-from siggen.keys.problems import refusal
+from siggen.keys.problems import nearest, received_text, refusal, section_problems
 from siggen.keys.section import Real, Section
 
 LEAST_SHARE = 0.01
 """Share of a normal distribution that its bounds must enclose; less is a slip of the pen rather than a wish."""
+TWO = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
 
 
-class Uniform(Section):
+class _Written(Section):
+    """A distribution, which a file writes in a form of its own."""
+
+    form: ClassVar[str]
+    """How a file writes it."""
+    schema_of_form: ClassVar[Mapping[str, Any]]
+
+    @abstractmethod
+    def written(self) -> Any:
+        """Return what a file holds."""
+
+    @model_serializer
+    def _serialized(self) -> Any:
+        return self.written()
+
+    def __str__(self) -> str:
+        return written_text(self.written())
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Return the form, for editors."""
+        return {"title": cls.__name__, "description": cls.__doc__, **cls.schema_of_form}
+
+    def _refuse_disorder(self, low: float, high: float) -> None:
+        if not low < high:
+            allowed = "allowed: the low number first, then the high one; for one fixed value give the number"
+            raise refusal([Problem("", str(self), allowed)])
+
+
+def _mapping_schema(**properties: Mapping[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": [*properties], "additionalProperties": False}
+
+
+class Uniform(_Written):
     """Every value from `low` to `high` equally likely."""
 
-    kind: Literal["uniform"] = "uniform"
+    form: ClassVar[str] = "[low, high]"
+    schema_of_form: ClassVar[Mapping[str, Any]] = TWO
+
     low: Real
     high: Real
 
     @model_validator(mode="after")
     def _ordered(self) -> Uniform:
-        _require_order(self.low, self.high)
+        self._refuse_disorder(self.low, self.high)
         return self
+
+    def written(self) -> Any:
+        """Return what a file holds."""
+        return [self.low, self.high]
 
     def at(self, u: float) -> float:
         """Return the value below which the share `u` lies."""
@@ -41,21 +84,26 @@ class Uniform(Section):
         """Return the smallest and the largest value."""
         return self.low, self.high
 
-    def __str__(self) -> str:
-        return f"uniform from {self.low} to {self.high}"
 
-
-class LogUniform(Section):
+class LogUniform(_Written):
     """Every ratio equally likely: the logarithm is uniform between those of `low` and `high`, both above 0."""
 
-    kind: Literal["loguniform"] = "loguniform"
-    low: Annotated[Real, Field(gt=0)]
-    high: Annotated[Real, Field(gt=0)]
+    form: ClassVar[str] = "{log: [low, high]}"
+    schema_of_form: ClassVar[Mapping[str, Any]] = _mapping_schema(log=TWO)
+
+    low: Real
+    high: Real
 
     @model_validator(mode="after")
     def _ordered(self) -> LogUniform:
-        _require_order(self.low, self.high)
+        if self.low <= 0.0:
+            raise refusal([Problem("", str(self), "allowed: two numbers above 0")])
+        self._refuse_disorder(self.low, self.high)
         return self
+
+    def written(self) -> Any:
+        """Return what a file holds."""
+        return {"log": [self.low, self.high]}
 
     def at(self, u: float) -> float:
         """Return the value below which the share `u` lies."""
@@ -66,32 +114,36 @@ class LogUniform(Section):
         """Return the smallest and the largest value."""
         return self.low, self.high
 
-    def __str__(self) -> str:
-        return f"loguniform from {self.low} to {self.high}"
 
-
-class Normal(Section):
+class Normal(_Written):
     """Normal distribution cut off at `low` and `high` (no value is ever drawn outside)."""
 
-    kind: Literal["normal"] = "normal"
+    form: ClassVar[str] = "{normal: [mean, std], within: [low, high]}"
+    schema_of_form: ClassVar[Mapping[str, Any]] = _mapping_schema(normal=TWO, within=TWO)
+
     mean: Real
-    std: Annotated[Real, Field(gt=0)]
+    std: Real
     low: Real
     high: Real
 
     @model_validator(mode="after")
     def _bounds_hold_some_of_it(self) -> Normal:
-        _require_order(self.low, self.high)
+        if self.std <= 0.0:
+            raise refusal([Problem("", str(self), "allowed: a standard deviation above 0")])
+        self._refuse_disorder(self.low, self.high)
         least, most = self._shares()
         if most - least < LEAST_SHARE:
-            received = f"{self.low} to {self.high} with mean {self.mean} and std {self.std}"
             allowed = f"allowed: bounds that enclose at least {LEAST_SHARE:.0%} of the normal distribution"
-            raise refusal([Problem("low", received, allowed)])
+            raise refusal([Problem("", str(self), allowed)])
         return self
 
     def _shares(self) -> tuple[float, float]:
         standard = NormalDist(self.mean, self.std)
         return standard.cdf(self.low), standard.cdf(self.high)
+
+    def written(self) -> Any:
+        """Return what a file holds."""
+        return {"normal": [self.mean, self.std], "within": [self.low, self.high]}
 
     def at(self, u: float) -> float:
         """Return the value below which the share `u` of the cut-off distribution lies."""
@@ -103,15 +155,20 @@ class Normal(Section):
         """Return the smallest and the largest value."""
         return self.low, self.high
 
-    def __str__(self) -> str:
-        return f"normal around {self.mean}, cut off at {self.low} and {self.high}"
 
+class Choice(_Written):
+    """One of the numbers, each equally likely; one given twice is twice as likely."""
 
-class Choice(Section):
-    """One of `values`, each entry equally likely; a value given twice is twice as likely."""
+    form: ClassVar[str] = "{one_of: [a, b]}"
+    schema_of_form: ClassVar[Mapping[str, Any]] = _mapping_schema(
+        one_of={"type": "array", "items": {"type": "number"}, "minItems": 1}
+    )
 
-    kind: Literal["choice"] = "choice"
     values: Annotated[tuple[Real, ...], Field(min_length=1)]
+
+    def written(self) -> Any:
+        """Return what a file holds."""
+        return {"one_of": [*self.values]}
 
     def at(self, u: float) -> float:
         """Return the value whose turn it is at the share `u`."""
@@ -121,9 +178,6 @@ class Choice(Section):
     def bounds(self) -> tuple[float, float]:
         """Return the smallest and the largest value."""
         return min(self.values), max(self.values)
-
-    def __str__(self) -> str:
-        return f"a choice of {', '.join(str(value) for value in self.values)}"
 
 
 Distribution: TypeAlias = Uniform | LogUniform | Normal | Choice
@@ -172,16 +226,87 @@ def changed_bounds(
 DRAWN = (Uniform, LogUniform, Normal, Choice, Changed)
 """Everything that is drawn."""
 
-KINDS: dict[str, type[Distribution]] = {
-    "uniform": Uniform,
-    "loguniform": LogUniform,
-    "normal": Normal,
-    "choice": Choice,
+FORMS = (Uniform.form, LogUniform.form, Choice.form, Normal.form)
+WORDS = ("log", "one_of", "normal", "within", "each")
+"""Keys that make a mapping a number, or several: a file that extends another one replaces such a mapping as a whole."""
+BY_WORDS: Mapping[tuple[str, ...], tuple[type[Distribution], tuple[str, ...]]] = {
+    ("log",): (LogUniform, ("low", "high")),
+    ("one_of",): (Choice, ()),
+    ("normal", "within"): (Normal, ("mean", "std", "low", "high")),
 }
+"""Keys of a mapping -> distribution and its fields, in the order of the numbers."""
 
 
-def _require_order(low: float, high: float) -> None:
-    if not low < high:
-        raise refusal(
-            [Problem("high", repr(high), f"allowed: a number above low ({low}); for one fixed value give the number")]
-        )
+def is_written_number(value: object) -> bool:
+    """Tell whether a value of a file is a mapping that stands for a number."""
+    return isinstance(value, Mapping) and any(word in value for word in WORDS)
+
+
+def distribution(value: Mapping[Any, Any] | Sequence[Any]) -> Distribution:
+    """Return the distribution that a file writes as a list of two numbers or as a mapping, or raise a refusal."""
+    if not isinstance(value, Mapping):
+        return _made(Uniform, ("low", "high"), [value], "", Uniform.form)
+    if isinstance(kind := value.get("kind"), str):
+        raise refusal([Problem("", written_text(value), _new_form(kind, value))])
+    words = tuple(sorted(str(key) for key in value))
+    if words in BY_WORDS:
+        model, fields = BY_WORDS[words]
+        return _made(model, fields, [value[word] for word in words], words[0], model.form)
+    known = next((model.form for keys, (model, _) in BY_WORDS.items() if keys[0] in words), ", ".join(FORMS))
+    near = next((hint for word in words if word not in WORDS and (hint := nearest(word, WORDS))), "")
+    raise refusal([Problem("", written_text(value), f"allowed: {known}{near}")])
+
+
+def _made(model: type[Distribution], fields: Sequence[str], lists: Sequence[Any], word: str, form: str) -> Distribution:
+    """Return a distribution of the numbers in lists: one list for every two fields, or for all values."""
+    for numbers in lists:
+        fits = isinstance(numbers, (list, tuple)) and (len(numbers) == 2 if fields else len(numbers) > 0)
+        if not fits or not all(map(is_finite, numbers)):
+            raise refusal([Problem(word if len(lists) == 1 else "", _received(numbers), f"allowed: {form}")])
+    flat = [float(number) for numbers in lists for number in numbers]
+    try:
+        return model.model_validate(dict(zip(fields, flat, strict=True)) if fields else {"values": tuple(flat)})
+    except ValidationError as error:
+        raise refusal(section_problems(model, error.errors())) from None
+
+
+def is_finite(value: object) -> bool:
+    """Tell whether a value of a file is a finite number."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    try:
+        return math.isfinite(float(value))
+    except OverflowError:
+        return False
+
+
+def _received(numbers: object) -> str:
+    return received_text(numbers) if not isinstance(numbers, (list, tuple)) else written_text(numbers)
+
+
+def _new_form(kind: str, value: Mapping[Any, Any]) -> str:
+    """Return how to write what a mapping with a `kind` means, with its own numbers."""
+    low, high, mean, std = (value.get(key, key) for key in ("low", "high", "mean", "std"))
+    forms: dict[str, Any] = {
+        "uniform": [low, high],
+        "loguniform": {"log": [low, high]},
+        "normal": {"normal": [mean, std], "within": [low, high]},
+        "choice": {"one_of": value.get("values", ["a", "b"])},
+    }
+    return f"write {written_text(forms[kind])}" if kind in forms else f"allowed: {', '.join(FORMS)}"
+
+
+def written_text(value: Any) -> str:
+    """Return a value of a file on one line, as one would write it; long ones are cut."""
+    text = _flow(value)
+    return text if len(text) <= 120 else f"{text[:117]}..."
+
+
+def _flow(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key}: {_flow(item)}' for key, item in value.items())}}}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_flow, value))}]"
+    if value is None or isinstance(value, bool):
+        return {None: "null", True: "true", False: "false"}[value]
+    return f"{value:.12g}" if isinstance(value, float) else str(value)

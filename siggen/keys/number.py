@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeAlias, Union
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from siggen.errors import Problem
-from siggen.keys.distributions import DRAWN, KINDS, Changed, Distribution
+from siggen.keys.distributions import DRAWN, FORMS, Changed, Distribution, distribution, is_finite
 from siggen.keys.parser import Parser
-from siggen.keys.problems import MISSING, nearest, received_text, refusal, refused_problems, section_problems
+from siggen.keys.problems import joined, received_text, refusal, refused_problems
+from siggen.keys.section import Section
 from siggen.keys.wording import range_text
 
 Number: TypeAlias = float | Distribution | Changed
@@ -48,6 +48,12 @@ def number_text(number: Number) -> str:
     return f"{number:g}" if isinstance(number, float) else str(number)
 
 
+class Each(Section):
+    """A number for each of several things, such as the axes of a sensor: `{each: [1.0, [0.9, 1.1]]}`."""
+
+    each: Annotated[tuple[float | Distribution, ...], Field(min_length=1)] = Field(description="in their order")
+
+
 @dataclass(frozen=True, slots=True)
 class Within(Parser):
     """Range of a physical number, and the parser of every field of this kind.
@@ -58,8 +64,10 @@ class Within(Parser):
         Limits; `above` and `below` are excluded, `least` and `most` included.
     words
         Values other than numbers that are taken as they are (`None`, "pitch").
-    many
-        Whether a list of numbers is taken too; the field is a tuple then.
+    each
+        Whether a number for each of several things is taken too, as `Each`; two numbers in a list stay a range.
+    size
+        Numbers of a list that the field holds, as a tuple, such as the two of a place; 0: it holds one number.
     """
 
     above: float | None = None
@@ -67,7 +75,8 @@ class Within(Parser):
     most: float | None = None
     below: float | None = None
     words: tuple[str | None, ...] = ()
-    many: bool = False
+    each: bool = False
+    size: int = 0
 
     @property
     def range_text(self) -> str:
@@ -77,31 +86,48 @@ class Within(Parser):
     @property
     def allowed_text(self) -> str:
         """What the field may hold, distributions and words included."""
+        number = f"a list of {self.size}, each {self._number_text}" if self.size else self._number_text
+        each = "; {each: [a, b]} gives one for each" if self.each else ""
         words = "".join(f", or {'null' if word is None else word}" for word in self.words)
-        return f"{self.range_text}, or a distribution (kind: {', '.join(KINDS)}) in that range{words}"
+        return f"{number}{each}{words}"
 
-    def parse(self, value: object) -> Number | tuple[Number, ...] | str | None:
-        """Return the number, tuple of numbers or word that `value` stands for, or raise a refusal."""
-        if self.many and isinstance(value, (list, tuple)):
-            return self._numbers(value)
+    @property
+    def _number_text(self) -> str:
+        return f"{self.range_text}, or a range of such: {', '.join(FORMS[:-1])} or {FORMS[-1]}"
+
+    def parse(self, value: object) -> Number | Each | tuple[Number, ...] | str | None:
+        """Return the number, numbers or word that `value` stands for, or raise a refusal."""
         if value is None or isinstance(value, str):
             return self._word(value)
+        if self.size:
+            if not isinstance(value, (list, tuple)) or len(value) != self.size:
+                raise self._refused(value)
+            return self._numbers(value)
+        if self.each and isinstance(value, Each):
+            return Each.model_construct(each=self._numbers(value.each))
+        if self.each and isinstance(value, Mapping) and [*value] == ["each"]:
+            if not isinstance(value["each"], (list, tuple)) or not value["each"]:
+                raise self._refused(value)
+            return Each(each=self._numbers(value["each"], "each"))  # type: ignore[arg-type]
         return self._number(value)
 
-    def _numbers(self, values: list[object] | tuple[object, ...]) -> tuple[Number, ...]:
-        found, problems = [], []
+    def _refused(self, value: object) -> PydanticCustomError:
+        return refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
+
+    def _numbers(self, values: Sequence[object], below: str = "") -> tuple[Number, ...]:
+        numbers, problems = [], []
         for index, value in enumerate(values):
             try:
-                found.append(self._number(value))
+                numbers.append(self._number(value))
             except PydanticCustomError as error:
-                problems += refused_problems(error, index)
+                problems += refused_problems(error, joined(below, index))
         if problems:
             raise refusal(problems)
-        return tuple(found)
+        return tuple(numbers)
 
     def _word(self, value: str | None) -> str | None:
         if value not in self.words:
-            raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
+            raise self._refused(value)
         return value
 
     def _number(self, value: object) -> Number:
@@ -114,11 +140,14 @@ class Within(Parser):
     def _unbounded(self, value: object) -> Number:
         if isinstance(value, DRAWN):
             return value
-        if isinstance(value, Mapping):
-            return _distribution(value)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not _is_finite(value):
-            raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
-        return float(value)
+        if self.each and isinstance(value, (list, tuple)) and len(value) != 2:
+            raise self._refused(value)
+        if isinstance(value, (Mapping, list, tuple)):
+            return distribution(value)
+        if not is_finite(value):
+            allowed = self._number_text if self.size else self.allowed_text
+            raise refusal([Problem("", received_text(value), f"allowed: {allowed}")])
+        return float(value)  # type: ignore[arg-type]
 
     def _contains(self, value: float) -> bool:
         return (
@@ -132,27 +161,8 @@ class Within(Parser):
     def documented(self) -> Any:
         """A number, a distribution, a list of them and the words."""
         limits = Field(gt=self.above, ge=self.least, lt=self.below, le=self.most)
-        number: Any = Annotated[float, limits] | Annotated[Distribution, Field(discriminator="kind")]
-        either = number | list[number] if self.many else number
+        number: Any = Annotated[float, limits] | Distribution
+        if self.size:
+            number = Annotated[list[number], Field(min_length=self.size, max_length=self.size)]
+        either = number | Each if self.each else number
         return Union[either, *(word if word is None else Literal[word] for word in self.words)]
-
-
-def _distribution(value: Mapping[object, object]) -> Distribution:
-    kind = value.get("kind", MISSING)
-    model = KINDS.get(kind) if isinstance(kind, str) else None
-    if model is None:
-        received = MISSING if kind == MISSING else received_text(kind)
-        raise refusal(
-            [Problem("kind", received, f"allowed: one of {', '.join(KINDS)}{nearest(str(kind), list(KINDS))}")]
-        )
-    try:
-        return model.model_validate(value)
-    except ValidationError as error:
-        raise refusal(section_problems(model, error.errors())) from None
-
-
-def _is_finite(value: float) -> bool:
-    try:
-        return math.isfinite(float(value))
-    except OverflowError:
-        return False

@@ -52,7 +52,7 @@ def multiplied(value: Any, factor: float) -> Any:
     if isinstance(value, tuple):
         return tuple(multiplied(item, factor) for item in value)
     if isinstance(value, (Uniform, LogUniform, Normal, Choice)):
-        numbers = {key: getattr(value, key) for key in type(value).model_fields if key != "kind"}
+        numbers = {key: getattr(value, key) for key in type(value).model_fields}
         return value.model_copy(update={key: multiplied(number, factor) for key, number in numbers.items()})
     return value
 

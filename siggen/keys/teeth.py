@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from siggen.errors import Problem, counted
-from siggen.keys.distributions import Choice
-from siggen.keys.number import Number, Within
+from siggen.keys.distributions import Choice, distribution
+from siggen.keys.number import Each, Number, Within
 from siggen.keys.parser import Parser
-from siggen.keys.problems import received_text, refusal, section_problems
+from siggen.keys.problems import received_text, refusal
 
 TeethValue = int | tuple[int, ...] | Choice
 DAMAGED_TEETH = (
@@ -26,7 +26,7 @@ class TeethParser(Parser):
     """Parser of `teeth`: a whole number from 1, a choice of such numbers, or a list of different indices from 0."""
 
     allowed_text = (
-        "how many neighbouring teeth (a whole number from 1, or kind: choice of such numbers), or a list of different "
+        "how many neighbouring teeth (a whole number from 1, or {one_of: [a, b]} of such), or a list of different "
         "tooth indices such as [0, 1]"
     )
     documented: Any = Annotated[int, Field(ge=1)] | list[Annotated[int, Field(ge=0)]] | Choice
@@ -48,15 +48,12 @@ class TeethParser(Parser):
         listed = ", ".join(received_text(item) for item in value)
         raise refusal([Problem("", f"[{listed}]", f"allowed: {self.allowed_text}")])
 
-    def _choice(self, value: object) -> Choice:
-        if not isinstance(value, Choice) and (not isinstance(value, Mapping) or value.get("kind") != "choice"):
-            raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
-        try:
-            choice = Choice.model_validate(value)
-        except ValidationError as error:
-            raise refusal(section_problems(Choice, error.errors())) from None
+    def _choice(self, value: Mapping[Any, Any] | Choice) -> Choice:
+        choice = value if isinstance(value, Choice) else distribution(value)
+        if not isinstance(choice, Choice):
+            raise refusal([Problem("", str(choice), f"allowed: {self.allowed_text}")])
         if not all(number >= 1.0 and number.is_integer() for number in choice.values):
-            raise refusal([Problem("values", str(choice), "allowed: whole numbers from 1")])
+            raise refusal([Problem("", str(choice), "allowed: whole numbers from 1")])
         return choice
 
 
@@ -72,25 +69,25 @@ def drawn_teeth(teeth: TeethValue, u: float) -> int | tuple[int, ...]:
 
 Teeth = Annotated[TeethValue, TeethParser()]
 
-Stages: TypeAlias = Annotated[Number | tuple[Number, ...], Within(above=0, most=1, many=True)]
+Stages: TypeAlias = Annotated[Number | Each, Within(above=0, most=1, each=True)]
 
-STAGES = "lengths and depth of a tooth's spall over those given here, drawn for each tooth, or a list with one for each"
+STAGES = "lengths and depth of a tooth's spall over those given here, drawn for each; {each: [a, b]}: one for each"
 
 
-def stage_of(stages: Number | tuple[Number, ...], index: int) -> Number:
+def stage_of(stages: Number | Each, index: int) -> Number:
     """Return the stage of the damaged tooth of this index, from 0."""
-    return stages[index] if isinstance(stages, tuple) else stages
+    return stages.each[index] if isinstance(stages, Each) else stages
 
 
-def refuse_stages(stages: Number | tuple[Number, ...], teeth: TeethValue) -> None:
+def refuse_stages(stages: Number | Each, teeth: TeethValue) -> None:
     """Raise a refusal of a list that has not one stage for each damaged tooth."""
-    if isinstance(teeth, Choice):
-        if isinstance(stages, tuple):
-            allowed = "allowed: one number or distribution where the number of teeth is drawn (teeth)"
-            raise refusal([Problem("stages", f"a list of {len(stages)}", allowed)])
+    if not isinstance(stages, Each):
         return
+    received = f"one for each of {len(stages.each)}"
+    if isinstance(teeth, Choice):
+        allowed = "allowed: one number or range where the number of teeth is drawn (teeth)"
+        raise refusal([Problem("stages", received, allowed)])
     count = teeth if isinstance(teeth, int) else len(teeth)
-    if isinstance(stages, tuple) and len(stages) != count:
+    if len(stages.each) != count:
         hit = counted(count, "damaged tooth", "damaged teeth")
-        allowed = f"allowed: one for each of the {hit} (teeth), or one number"
-        raise refusal([Problem("stages", f"a list of {len(stages)}", allowed)])
+        raise refusal([Problem("stages", received, f"allowed: one for each of the {hit} (teeth), or one number")])

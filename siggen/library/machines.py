@@ -159,14 +159,14 @@ def _filled(listed: Mapping[str, list[dict[str, Any]]], steps: list[_Step]) -> d
     module_mm, face_mm = min(one.rig.module_mm for one in steps), max(one.rig.face_width_mm for one in steps)
     relief = sorted(first.tip_relief_um)
     base, density = (
-        {"kind": "loguniform", "low": low * scale, "high": high * scale}
+        {"log": [low * scale, high * scale]}
         for low, high, scale in ((50.0, 300.0, size**3), (0.16, 1.6, last.load_share))
     )
     return {
         "dynamics": {
             "motor_inertia_kg_m2": first.motor_inertia_kg_m2, "load_inertia_kg_m2": last.load_inertia_kg_m2,
-            "backlash_um": {"kind": "uniform", "low": 20 * module_mm, "high": 40 * module_mm},
-            "mesh": {"tip_relief_um": {"kind": "uniform", "low": relief[0], "high": relief[1]}},
+            "backlash_um": [20 * module_mm, 40 * module_mm],
+            "mesh": {"tip_relief_um": list(relief)},
             **{
                 f"{end}_coupling": {"stiffness_nm_per_rad": n.coupling_nm_per_rad[i],
                                     "damping_nm_s_per_rad": n.coupling_nm_s_per_rad[i]}
@@ -174,13 +174,13 @@ def _filled(listed: Mapping[str, list[dict[str, Any]]], steps: list[_Step]) -> d
             },
         },
         "manufacture": {
-            "accuracy_class": {"kind": "choice", "values": list(min(covering_classes(one.rig) for one in steps))},
-            "crowning_um": {"kind": "uniform", "low": 0.0, "high": 4.0 * face_mm / BENCH_FACE_MM},
-            "lead_misalignment_um": {"kind": "uniform", "low": 0.0, "high": 2.0 * face_mm / BENCH_FACE_MM},
+            "accuracy_class": {"one_of": list(min(covering_classes(one.rig) for one in steps))},
+            "crowning_um": [0.0, 4.0 * face_mm / BENCH_FACE_MM],
+            "lead_misalignment_um": [0.0, 2.0 * face_mm / BENCH_FACE_MM],
         },
         "housing": {
             "kind": "rigid", "inertia_kg_m2": None,
-            "mass_kg": {"kind": "loguniform", "low": HOUSING_KG[0] * size**3, "high": HOUSING_KG[1] * size**3},
+            "mass_kg": {"log": [HOUSING_KG[0] * size**3, HOUSING_KG[1] * size**3]},
             "bolts": {"positions_mm": [[size * x, size * y] for x, y in BOLTS_MM]},
         },
         "background": {"base": {"mass_kg": base}, "machines": {"density_n_per_sqrt_hz": density}},
@@ -192,10 +192,10 @@ def _filled(listed: Mapping[str, list[dict[str, Any]]], steps: list[_Step]) -> d
 
 
 _SENSOR = {
-    "place": "casing", "gain": {"kind": "normal", "mean": 1.0, "std": 0.05, "low": 0.9, "high": 1.1},
-    "noise": {"floor_m_s2": {"kind": "loguniform", "low": 0.003, "high": 0.01}}, "range_m_s2": 500.0, "bits": "noise",
-    "high_pass_hz": {"kind": "loguniform", "low": 0.5, "high": 2.0},
-    "mounting": {"frequency_hz": {"kind": "uniform", "low": 6000.0, "high": 15000.0}, "damping_ratio": 0.06},
+    "place": "casing", "gain": {"normal": [1.0, 0.05], "within": [0.9, 1.1]},
+    "noise": {"floor_m_s2": {"log": [0.003, 0.01]}}, "range_m_s2": 500.0, "bits": "noise",
+    "high_pass_hz": {"log": [0.5, 2.0]},
+    "mounting": {"frequency_hz": [6000.0, 15000.0], "damping_ratio": 0.06},
 }  # fmt: skip
 """Accelerometers as `siggen init` proposes them."""
 
@@ -208,10 +208,8 @@ def _stand(shaft: dict[str, Any], gear: RotorNumbers, bearings: RotorNumbers) ->
     shaft.setdefault("inertia_kg_m2", gear.inertia_kg_m2)
     for axis in "xy":
         low, high = (share * stiffness for share in SPREAD)
-        shaft.setdefault(f"bearing_stiffness_{axis}_n_per_m", {"kind": "loguniform", "low": low, "high": high})
-        shaft.setdefault(
-            f"bearing_damping_{axis}_n_s_per_m", {"kind": "loguniform", "low": damping[0], "high": damping[1]}
-        )
+        shaft.setdefault(f"bearing_stiffness_{axis}_n_per_m", {"log": [low, high]})
+        shaft.setdefault(f"bearing_damping_{axis}_n_s_per_m", {"log": damping})
 
 
 def planetary(
@@ -281,7 +279,7 @@ def planetary(
         },
         "dynamics": {
             **{key: _times(preset["dynamics"][key], load) for key in ("motor_inertia_kg_m2", "load_inertia_kg_m2")},
-            "backlash_um": {"kind": "uniform", "low": 30 * module, "high": 60 * module}, **couplings,
+            "backlash_um": [30 * module, 60 * module], **couplings,
         },
         "operating_points": [{"speed_hz": speed, "torque_nm": torque}],
     })  # fmt: skip
@@ -300,5 +298,5 @@ def planetary(
 def _times(value: Any, factor: float) -> Any:
     """Return a number of a file, or a range, times a factor."""
     if isinstance(value, Mapping):
-        return {key: item * factor if key in {"low", "high"} else item for key, item in value.items()}
-    return value * factor
+        return {key: _times(item, factor) for key, item in value.items()}
+    return [_times(item, factor) for item in value] if isinstance(value, list) else value * factor

@@ -9,6 +9,7 @@ from siggen.config.changes import Change
 from siggen.config.inheritance import REPLACED, REPLACED_OF_DYNAMICS
 from siggen.dataset.card_making import drive_text, friction_text
 from siggen.errors import Problem
+from siggen.keys.distributions import DRAWN
 from siggen.keys.section import Section
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def _numbers(path: str, section: Section, words: Mapping[str, str]) -> Iterator[
                     yield f"{below}.{item.path}", f"{item.how} {item.value}", str(field.description), False
                 else:
                     yield from _numbers(f"{below}.{place}", item, words)
-        elif isinstance(value, Section) and "kind" not in type(value).model_fields:
+        elif isinstance(value, Section) and not isinstance(value, DRAWN) and "kind" not in type(value).model_fields:
             yield from _numbers(below, value, words)
         else:
             default = not field.is_required() and value == field.get_default(call_default_factory=True)
@@ -100,7 +101,7 @@ def _numbers(path: str, section: Section, words: Mapping[str, str]) -> Iterator[
 
 
 def _text(name: str, value: object, words: Mapping[str, str]) -> str:
-    if isinstance(value, Section):
+    if isinstance(value, Section) and not isinstance(value, DRAWN):
         parts = value.model_dump()
         kind = parts.pop("kind", "")
         told = [f"{key} {_text(key, part, words)}" for key, part in parts.items() if part is not None]

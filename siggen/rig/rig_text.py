@@ -92,7 +92,7 @@ def _manufacture(rig: Rig) -> str:
     share = rig.face_width_mm / BENCH_FACE_MM
     return f"""\
 manufacture:
-  accuracy_class: {{kind: choice, values: {list(rig.accuracy_classes)}}}     # of ISO 1328-1; {CLASSES_RULE}
+  accuracy_class: {{one_of: {list(rig.accuracy_classes)}}}     # of ISO 1328-1; {CLASSES_RULE}
   crowning_um: {_range((0.0, 4.0 * share))}     # in proportion to the face width, as in the preset
   lead_misalignment_um: {_range((0.0, 2.0 * share))}
 """
@@ -110,7 +110,7 @@ def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
         f"  # From here on {ASSUMED}.",
         f"  motor_inertia_kg_m2: {numbers.motor_inertia_kg_m2:.3g}",
         f"  load_inertia_kg_m2: {numbers.load_inertia_kg_m2:.3g}",
-        f"  backlash_um: {{kind: uniform, low: {20 * rig.module_mm:.3g}, high: {40 * rig.module_mm:.3g}}}",
+        f"  backlash_um: [{20 * rig.module_mm:.3g}, {40 * rig.module_mm:.3g}]",
         *(
             f"  {which}_coupling: {{stiffness_nm_per_rad: {k:.4g}, damping_nm_s_per_rad: {c:.3g}}}"
             for which, k, c in zip(
@@ -131,8 +131,8 @@ def _rotor(name: str, rotor: RotorNumbers) -> str:
     inertia_kg_m2: {rotor.inertia_kg_m2:.3g}
     bearing_stiffness_x_n_per_m: {stiffness}     # two {bearing.kind} bearings of {bearing.bore_mm:.3g} mm bore
     bearing_stiffness_y_n_per_m: {stiffness}
-    bearing_damping_x_n_s_per_m: {_range(damping, "loguniform")}    # 2 to 4 % of critical
-    bearing_damping_y_n_s_per_m: {_range(damping, "loguniform")}"""
+    bearing_damping_x_n_s_per_m: {_range(damping, log=True)}    # 2 to 4 % of critical
+    bearing_damping_y_n_s_per_m: {_range(damping, log=True)}"""
 
 
 def _states(rig: Rig) -> str:
@@ -167,8 +167,8 @@ def _spall(rig: Rig) -> tuple[list[str], Callable[[float], list[tuple[str, str]]
         "  kind: irregular",
         "  gear: pinion",
         "  teeth: 1",
-        f"  edge_radius_mm: {{kind: uniform, low: {0.007 * m:.2g}, high: {min(0.07 * m, 0.2):.2g}}}",
-        f"  skew_mm_per_10mm: {{kind: uniform, low: {-skew:.3g}, high: {skew:.3g}}}",
+        f"  edge_radius_mm: [{0.007 * m:.2g}, {min(0.07 * m, 0.2):.2g}]",
+        f"  skew_mm_per_10mm: [{-skew:.3g}, {skew:.3g}]",
     ]
     return first, lambda share: [
         ("profile_length_mm", f"{_between(share, 0.2, 0.33, 0.5) * m:.3g}"),
@@ -199,7 +199,7 @@ def _between(share: float, low: float, middle: float, high: float) -> float:
 
 
 def _normal(mean: float, std: float, low: float, high: float) -> str:
-    return f"{{kind: normal, mean: {mean:.3g}, std: {std:.3g}, low: {low:.3g}, high: {high:.3g}}}"
+    return f"{{normal: [{mean:.3g}, {std:.3g}], within: [{low:.3g}, {high:.3g}]}}"
 
 
 def _background(rig: Rig, numbers: RigNumbers) -> str:
@@ -208,10 +208,10 @@ def _background(rig: Rig, numbers: RigNumbers) -> str:
     orders = ", ".join(f"{z * rig.teeth[0] / rig.teeth[1]:.6f}" for z in SECOND_STAGE_TEETH)
     return f"""\
 background:                   # {ASSUMED}
-  base: {{mass_kg: {_range((50.0 * mass, 300.0 * mass), "loguniform")}}}
-  machines: {{density_n_per_sqrt_hz: {_range((0.16 * force, 1.6 * force), "loguniform")}}}
+  base: {{mass_kg: {_range((50.0 * mass, 300.0 * mass), log=True)}}}
+  machines: {{density_n_per_sqrt_hz: {_range((0.16 * force, 1.6 * force), log=True)}}}
   # {SECOND_STAGE_TEETH[0]} to {SECOND_STAGE_TEETH[-1]} teeth on the gear's shaft, turns of that shaft times teeth
-  second_stage: {{order: {{kind: choice, values: [{orders}]}}}}
+  second_stage: {{order: {{one_of: [{orders}]}}}}
 """
 
 
@@ -233,27 +233,28 @@ def _sensor(i: int) -> str:
     return f"""\
   - &sensor
     {own}
-    gain: {{kind: normal, mean: 1.0, std: 0.05, low: 0.9, high: 1.1}}
-    noise: {{floor_m_s2: {{kind: loguniform, low: 0.003, high: 0.01}}}}
+    gain: {{normal: [1.0, 0.05], within: [0.9, 1.1]}}
+    noise: {{floor_m_s2: {{log: [0.003, 0.01]}}}}
     range_m_s2: 500.0
     bits: noise
-    high_pass_hz: {{kind: loguniform, low: 0.5, high: 2.0}}
-    mounting: {{frequency_hz: {{kind: uniform, low: 6000, high: 15000}}, damping_ratio: 0.06}}"""
+    high_pass_hz: {{log: [0.5, 2.0]}}
+    mounting: {{frequency_hz: [6000, 15000], damping_ratio: 0.06}}"""
 
 
 def _spread(value: float) -> str:
-    return _range((SPREAD[0] * value, SPREAD[1] * value), "loguniform")
+    return _range((SPREAD[0] * value, SPREAD[1] * value), log=True)
 
 
-def _range(values: Pair, kind: str = "uniform") -> str:
+def _range(values: Pair, log: bool = False) -> str:
     low, high = (_number(value) for value in values)
-    return low if low == high else f"{{kind: {kind}, low: {low}, high: {high}}}"
+    text = low if low == high else f"[{low}, {high}]"
+    return f"{{log: {text}}}" if log and low != high else text
 
 
 def _given_range(values: Pair) -> str:
     """Return what a user gave with all its digits."""
     low, high = (_exact(value) for value in values)
-    return low if low == high else f"{{kind: uniform, low: {low}, high: {high}}}"
+    return low if low == high else f"[{low}, {high}]"
 
 
 def _exact(value: float) -> str:

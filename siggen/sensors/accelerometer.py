@@ -34,11 +34,6 @@ class Resonance(Section):
     )
 
 
-POSITION = AllowedText(
-    "two numbers in mm, from a casing's centre of gravity or the middle of a plate; a distribution is drawn per gearbox"
-)
-
-
 class NoiseFloor(Section):
     """White noise of a given size; a distribution is drawn for every record and axis."""
 
@@ -66,7 +61,7 @@ class Accelerometer(SourceKeys, SensorBase):
         description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
         "modal or a path, NAME_bearing with several meshes",
     )
-    position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
+    position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), size=2), Grows(SIZE)] = Field(
         default=None,
         description="casing: horizontal and vertical from its centre of gravity; from the middle of a plate: lid: "
         "horizontal and axial, wall: horizontal and vertical, ends: vertical and axial; null: up to 15 mm, drawn",
@@ -101,9 +96,6 @@ class Accelerometer(SourceKeys, SensorBase):
     def own_problems(self) -> Iterator[Problem]:
         """Yield what does not go with the place: position, axes, path."""
         has_position = self.place == "casing" or self.plate not in {None, "floor"}
-        if self.position_mm is not None and (isinstance(self.position_mm, float) or len(self.position_mm) != 2):
-            yield Problem("position_mm", received_text(self.position_mm), f"allowed: {POSITION.allowed_text}")
-            return
         if self.path is not None and self.place != "casing":
             yield Problem("path", f"a path at place {self.place}", "allowed: null, or place: casing")
         if self.position_mm is not None and not has_position:

@@ -15,10 +15,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.errors import Problem
+from siggen.errors import Problem, counted
 from siggen.keys.distributions import DRAWN
-from siggen.keys.number import Number, Within, at, bounds
-from siggen.keys.problems import BRANCHES, received_text, refusal
+from siggen.keys.number import Each, Number, Within, at, bounds
+from siggen.keys.problems import BRANCHES, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 from siggen.noise.source import Source
@@ -84,9 +84,9 @@ class SensorBase(Section):
     )
     place: str = Field(description="where it is mounted")
     axes: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="what it measures, one channel each")
-    gain: Annotated[Number | tuple[Number, ...], Within(above=0, many=True)] = Field(
+    gain: Annotated[Number | Each, Within(above=0, each=True)] = Field(
         default=1.0,
-        description="reading per true value, drawn per specimen and axis; a list: one number per axis",
+        description="reading per true value, drawn per specimen and axis; {each: [a, b]}: a number per axis",
     )
     bits: Bits = Field(default=16, description=BITS_TEXT)
 
@@ -220,24 +220,22 @@ class SensorBase(Section):
     @property
     def gains(self) -> tuple[Number, ...]:
         """The gain of each axis."""
-        return self.gain if isinstance(self.gain, tuple) else (self.gain,) * len(self.axes)
+        return self.gain.each if isinstance(self.gain, Each) else (self.gain,) * len(self.axes)
 
     def drawn(self, uniform: Callable[[str], float]) -> Self:
         """Return the sensor of one specimen: gains are drawn, what belongs to records is left."""
         axes = zip(self.gains, self.axes, strict=True)
         drawn = (at(gain, uniform(f"sensors.{self.name}.{axis}.gain")) for gain, axis in axes)
-        return self.model_copy(update={"gain": tuple(drawn)})
+        return self.model_copy(update={"gain": Each(each=tuple(drawn))})
 
     @model_validator(mode="after")
     def _axes_agree(self) -> Self:
         problems = []
         if len(set(self.axes)) < len(self.axes):
             problems.append(Problem("axes", ", ".join(self.axes), "allowed: each axis once"))
-        if isinstance(self.gain, tuple) and len(self.gain) != len(self.axes):
-            received = received_text(self.gain)
-            problems.append(
-                Problem("gain", received, f"allowed: one number, or a list of {len(self.axes)} (one per axis)")
-            )
+        if isinstance(self.gain, Each) and len(self.gain.each) != len(self.axes):
+            received, axes = f"one for each of {len(self.gain.each)}", counted(len(self.axes), "axis", "axes")
+            problems.append(Problem("gain", received, f"allowed: one number or range, or one for each of {axes}"))
         if self.bits == FROM_NOISE and not bounds(self.noise_floor or 0.0)[0]:
             allowed = "allowed: a whole number or null without a noise floor, or with one that may be 0"
             problems.append(Problem("bits", FROM_NOISE, allowed))

@@ -20,7 +20,7 @@ def spalls(radius: object) -> list[dict[str, Any]]:
 
 
 def test_edges_rounder_than_a_seventh_of_the_relative_radius_are_refused() -> None:
-    drawn = {"kind": "uniform", "low": 0.1, "high": 0.99}
+    drawn = [0.1, 0.99]
     with pytest.raises(ConfigError) as refused:
         load_config(minimal(states=spalls(drawn), dynamics__mesh__pit_edge_radius_mm=0.99))
     (found,) = refused.value.problems  # pit_edge_radius_mm is of no damage here

@@ -29,7 +29,7 @@ CLUSTER = {
 
 
 def uniform(low: float, high: float) -> dict:
-    return {"kind": "uniform", "low": low, "high": high}
+    return [low, high]
 
 
 def refusals(**changes) -> dict[str, tuple[str, str]]:
@@ -150,7 +150,7 @@ def test_the_gear_pair_is_in_si_units():
 
 
 def test_a_section_that_is_not_drawn_has_no_gear_pair():
-    with pytest.raises(TypeError, match="uniform"):
+    with pytest.raises(TypeError, match=r"received \[2, 3\]"):
         gear_pair(config(gears__module_mm=uniform(2, 3)).gears)
 
 

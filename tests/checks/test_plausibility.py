@@ -88,6 +88,6 @@ def test_only_sensors_of_which_nothing_is_drawn_are_called_identical() -> None:
 
     accelerometers = "{{name: one{0}}}, {{name: two{0}}}"
     assert said(accelerometers.format(""))
-    assert not said(accelerometers.format(", gain: {kind: uniform, low: 0.9, high: 1.1}"))
+    assert not said(accelerometers.format(", gain: [0.9, 1.1]"))
     # each disc has marks and a seat of its own
     assert not said("{kind: encoder, name: one, place: pinion}", "{kind: encoder, name: two, place: pinion}")

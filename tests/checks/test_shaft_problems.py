@@ -110,7 +110,7 @@ def test_shafts_that_tilt_beyond_the_model_under_the_steady_torque_are_refused_w
 
 
 def test_soft_shafts_are_refused_though_some_gearboxes_have_their_gear_in_the_middle() -> None:
-    around = {"kind": "uniform", "low": 0.4, "high": 0.6}
+    around = [0.4, 0.6]
     with pytest.raises(ConfigError, match=r"pinion.diameter_mm: received 5.0.* from [\d.]+ mm on"):
         load_config(with_shafts(diameter_mm=5.0, bearing_span_mm=140.0, gear_position=around))
 

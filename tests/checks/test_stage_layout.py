@@ -36,7 +36,7 @@ def told(raw: dict[str, Any]) -> Problem:
 
 def test_gears_of_one_shaft_need_one_and_a_half_times_their_faces_between_its_bearings() -> None:
     """20 and 30 mm wide, at a third and at two thirds: they touch at (20 + 30)/2 = span/3."""
-    problem = told(one_more(span_mm={"kind": "uniform", "low": 74.9, "high": 160}))
+    problem = told(one_more(span_mm=[74.9, 160]))
     assert problem.path == "stages.0.span_mm"
     assert problem.received == "74.9 mm for faces of 50 mm together"
     assert "at least 75 mm" in problem.allowed
@@ -56,7 +56,7 @@ def test_axes_a_little_apart_are_refused(gears: dict[str, Any]) -> None:
 
 
 def test_a_direction_that_is_drawn_is_refused_where_one_gearbox_could_not_be() -> None:
-    problem = told(one_more(direction_deg={"kind": "uniform", "low": 150, "high": 180}, gears=EQUAL))
+    problem = told(one_more(direction_deg=[150, 180], gears=EQUAL))
     assert "stands 0 mm" in problem.received or "e-" in problem.received
 
 

@@ -30,7 +30,7 @@ def test_a_load_that_drives_is_remarked_with_its_least_torque():
 
 
 def test_the_largest_draw_decides_and_rare_random_values_count():
-    often = {"kind": "uniform", "low": 0.1, "high": 1.2}
+    often = [0.1, 1.2]
     (note,) = reversals(line_ripple=often)
     assert note.startswith("motor torque falls to -20 % of its mean: the motor then brakes")
     # Four standard deviations of 5 % beside a pulsation of 90 %.

@@ -44,7 +44,7 @@ def test_records_of_states_and_splits_add_up_to_all():
         config(
             specimens=47,
             repeats=3,
-            operating_points=[{"speed_hz": {"kind": "uniform", "low": 20, "high": 35}, "torque_nm": 60}] * 2,
+            operating_points=[{"speed_hz": [20, 35], "torque_nm": 60}] * 2,
         )
     )
     counts = [count for state in summary["states"] for count in state["records_of_split"].values()]
@@ -70,13 +70,13 @@ def test_errors_of_the_teeth_are_named_by_their_class(tmp_path):
     assert plan_summary(config())["manufacture"] == "perfect gears"
     override = ("--set", "manufacture={accuracy_class: 6, accuracy_class_gear: 7, draw: state}")
     text = run("plan", Path("tests/configs/casing.yaml"), *override)
-    assert "ISO 1328-1 class 6, gear 7; share of its tolerances: uniform from 0.3 to 0.5" in text
+    assert "ISO 1328-1 class 6, gear 7; share of its tolerances: [0.3, 0.5]" in text
     assert "drawn anew for" in text
 
 
 def test_gears_outside_a_models_range_are_named_with_the_limits(path):
     assert json.loads(run("plan", path, "--json"))["stiffness_notes"] == []
-    override = ("--set", "gears.pinion.bore_radius_mm={kind: uniform, low: 3, high: 10}")
+    override = ("--set", "gears.pinion.bore_radius_mm=[3, 10]")
     (note,) = json.loads(run("plan", path, *override, "--json"))["stiffness_notes"]
     assert "pinion (18 teeth)" in note
     assert "1.4 to 7" in note

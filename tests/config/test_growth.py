@@ -95,7 +95,7 @@ def test_a_state_must_add_pits_to_the_one_it_grows_from(milder, damage, key):
 
 
 SPALL = {"kind": "spall", "face_length_mm": 8, "profile_length_mm": 1.2, "depth_mm": 0.2}
-IRREGULAR = {"kind": "irregular", "profile_length_mm": {"kind": "uniform", "low": 0.8, "high": 1.4}, "face_share": 0.6}
+IRREGULAR = {"kind": "irregular", "profile_length_mm": [0.8, 1.4], "face_share": 0.6}
 
 
 @pytest.mark.parametrize(
@@ -105,8 +105,8 @@ IRREGULAR = {"kind": "irregular", "profile_length_mm": {"kind": "uniform", "low"
         (IRREGULAR, {"face_share": 0.2}, {"face_share": 0.2, "depth_mm": 0.3}, "face_share"),
         (
             IRREGULAR,
-            {"profile_length_mm": {"kind": "uniform", "low": 0.7, "high": 1.2}},
-            {"profile_length_mm": {"kind": "uniform", "low": 0.7, "high": 1.6}},
+            {"profile_length_mm": [0.7, 1.2]},
+            {"profile_length_mm": [0.7, 1.6]},
             "profile_length_mm",
         ),
     ],

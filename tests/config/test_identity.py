@@ -59,7 +59,7 @@ CHANGES = [
     ("repeats", 2),
     ("splits", {"train": 10, "validation": 5, "test": 5}),
     ("gears__module_mm", 3.5),
-    ("gears__module_mm", {"kind": "uniform", "low": 3, "high": 3.5}),
+    ("gears__module_mm", [3, 3.5]),
     ("gears__gear__teeth", 48),
     ("stiffness__beam", "base_circle"),
     ("dynamics__model", "8dof"),
@@ -97,7 +97,7 @@ def test_the_canonical_form_gives_an_equal_configuration(path, value):
 
 
 def test_the_written_file_gives_an_equal_configuration_and_the_same_bytes():
-    first = config(name="1e3", gears__module_mm={"kind": "normal", "mean": 3, "std": 1e-9, "low": 2, "high": 4})
+    first = config(name="1e3", gears__module_mm={"normal": [3, 1e-9], "within": [2, 4]})
     text = yaml_text(first.canonical())
     again = parse(parse_yaml(text)).config
     assert again == first

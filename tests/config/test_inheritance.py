@@ -19,9 +19,9 @@ def test_a_file_that_extends_a_preset_is_the_preset_with_its_own_values(tmp_path
 
 
 def test_mappings_merge_and_distributions_and_lists_are_replaced(tmp_path: Path) -> None:
-    (tmp_path / "base.yaml").write_text("a: {b: 1, c: 2}\nd: {kind: uniform, low: 0, high: 1}\ne: [1, 2]\nf: {g: 1}\n")
-    own = {"extends": "base.yaml", "a": {"c": 3}, "d": {"kind": "normal", "mean": 0}, "e": [5], "f": None}
-    expected = {"a": {"b": 1, "c": 3}, "d": {"kind": "normal", "mean": 0}, "e": [5], "f": None}
+    (tmp_path / "base.yaml").write_text("a: {b: 1, c: 2}\nd: {normal: [0, 1], within: [0, 1]}\ne: [1, 2]\nf: {g: 1}\n")
+    own = {"extends": "base.yaml", "a": {"c": 3}, "d": {"log": [1, 2]}, "e": [5], "f": None}
+    expected = {"a": {"b": 1, "c": 3}, "d": {"log": [1, 2]}, "e": [5], "f": None}
     assert inherited(own, tmp_path) == expected
 
 

@@ -72,7 +72,7 @@ BAD = [
     ("  crowning_um: ", "  crowning_um: -1 #", "manufacture.crowning_um"),
     ("  machines: {}\n", "  machines:\n    density_n_per_sqrt_hz: 1e9\n", "background.machines.density_n_per_sqrt_hz"),
     ("states:\n", "states:\n  - {name: x, severity: slight, damage: {kind: irregular, profile_length_mm: 0.2, "
-     "face_share: 1.0, skew_mm_per_10mm: {kind: uniform, low: -2, high: 2}}}\n", "states.0.damage.skew_mm_per_10mm"),
+     "face_share: 1.0, skew_mm_per_10mm: [-2, 2]}}\n", "states.0.damage.skew_mm_per_10mm"),
     ("states:\n", "states:\n  - {name: x, severity: slight, damage: {kind: irregular, profile_length_mm: 9, "
      "face_share: 1.0}}\n", "states.0.damage.profile_length_mm"),
 ]  # fmt: skip

@@ -132,7 +132,7 @@ def test_an_idler_is_named_by_the_mesh_of_each_flank() -> None:
 
 
 def test_an_idler_whose_bore_is_drawn_has_one() -> None:
-    bore = {"kind": "uniform", "low": 10.0, "high": 14.0}
+    bore = [10.0, 14.0]
     drawn = draw_specimen(load_config(idler(machine=with_idler("gears", 1, bore_radius_mm=bore))), 3)
     assert drawn.stages[0].gears.pinion.bore_radius_mm == drawn.gears.gear.bore_radius_mm
 

@@ -46,20 +46,20 @@ def test_every_key_changes_the_identity() -> None:
     assert len({one.identity for one in found if one is not None} | {config(**PAIRS).identity}) == len(changes) + 1
 
 
-@pytest.mark.parametrize("accuracy_class", [0, 12, 5.5, {"kind": "uniform", "low": 5, "high": 7}])
+@pytest.mark.parametrize("accuracy_class", [0, 12, 5.5, [5, 7]])
 def test_classes_that_do_not_exist_are_refused(accuracy_class: object) -> None:
     assert problem(accuracy_class=accuracy_class).startswith("manufacture.accuracy_class: received")
     assert "from 1 to 11" in problem(accuracy_class=accuracy_class)
 
 
 def test_classes_may_be_a_choice_and_differ_between_the_gears() -> None:
-    choice = {"kind": "choice", "values": [5, 6, 7]}
+    choice = {"one_of": [5, 6, 7]}
     parsed = parse(with_section(accuracy_class=choice, accuracy_class_gear=8)).config
     assert parsed is not None
     assert parsed.manufacture is not None
     assert parsed.manufacture.gear_class == 8.0
     assert parsed.manufacture.classes_text == "5, 6 or 7, gear 8"
-    assert "whole numbers" in problem(accuracy_class={"kind": "choice", "values": [5, 6.5]})
+    assert "whole numbers" in problem(accuracy_class={"one_of": [5, 6.5]})
 
 
 def test_shares_beyond_the_tolerance_and_unknown_keys_are_refused() -> None:

@@ -10,7 +10,6 @@ from siggen.keys.problems import BRANCHES
 from siggen.keys.wording import models_in
 from tests.config.minimal import MINIMAL, minimal
 
-UNIFORM = {"kind": "uniform", "low": 3, "high": 4}
 CLUSTER = {
     "kind": "clustered",
     "count": 9,
@@ -33,7 +32,12 @@ MISTAKES = [
     # types
     ({"seed": "x"}, "seed", "the text 'x'", "a whole number of at least 0"),
     ({"gears__pinion__teeth": 18.0}, "gears.pinion.teeth", "18.0", "a whole number from 5 to 1000"),
-    ({"gears__module_mm": "3"}, "gears.module_mm", "the text '3'", "a number above 0, or a distribution"),
+    (
+        {"gears__module_mm": "3"},
+        "gears.module_mm",
+        "the text '3'",
+        "a number above 0, or a range of such: [low, high], ",
+    ),
     ({"gears__module_mm": True}, "gears.module_mm", "true", "a number above 0"),
     ({"gears__module_mm": None}, "gears.module_mm", "null", "a number above 0"),
     ({"gears__module_mm": float("nan")}, "gears.module_mm", "nan", "a number above 0"),
@@ -60,18 +64,18 @@ MISTAKES = [
         "[horizontal, vertical] from the centre of gravity; or a measured path",
     ),
     ({"sensors__0__position_mm": [1.0, 2.0]}, "sensors.0.position_mm", "[1.0, 2.0]", "null at place pinion_bearing"),
-    ({"sensors__0__place": "lid", "sensors__0__position_mm": [1.0]}, "sensors.0.position_mm", "[1.0]", "two numbers"),
+    ({"sensors__0__place": "lid", "sensors__0__position_mm": [1.0]}, "sensors.0.position_mm", "[1.0]", "a list of 2"),
     (
         {"sensors__0__place": "lid", "sensors__0__position_mm": [1.0, 2, 3]},
         "sensors.0.position_mm",
-        "[1.0, 2.0, 3.0]",
-        "two numbers in mm",
+        "[1.0, 2, 3]",
+        "a list of 2, each a number, or a range",
     ),
     (
         {"sensors__0__position_mm": [1.0, "a"]},
         "sensors.0.position_mm.1",
         "the text 'a'",
-        "a number, or a distribution",
+        "allowed: a number, or a range",
     ),
     (
         {"housing": {"kind": "rigid", "bolts": {"positions_mm": [[1.0], [2.0, 3.0]]}}},
@@ -153,7 +157,7 @@ MISTAKES = [
     ({"sensors__0__bits": "loud"}, "sensors.0.bits", "the text 'loud'", "from 4 to 24, noise, or null"),
     ({"sensors__0__bits": "noise"}, "sensors.0.bits", "noise", "without a noise floor"),
     (
-        {"sensors__0__bits": "noise", "sensors__0__noise": {"floor_m_s2": {"kind": "choice", "values": [0, 1]}}},
+        {"sensors__0__bits": "noise", "sensors__0__noise": {"floor_m_s2": {"one_of": [0, 1]}}},
         "sensors.0.bits",
         "noise",
         "one that may be 0",
@@ -168,21 +172,34 @@ MISTAKES = [
         "no such key here; known keys: beam, coupling",
     ),
     # distributions
-    ({"gears__module_mm": {**UNIFORM, "high": 2}}, "gears.module_mm.high", "2.0", "above low (3.0)"),
-    ({"gears__module_mm": {**UNIFORM, "kind": "unifrom"}}, "gears.module_mm.kind", "'unifrom'", "mean 'uniform'?"),
-    ({"gears__module_mm": {"low": 3, "high": 4}}, "gears.module_mm.kind", "nothing", "one of uniform, loguniform"),
-    ({"gears__module_mm": {**UNIFORM, "low": -1}}, "gears.module_mm", "uniform from -1.0 to 4.0", "above 0"),
+    ({"gears__module_mm": [3, 2]}, "gears.module_mm", "[3, 2]", "the low number first"),
+    ({"gears__module_mm": [3, 4, 5]}, "gears.module_mm", "[3, 4, 5]", "allowed: [low, high]"),
+    ({"gears__module_mm": [-1, 4]}, "gears.module_mm", "[-1, 4]", "above 0"),
+    ({"gears__module_mm": {"oneof": [3, 4]}}, "gears.module_mm", "{oneof: [3, 4]}", "mean 'one_of'?"),
+    ({"gears__module_mm": {"log": [0, 1]}}, "gears.module_mm", "{log: [0, 1]}", "above 0"),
+    ({"gears__module_mm": {"normal": [3, 0.1]}}, "gears.module_mm", "{normal: [3, 0.1]}", "within: [low, high]}"),
     (
-        {"gears__module_mm": {"kind": "normal", "mean": 3, "std": 0.1, "low": 4, "high": 5}},
-        "gears.module_mm.low",
-        "4.0 to 5.0 with mean 3.0",
+        {"gears__module_mm": {"normal": [3, 0.1], "within": [4, 5]}},
+        "gears.module_mm",
+        "{normal: [3, 0.1], within: [4, 5]}",
         "at least 1%",
     ),
-    ({"gears__module_mm": {"kind": "choice", "values": [1, "a"]}}, "gears.module_mm.values.1", "'a'", "a number"),
-    ({"gears__module_mm": {"kind": "choice", "values": []}}, "gears.module_mm.values", "a list of 0", "at least 1"),
-    ({"gears__module_mm": {"kind": "loguniform", "low": 0, "high": 1}}, "gears.module_mm.low", "0", "above 0"),
-    ({"sensors__0__gain": [1, -1]}, "sensors.0.gain.1", "-1.0", "above 0"),
-    ({"sensors__0__gain": [1, 1]}, "sensors.0.gain", "a list of 2", "a list of 1 (one per axis)"),
+    ({"gears__module_mm": {"one_of": [1, "a"]}}, "gears.module_mm.one_of", "[1, a]", "{one_of: [a, b]}"),
+    ({"gears__module_mm": {"one_of": []}}, "gears.module_mm.one_of", "[]", "{one_of: [a, b]}"),
+    # distributions of earlier versions
+    ({"gears__module_mm": {"kind": "uniform", "low": 3, "high": 4}}, "gears.module_mm", "kind: uniform", "[3, 4]"),
+    ({"gears__module_mm": {"kind": "loguniform", "low": 3}}, "gears.module_mm", "{kind: ", "write {log: [3, high]}"),
+    (
+        {"gears__module_mm": {"kind": "normal", "mean": 3, "std": 0.1, "low": 2, "high": 4}},
+        "gears.module_mm",
+        "{kind: normal, mean: 3, std: 0.1, low: 2, high: 4}",
+        "write {normal: [3, 0.1], within: [2, 4]}",
+    ),
+    ({"states__1__damage__teeth": {"kind": "choice", "values": [1, 2]}}, "states.1.damage.teeth", "kind", "[1, 2]}"),
+    # numbers for each of several things
+    ({"sensors__0__gain": [1, -1]}, "sensors.0.gain", "[1, -1]", "the low number first"),
+    ({"sensors__0__gain": {"each": [1, -1]}}, "sensors.0.gain.each.1", "-1.0", "above 0"),
+    ({"sensors__0__gain": {"each": [1, 1]}}, "sensors.0.gain", "one for each of 2", "one for each of 1 axis"),
     # damage
     ({"states__1__damage__kind": "blob"}, "states.1.damage.kind", "'blob'", "one of layered, clustered, spall, list"),
     ({"states__1__damage": {"layers": 1}}, "states.1.damage.kind", "nothing", "one of layered, clustered, spall, list"),
@@ -192,8 +209,8 @@ MISTAKES = [
     ({"states__1__damage__teeth": 19}, "states.1.damage.teeth", "19", "at most 18, the teeth of the pinion"),
     ({"states__1__damage__teeth": [3, 18]}, "states.1.damage.teeth", "tooth 18", "from 0 to 17"),
     (
-        {"states__1__damage__teeth": {"kind": "choice", "values": [1, 1.5]}},
-        "states.1.damage.teeth.values",
+        {"states__1__damage__teeth": {"one_of": [1, 1.5]}},
+        "states.1.damage.teeth",
         "1.5",
         "whole",
     ),
@@ -275,12 +292,6 @@ def test_valid_sections_are_handed_on_when_others_fail():
     assert list(parsed.sections["states"]) == [1]
     assert parsed.sections["dynamics"].model == "casing"  # left out: its default
     assert "seed" not in parsed.sections
-
-
-def test_several_wrong_keys_of_one_distribution_are_all_named():
-    parsed = parse(minimal(gears__module_mm={"kind": "normal", "mean": "a", "std": 0, "low": 1, "hihg": 2}))
-    paths = {problem.path for problem in parsed.problems}
-    assert paths == {f"gears.module_mm.{key}" for key in ("mean", "std", "high", "hihg")}
 
 
 @pytest.mark.parametrize("value", [3, "x", None, [], [1], {}, {"a": 1}, True, {"kind": []}, {"kind": None}])

@@ -20,8 +20,8 @@ from tests.config.minimal import MINIMAL, minimal
         ("operating_points.0.speed_hz=25", {"operating_points__0__speed_hz": 25}),
         ("states.1.damage.pits_per_layer=3", {"states__1__damage__pits_per_layer": 3}),
         (
-            "gears.module_mm={kind: uniform, low: 2, high: 4}",
-            {"gears__module_mm": {"kind": "uniform", "low": 2, "high": 4}},
+            "gears.module_mm=[2, 4]",
+            {"gears__module_mm": [2, 4]},
         ),
         ("sensors.0.bits=null", {"sensors__0__bits": None}),
         ("sensors.0.noise.floor_m_s2=2e1", {"sensors__0__noise": {"floor_m_s2": 20.0}}),

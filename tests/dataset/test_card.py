@@ -65,7 +65,7 @@ def test_the_card_says_which_class_the_gears_were_made_to_and_who_shares_them() 
     config = fake_config(specimens=1).model_copy(update={"manufacture": Manufacture(accuracy_class=classes)})
     text = _limits(config)
     assert "no manufacturing errors" not in text
-    assert "class 5, 6 or 7 of ISO 1328-1\n  (share used: uniform from 0.3 to 0.5)" in text
+    assert "class 5, 6 or 7 of ISO 1328-1\n  (share used: [0.3, 0.5])" in text
     assert "a difference between\n  its states is the damage" in text
 
 

@@ -183,8 +183,8 @@ def test_half_of_the_tooth_force_loads_the_bearing_along_the_line_of_action() ->
 
 
 def test_a_grown_spall_takes_the_place_of_the_milder_one() -> None:
-    drawn = {"kind": "uniform", "low": 0.5, "high": 3.0}
-    longer = {"kind": "uniform", "low": 1.0, "high": 4.0}
+    drawn = [0.5, 3.0]
+    longer = [1.0, 4.0]
     made = with_states(
         {**SPALL, "element": "inner", "length_mm": drawn},
         {**SPALL, "element": "inner", "length_mm": longer, "grows_from": "previous"},
@@ -226,7 +226,7 @@ def test_its_row_tells_the_slip_that_its_cage_has_in_this_record() -> None:
         ({"length_mm": 0.0}, {}, "length_mm", "a number above 0"),
         ({"length_mm": 17.0}, {}, "length_mm", "below 16.3"),
         ({"element": "ball", "length_mm": 13.0}, {}, "length_mm", "half of the ball's girth"),
-        ({"length_mm": {"kind": "uniform", "low": 1.0, "high": 40.0}}, {}, "length_mm", "the spacing of the balls"),
+        ({"length_mm": [1.0, 40.0]}, {}, "length_mm", "the spacing of the balls"),
         ({"depth_mm": 4.0}, {}, "depth_mm", "below 3.97 mm, the radius of a ball"),
         ({"length_mm": 12.0}, {"dynamics__pinion__bearing": {"balls": 14}}, "length_mm", "the spacing of the balls"),
         ({"geometry": {"balls": 8}}, {}, "geometry", "known keys: "),

@@ -15,7 +15,7 @@ from siggen.record.damage_rows import damage_rows
 from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import config_with, damage_of
 
-UNIFORM = {"kind": "uniform", "low": 0.1, "high": 0.2}
+UNIFORM = [0.1, 0.2]
 
 
 def cracked(**keys):
@@ -32,10 +32,10 @@ def test_its_depth_is_a_share_of_the_chord_of_the_root() -> None:
 
 
 def test_it_grows_deeper_on_its_teeth_and_stays_one_crack_each() -> None:
-    deeper = {"kind": "uniform", "low": 0.15, "high": 0.4}
+    deeper = [0.15, 0.4]
     config = config_with(
-        cracked(depth_share=UNIFORM, face_share=0.5, teeth=2, angle_deg={"kind": "uniform", "low": 40, "high": 60}),
-        cracked(depth_share=deeper, teeth=2, angle_deg={"kind": "uniform", "low": 40, "high": 60}),
+        cracked(depth_share=UNIFORM, face_share=0.5, teeth=2, angle_deg=[40, 60]),
+        cracked(depth_share=deeper, teeth=2, angle_deg=[40, 60]),
     )
     for specimen in range(4):
         milder, harder = damage_of(config, 1, specimen), damage_of(config, 2, specimen)
@@ -80,7 +80,7 @@ def test_its_row_has_depth_angle_and_run_and_stands_beside_pits() -> None:
         ([cracked(depth_share=0.2), cracked(depth_share=0.2)], ("states.2.damage.depth_share", "grows_from")),
         ([cracked(depth_share=0.2), cracked(depth_share=0.1)], ("states.2.damage.depth_share", "at least 0.2")),
         (
-            [cracked(depth_share=UNIFORM), cracked(depth_share={**UNIFORM, "low": 0.05})],
+            [cracked(depth_share=UNIFORM), cracked(depth_share=[0.05, 0.2])],
             ("states.2.damage.depth_share", "0.05 to 0.2", "at least 0.1 to 0.2"),
         ),
         (

@@ -20,9 +20,9 @@ from siggen.specimen.gears import gear_pair
 
 PIT = {"semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
 DRAWN_PIT = {
-    "semi_axis_face_mm": {"kind": "uniform", "low": 0.2, "high": 0.5},
-    "semi_axis_profile_mm": {"kind": "uniform", "low": 0.1, "high": 0.3},
-    "depth_mm": {"kind": "uniform", "low": 0.1, "high": 0.4},
+    "semi_axis_face_mm": [0.2, 0.5],
+    "semi_axis_profile_mm": [0.1, 0.3],
+    "depth_mm": [0.1, 0.4],
 }
 
 
@@ -118,7 +118,7 @@ def test_listed_pits_appear_as_they_are_listed() -> None:
 
 
 def test_growing_damage_stays_where_it_began_when_its_place_is_drawn() -> None:
-    place = {"kind": "uniform", "low": 1.0, "high": 4.0}
+    place = [1.0, 4.0]
     model = {"kind": "clustered", "spread_profile_mm": 0.01, "centre_height_mm": place, **PIT}
     config = config_with(*({**model, "count": n} for n in (4, 9, 20)))
     heights = [np.array([p.height_m for p in damage_of(config, i)]) for i in (1, 2, 3)]
@@ -128,7 +128,7 @@ def test_growing_damage_stays_where_it_began_when_its_place_is_drawn() -> None:
 
 
 def test_growing_layers_keep_their_lattice_even_from_odd_to_even_columns() -> None:
-    place = {"kind": "uniform", "low": 1.0, "high": 4.0}
+    place = [1.0, 4.0]
     model = {"kind": "layered", "layers": 1, "first_height_mm": place, "spacing_face_mm": 1.0, **PIT}
     severe = damage_of(config_with(*({**model, "pits_per_layer": n} for n in (3, 4, 7))), 3)
     assert len({round(p.height_m, 9) for p in severe}) == 1

@@ -50,7 +50,7 @@ def holds(severe: IrregularSpall, mild: IrregularSpall) -> bool:
 def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
     seed: int, lengths: list[float], shares: list[float], waviness: list[float], gear: str
 ) -> None:
-    drawn = {"skew_mm_per_10mm": {"kind": "uniform", "low": -0.1, "high": 0.1}}
+    drawn = {"skew_mm_per_10mm": [-0.1, 0.1]}
     damages = [
         {"kind": "irregular", "gear": gear, "profile_length_mm": a, "face_share": b, "waviness": c, **drawn}
         for a, b, c in zip(lengths, shares, waviness, strict=True)
@@ -71,8 +71,8 @@ def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
 
 
 def test_a_drawn_stage_keeps_its_rank_while_the_spall_grows_and_one_is_no_change() -> None:
-    drawn = {"teeth": 3, "stages": {"kind": "uniform", "low": 0.2, "high": 0.5}}
-    later = {"teeth": 3, "stages": {"kind": "uniform", "low": 0.6, "high": 1.0}}
+    drawn = {"teeth": 3, "stages": [0.2, 0.5]}
+    later = {"teeth": 3, "stages": [0.6, 1.0]}
     config = config_with({**SPALL, **drawn}, {**SPALL, **later})
     milder, severe = damage_of(config, 1), damage_of(config, 2)
     assert len({one.depth_m for one in milder}) == 3
@@ -82,12 +82,17 @@ def test_a_drawn_stage_keeps_its_rank_while_the_spall_grows_and_one_is_no_change
 
 
 @pytest.mark.parametrize(
-    ("changes", "received"),
-    [({"stages": [1.0, 0.5]}, "a list of 2"), ({"stages": [1.0, 0.5, 1.2]}, "1.2"), ({"stages": 0.0}, "0.0")],
+    ("stages", "received"),
+    [
+        ({"each": [1.0, 0.5]}, "one for each of 2"),
+        ({"each": [1, 0.5, 1.2]}, "1.2"),
+        ([1, 0.5, 1], "a list of 3, .*"),
+        (0.0, "0.0"),
+    ],
 )
-def test_stages_that_fit_no_teeth_are_refused(changes: dict[str, Any], received: str) -> None:
-    with pytest.raises(ConfigError, match=rf"stages[.\d]*: received {received}; allowed: "):
-        config_with({**SPALL, "teeth": 3, **changes})
+def test_stages_that_fit_no_teeth_are_refused(stages: Any, received: str) -> None:
+    with pytest.raises(ConfigError, match=rf"stages[.\da-z]*: received {received}; allowed: "):
+        config_with({**SPALL, "teeth": 3, "stages": stages})
 
 
 def test_teeth_and_gearboxes_have_outlines_of_their_own() -> None:
@@ -139,7 +144,7 @@ def test_rows_hold_the_outline_the_edges_and_the_depth_of_every_strip() -> None:
         ({"face_share": 1.05}, "face_share", "allowed: a number above 0 and of at most 1"),
         ({"face_centre_mm": 1.0}, "face_share", "5 mm about 1 mm"),
         (
-            {"skew_mm_per_10mm": {"kind": "uniform", "low": -2.0, "high": 2.0}},
+            {"skew_mm_per_10mm": [-2.0, 2.0]},
             "skew_mm_per_10mm",
             "the edges of 0.6 mm cross; allowed: a range of less than",
         ),

@@ -25,8 +25,8 @@ splits: {train: 10, validation: 5, test: 5}
 dynamics: {mesh: {damage: all}}
 states:
   - {name: healthy}
-  - {name: slight, damage: {kind: toy_hinge, depth_mm: {kind: uniform, low: 0.8, high: 1.2}}}
-  - {name: severe, damage: {kind: toy_hinge, depth_mm: {kind: uniform, low: 3, high: 4}}}
+  - {name: slight, damage: {kind: toy_hinge, depth_mm: [0.8, 1.2]}}
+  - {name: severe, damage: {kind: toy_hinge, depth_mm: [3, 4]}}
 """
 OTHER_KINDS = re.compile(r"\b(pits?|pitting|spall\w*)\b", re.IGNORECASE)
 

@@ -19,7 +19,7 @@ from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import config_with, damage_of
 
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.1}
-DRAWN = {"kind": "uniform", "low": 0.5, "high": 1.5}
+DRAWN = [0.5, 1.5]
 
 
 def test_a_spall_has_its_length_on_the_flank_about_the_pitch_point() -> None:
@@ -33,7 +33,7 @@ def test_a_spall_has_its_length_on_the_flank_about_the_pitch_point() -> None:
 
 
 def test_teeth_in_stages_have_the_same_spall_smaller_and_grow_into_the_full_one() -> None:
-    config = config_with({**BOX, "teeth": 3, "stages": [0.9, 0.5, 0.3]}, {**BOX, "teeth": 3})
+    config = config_with({**BOX, "teeth": 3, "stages": {"each": [0.9, 0.5, 0.3]}}, {**BOX, "teeth": 3})
     slight, severe = damage_of(config, 1), damage_of(config, 2)
     assert len(slight) == len(severe) == 3  # each full spall has taken in the smaller one
     for one, full, stage in zip(slight, severe, (0.9, 0.5, 0.3), strict=True):
@@ -69,7 +69,7 @@ def test_a_longer_spall_over_the_same_centre_takes_the_place_of_the_shorter_one(
 @pytest.mark.parametrize(
     "ladder",
     [
-        [{**BOX, "face_centre_mm": {"kind": "uniform", "low": 5.0, "high": 15.0}, "profile_length_mm": DRAWN}] * 2,
+        [{**BOX, "face_centre_mm": [5.0, 15.0], "profile_length_mm": DRAWN}] * 2,
         [
             BOX,
             {**BOX, "depth_mm": 0.05, "face_length_mm": 8.0},
@@ -113,7 +113,13 @@ def test_a_more_severe_state_contains_the_region_of_the_milder_one(ladder: list[
         (BOX, {"depth_mm": 4.0}, "depth_mm", "4 mm", "half tooth thickness"),
         (BOX, {"depth_mm": None}, "depth_mm", "null", "above 0"),
         (BOX, {"depth_law": "flat"}, "depth_law", "the text 'flat'", "known keys: gear"),
-        (BOX, {"teeth": 3, "stages": [1.0, 0.5]}, "stages", "a list of 2", "one for each of the 3 damaged teeth"),
+        (
+            BOX,
+            {"teeth": 3, "stages": {"each": [1.0, 0.5]}},
+            "stages",
+            "one for each of 2",
+            "one for each of the 3 damaged teeth",
+        ),
         (BOX, {"teeth": [18]}, "teeth", "tooth 18", "0 to 17"),
     ],
     ids=str,

@@ -32,7 +32,7 @@ def test_both_gears_wear_and_the_pinion_deeper() -> None:
 
 
 def test_a_state_grows_from_the_milder_one_and_is_nowhere_less_deep() -> None:
-    drawn = {"kind": "uniform", "low": 5.0, "high": 15.0}
+    drawn = [5.0, 15.0]
     config = config_with({**WEAR, "depth_um": drawn}, WEAR, {**WEAR, "depth_um": 60.0})
     slight, moderate, severe = (damage_of(config, state) for state in (1, 2, 3))
     assert len(slight) == len(moderate) == len(severe) == 2

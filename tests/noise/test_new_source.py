@@ -26,7 +26,7 @@ SIGNAL, LABEL = "accel_lid_vertical_m_s2", "toy_drift_lid_vertical_m_s2_per_s"
 def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, str]]:
     """Return a folder with sets without and with the source, and what commands said."""
     folder = tmp_path_factory.mktemp("toy")
-    drift = ", toy_drift: {size_m_s2_per_s: {kind: uniform, low: 5, high: 9}}"
+    drift = ", toy_drift: {size_m_s2_per_s: [5, 9]}"
     sources = {"without": "", "drift": drift, "mistake": ", toy_drift: {size_m_s2_per_s: -1}"}
     for name, source in sources.items():
         (folder / f"{name}.yaml").write_text(CONFIG.format(source=source))

@@ -15,10 +15,10 @@ from tests.config.minimal import config, minimal
 
 RANGES = {
     "count": 40,
-    "pinion_teeth": {"kind": "uniform", "low": 16.5, "high": 30.5},
-    "ratio": {"kind": "loguniform", "low": 1.2, "high": 4.0},
-    "module_mm": {"kind": "choice", "values": [2.0, 2.5, 3.0]},
-    "face_width_over_module": {"kind": "uniform", "low": 8.0, "high": 15.0},
+    "pinion_teeth": [16.5, 30.5],
+    "ratio": {"log": [1.2, 4.0]},
+    "module_mm": {"one_of": [2.0, 2.5, 3.0]},
+    "face_width_over_module": [8.0, 15.0],
 }
 
 
@@ -84,13 +84,13 @@ DRAWN = {
         *(
             {
                 "name": name,
-                "damage": {**PITS, "gear": "either", "teeth": {"kind": "choice", "values": [1, 3]}, "count": n},
+                "damage": {**PITS, "gear": "either", "teeth": {"one_of": [1, 3]}, "count": n},
             }
             for name, n in (("slight", 4), ("severe", 9))
         ),
     ],
     "dynamics__friction__oil": ["ISO VG 100", "ISO VG 220", "ISO VG 460"],
-    "sensors": [{"name": "lid", "place": "lid", "position_mm": [{"kind": "uniform", "low": 20, "high": 60}, 5.0]}],
+    "sensors": [{"name": "lid", "place": "lid", "position_mm": [[20, 60], 5.0]}],
 }
 
 

@@ -12,18 +12,18 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from tests.config.minimal import config
 
 SPREAD = {
-    "gears__module_mm": {"kind": "uniform", "low": 2.5, "high": 3.5},
-    "gears__pinion__bore_radius_mm": {"kind": "choice", "values": [8, 9, 10]},
-    "dynamics__mesh_damping_ratio": {"kind": "uniform", "low": 0.05, "high": 0.1},
-    "dynamics__gear__bearing_stiffness_y_n_per_m": {"kind": "loguniform", "low": 6e7, "high": 1.2e8},
+    "gears__module_mm": [2.5, 3.5],
+    "gears__pinion__bore_radius_mm": {"one_of": [8, 9, 10]},
+    "dynamics__mesh_damping_ratio": [0.05, 0.1],
+    "dynamics__gear__bearing_stiffness_y_n_per_m": {"log": [6e7, 1.2e8]},
     "operating_points": [
         {
-            "speed_hz": {"kind": "uniform", "low": 20, "high": 35},
-            "torque_nm": {"kind": "normal", "mean": 50, "std": 10, "low": 30, "high": 80},
+            "speed_hz": [20, 35],
+            "torque_nm": {"normal": [50, 10], "within": [30, 80]},
         }
     ]
     * 2,
-    "sensors__0__gain": {"kind": "uniform", "low": 0.9, "high": 1.1},
+    "sensors__0__gain": [0.9, 1.1],
 }
 
 
@@ -52,11 +52,11 @@ def test_specimens_differ():
 @pytest.mark.parametrize(
     "change",
     [
-        {"gears__face_width_mm": {"kind": "uniform", "low": 18, "high": 22}},
-        {"gears__gear__bore_radius_mm": {"kind": "uniform", "low": 14, "high": 16}},
-        {"dynamics__backlash_um": {"kind": "uniform", "low": 60, "high": 120}},
-        {"dynamics__pinion__mass_kg": {"kind": "uniform", "low": 0.4, "high": 0.6}},
-        {"sensors__0__noise": {"floor_m_s2": {"kind": "loguniform", "low": 0.01, "high": 1}}},
+        {"gears__face_width_mm": [18, 22]},
+        {"gears__gear__bore_radius_mm": [14, 16]},
+        {"dynamics__backlash_um": [60, 120]},
+        {"dynamics__pinion__mass_kg": [0.4, 0.6]},
+        {"sensors__0__noise": {"floor_m_s2": {"log": [0.01, 1]}}},
         {"states": [{"name": "healthy"}]},
         {"repeats": 5},
         {"fs_hz": 25_600},
@@ -105,4 +105,4 @@ def test_constants_need_no_luck():
     drawn = draw_specimen(constants, 5)
     assert drawn.gears == constants.gears
     assert drawn.dynamics == constants.dynamics
-    assert drawn.sensors[0].gain == (1.0,)
+    assert drawn.sensors[0].gains == (1.0,)

@@ -44,7 +44,7 @@ ALL: dict[str, Any] = {
     "machines": {},
     "shafts": {},
     "second_stage": {"order": 4.13},
-    "auxiliary_drive": {"order": {"kind": "uniform", "low": 12, "high": 60}, "shaft_order": 0.7},
+    "auxiliary_drive": {"order": [12, 60], "shaft_order": 0.7},
 }
 
 
@@ -153,7 +153,7 @@ def test_states_share_levels_and_lines_but_not_the_course_of_the_noise() -> None
 
 
 def test_levels_of_sensors_and_forces_belong_to_the_gearbox_with_a_background() -> None:
-    drawn = {"kind": "uniform", "low": 0.1, "high": 0.2}
+    drawn = [0.1, 0.2]
     noisy = {**ON_LID, "noise": {"floor_m_s2": drawn}, "mains": {"amplitude_m_s2": drawn}}
     noisy |= {"pink_noise": {"density_m_s2_per_sqrt_hz": drawn}}
     names = ["noise_floor_lid_vertical_m_s2", "pink_noise_lid_vertical_m_s2_per_sqrt_hz", "mains_lid_vertical_m_s2"]

@@ -15,14 +15,14 @@ from siggen.planning.state_config import state_config
 from tests.config.minimal import minimal
 from tests.simulated import simulate
 
-SPREAD = {"kind": "uniform", "low": 0.05, "high": 0.10}
+SPREAD = [0.05, 0.10]
 HOT = {"name": "hot", "fault": "lubrication", "severity": "moderate"}
 
 
 def config(*states: dict[str, Any], **more: Any) -> Config:
     dynamics = {"model": "8dof", "mesh_damping_ratio": SPREAD, "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     raw = minimal(specimens=2, duration_s=0.05, fs_hz=20480.0, mesh_harmonics=3, dynamics=dynamics)
-    sensors = [{"name": "bearing", "gain": {"kind": "uniform", "low": 0.95, "high": 1.05}}, {"name": "other"}]
+    sensors = [{"name": "bearing", "gain": [0.95, 1.05]}, {"name": "other"}]
     return load_config(raw | {"sensors": sensors, "states": [{"name": "healthy"}, *states]} | more)
 
 
@@ -53,7 +53,7 @@ def test_what_changes_nothing_gives_the_bytes_of_healthy(changes: dict[str, Any]
 def test_a_patch_is_the_set_whose_healthy_gearbox_has_these_numbers() -> None:
     patch = {"dynamics.mesh_damping_ratio": {"times": 0.5}, "dynamics.pinion.mass_kg": 2, "sensors.bearing.gain": 0.5}
     found = config(changed(patch), {"name": "last"})
-    half = {"kind": "uniform", "low": 0.025, "high": 0.05}
+    half = [0.025, 0.05]
     dynamics = {
         "model": "8dof", "mesh_damping_ratio": half, "mesh": {"law": "linear"}, "friction": {"model": "off"},
         "pinion": {"mass_kg": 2},
@@ -78,7 +78,7 @@ def test_factor_and_shift_act_on_what_the_healthy_gearbox_drew() -> None:
 
 
 def test_a_drawn_change_belongs_to_gearbox_and_state_and_stays_while_it_grows() -> None:
-    wide = {"dynamics.backlash_um": {"add": {"kind": "uniform", "low": 10, "high": 200}}}
+    wide = {"dynamics.backlash_um": {"add": [10, 200]}}
     worse = {"name": "worse", "fault": "lubrication", "severity": "severe", "grows_from": "hot"}
     chosen = config(changed(wide), {**worse, "changes": {"dynamics.motor_inertia_kg_m2": {"times": 2}}})
     drawn = [[draw_specimen(state_config(chosen, g, s), g).dynamics for s in range(3)] for g in range(2)]

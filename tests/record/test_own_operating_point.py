@@ -11,7 +11,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from tests.simulated import simulate
 
-OWN = "{speed_hz: 32, torque_nm: {kind: uniform, low: 50, high: 60}}"
+OWN = "{speed_hz: 32, torque_nm: [50, 60]}"
 HEAVIER = "{speed_hz: 64, torque_nm: 180}"
 SHORT = ["specimens=1", "duration_s=0.1", "background=null", "mesh_harmonics=5"]
 

@@ -98,14 +98,14 @@ def test_an_instrument_without_a_path_leaves_plain_channels_as_they_were() -> No
 
 DISTURBED = {
     **LID,
-    "gain": {"kind": "uniform", "low": 0.9, "high": 1.1},
-    "noise": {"floor_m_s2": {"kind": "uniform", "low": 0.1, "high": 0.2}},
-    "pink_noise": {"density_m_s2_per_sqrt_hz": {"kind": "uniform", "low": 0.01, "high": 0.02}},
-    "mains": {"amplitude_m_s2": {"kind": "uniform", "low": 0.1, "high": 0.2}},
-    "mounting": {"frequency_hz": {"kind": "uniform", "low": 5000, "high": 15000}},
-    "resonance": {"frequency_hz": {"kind": "uniform", "low": 20000, "high": 50000}},
-    "high_pass_hz": {"kind": "uniform", "low": 0.5, "high": 2.0},
-    "cross_axis": {"kind": "uniform", "low": 0.03, "high": 0.05},
+    "gain": [0.9, 1.1],
+    "noise": {"floor_m_s2": [0.1, 0.2]},
+    "pink_noise": {"density_m_s2_per_sqrt_hz": [0.01, 0.02]},
+    "mains": {"amplitude_m_s2": [0.1, 0.2]},
+    "mounting": {"frequency_hz": [5000, 15000]},
+    "resonance": {"frequency_hz": [20000, 50000]},
+    "high_pass_hz": [0.5, 2.0],
+    "cross_axis": [0.03, 0.05],
 }
 PARTS = ("noise_floor_", "pink_noise_", "mains_")
 

@@ -16,7 +16,7 @@ from siggen.rig.rig_text import rig_text
 from siggen.specimen.gears import gear_pair
 from tests.config.minimal import config as minimal
 
-RANGE = {"kind": "loguniform", "low": 1e8, "high": 2e8}
+RANGE = {"log": [1e8, 2e8]}
 
 
 def family(*pairs: dict[str, Any], **changes: Any) -> Config:
@@ -59,7 +59,7 @@ def test_a_pair_of_the_same_shape_and_twice_the_size_has_eight_masses_and_bears_
 
 
 def test_a_box_that_was_given_grows_with_the_pair_and_one_that_was_not_is_drawn_round_it() -> None:
-    given = {"length_mm": 260.0, "wall_mm": {"kind": "uniform", "low": 8, "high": 12}}
+    given = {"length_mm": 260.0, "wall_mm": [8, 12]}
     twice = {"teeth": [18, 47], "module_mm": 6.0, "face_width_mm": 40.0}
     own = pair_config(family(twice, housing=given), 0).housing
     assert own.length_mm == pytest.approx(520.0)  # type: ignore[union-attr]
@@ -103,7 +103,7 @@ def test_a_machine_carried_over_is_the_one_that_siggen_init_writes() -> None:
 
 def _compare_reliefs(found: dict[str, float], wanted: dict[str, float]) -> None:
     """Take the reliefs out: carried over, both ends grow with the line load; running in is the steel's own."""
-    reliefs = [[numbers.pop(f".mesh.tip_relief_um.{end}") for end in ("low", "high")] for numbers in (found, wanted)]
+    reliefs = [[numbers.pop(f".mesh.tip_relief_um.{end}") for end in (0, 1)] for numbers in (found, wanted)]
     assert reliefs[1][0] == 2.0
     assert reliefs[0][1] == pytest.approx(reliefs[1][1], rel=0.1)  # c' of other teeth
 

@@ -17,7 +17,7 @@ from siggen.sensors.converter import MOST_BITS, bits_of_noise
 from tests.config.minimal import minimal
 from tests.simulated import simulate
 
-FLOOR = {"kind": "loguniform", "low": 0.003, "high": 0.01}
+FLOOR = {"log": [0.003, 0.01]}
 STEP = 2.0**-11
 """The largest power of two within a fifth of 0.003."""
 
@@ -67,7 +67,7 @@ def test_its_step_adds_a_300th_of_the_noise_power() -> None:
 
 
 def test_every_record_of_a_set_has_one_step_whatever_its_state_does_to_the_noise() -> None:
-    own = config(gain={"kind": "uniform", "low": 0.5, "high": 2.0})
+    own = config(gain=[0.5, 2.0])
     records = simulate(own, range(4))
     assert {step_of(one.channels["bearing_vertical"]) for one in records if isinstance(one, SimulatedRecord)} == {STEP}
     assert (

@@ -87,5 +87,5 @@ def test_what_has_no_pulses_is_refused() -> None:
     said = "1; allowed: at least 2; in duration_s its shaft makes 1.5 turns"
     assert found["sensors.0.pulses_per_turn"].startswith(said)
     assert "one of motor, pinion" in problems({**PINION, "place": "lid"})["sensors.0.place"]
-    found = problems({**PINION, "eccentricity": {"kind": "uniform", "low": 0.001, "high": 3}})
+    found = problems({**PINION, "eccentricity": [0.001, 3]})
     assert found["sensors.0.eccentricity"].endswith("allowed: a number from 0 to 0.1")

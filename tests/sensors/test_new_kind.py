@@ -33,7 +33,7 @@ states:
   - {name: slight, damage: {kind: spall, face_length_mm: 4, profile_length_mm: 1, depth_mm: 0.1}}
   - {name: severe, damage: {kind: spall, face_length_mm: 12, profile_length_mm: 2, depth_mm: 0.2}}
 sensors:
-  - {kind: toy_strain_gauge, name: seat, range_um_m: 100, floor_um_m: {kind: uniform, low: 0.005, high: 0.02}}
+  - {kind: toy_strain_gauge, name: seat, range_um_m: 100, floor_um_m: [0.005, 0.02]}
 """
 CLEAN = "internals: {quantities: [bearing_force_pinion_bearing_vertical_n]}"
 SIGNAL = "strain_seat_vertical_um_m"

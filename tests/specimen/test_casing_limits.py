@@ -54,7 +54,7 @@ def test_a_diverged_record_says_where_and_beyond_what() -> None:
 
 def test_diverged_records_are_counted_listed_and_leave_the_others(tmp_path: Path) -> None:
     changes = [*SHORT[1:], HEALTHY, "specimens=6"]
-    changes += [f"{DAMPED}={{kind: choice, values: [800, 1e+20]}}"]
+    changes += [f"{DAMPED}={{one_of: [800, 1e+20]}}"]
     arguments = [word for change in changes for word in ("--set", change)]
     arguments += ["--allowed-loss", "1", "--out", str(tmp_path / "set"), "--engine", "serial"]
     result = CliRunner().invoke(app, ["generate", CONFIG, *arguments])

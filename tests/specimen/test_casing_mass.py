@@ -91,7 +91,7 @@ def test_a_file_that_writes_the_default_values_out_has_the_identity_of_one_witho
     assert config.identity == load_config(minimal(housing=written)).identity
     assert config.identity != load_config(minimal(housing={**plain, "inertia_kg_m2": None})).identity
     assert config.identity != load_config(minimal()).identity
-    plates = {"kind": "plates", "damping_ratio": {"kind": "loguniform", "low": 0.003, "high": 0.05}}
+    plates = {"kind": "plates", "damping_ratio": {"log": [0.003, 0.05]}}
     assert load_config(minimal(housing=plates)).identity == load_config(minimal()).identity
 
 

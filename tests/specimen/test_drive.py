@@ -82,7 +82,7 @@ def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: Config, recor
 
 
 def test_states_share_the_numbers_but_not_the_course() -> None:
-    config = load("variation.speed.random_rms={kind: uniform, low: 0.001, high: 0.005}")
+    config = load("variation.speed.random_rms=[0.001, 0.005]")
     points = len(config.operating_points) * config.repeats
     first, second = planned_record(config, 0), planned_record(config, points)
     assert (first.state_id, second.state_id) == (0, 1)

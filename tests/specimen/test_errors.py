@@ -62,7 +62,7 @@ def test_states_of_a_specimen_share_its_gears_or_do_not() -> None:
 
 
 def test_classes_of_a_choice_all_occur_and_gears_draw_their_own() -> None:
-    config = made("manufacture={accuracy_class: {kind: choice, values: [5, 6, 7]}}")
+    config = made("manufacture={accuracy_class: {one_of: [5, 6, 7]}}")
     found = [errors_of(config, specimen) for specimen in range(40)]
     assert {one.pinion.accuracy_class for one in found} == {5, 6, 7}
     assert any(one.pinion.accuracy_class != one.gear.accuracy_class for one in found)
@@ -161,7 +161,7 @@ def test_a_crowned_pair_at_rest_gives_way_by_up_to_the_mean_of_its_parabola() ->
 
 
 def test_records_say_which_helix_and_crowning_were_drawn() -> None:
-    keys = {"helix": "iso_1328", "crowning_um": {"kind": "uniform", "low": 2.0, "high": 6.0}}
+    keys = {"helix": "iso_1328", "crowning_um": [2.0, 6.0]}
     config = with_helix(CLASS_6, **keys)
     record = records(config, [1])[0]
     errors = errors_of(config, 0, 1)

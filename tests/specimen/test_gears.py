@@ -53,7 +53,7 @@ def test_what_load_lets_pass_gives_tables_and_what_it_refuses_does_not():
 
 
 def test_notes_look_at_both_ends_of_a_distribution():
-    small, large = ({"kind": "uniform", "low": low, "high": high} for low, high in ((3.0, 10.0), (6.0, 17.5)))
+    small, large = ([low, high] for low, high in ((3.0, 10.0), (6.0, 17.5)))
     assert model_notes(config()) == ()
     (thick,) = model_notes(config(gears__pinion__bore_radius_mm=small))
     assert "is 7.75" in thick

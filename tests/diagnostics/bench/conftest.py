@@ -25,8 +25,8 @@ CONFIG = {
     "mesh_harmonics": 3,
     "operating_points": [
         {
-            "speed_hz": {"kind": "uniform", "low": 30, "high": 35},
-            "torque_nm": {"kind": "uniform", "low": 30, "high": 60},
+            "speed_hz": [30, 35],
+            "torque_nm": [30, 60],
         }
     ],
     "states": [

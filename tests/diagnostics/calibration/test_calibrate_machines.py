@@ -38,7 +38,7 @@ RIG: dict[str, Any] = {
     "duration_s": 1.5,
     "mesh_harmonics": 4,
     "manufacture": {"accuracy_class": 6},
-    "operating_points": [{"speed_hz": {"kind": "uniform", "low": 29.0, "high": 31.0}, "torque_nm": 20.0}],
+    "operating_points": [{"speed_hz": [29.0, 31.0], "torque_nm": 20.0}],
     "sensors": [
         {"name": "lid", "place": "input_bearing", "axes": ["vertical"]},
         {"name": "end", "place": "output_bearing", "axes": ["horizontal"]},

@@ -86,7 +86,7 @@ def test_flank_heights_are_those_of_the_simulated_gear(teeth: int, shift: float)
 
 
 def test_gears_that_are_drawn_at_random_have_no_scale() -> None:
-    assert flank_size({"gears": {"module_mm": {"kind": "uniform", "low": 1, "high": 2}}}, "pinion", 20) is None
+    assert flank_size({"gears": {"module_mm": [1, 2]}}, "pinion", 20) is None
     assert flank_size({"name": "memory"}, "gear", 20) is None
 
 
