@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
     from siggen.config import Config
     from siggen.planning.lived import Lived
-    from siggen.sets.record_cost import LifeCost
+    from siggen.sets.record_cost import SetCost
 
 QUANTILES = (0.05, 0.5, 0.95)
-MOST_LIVES = 25
+MOST_LIVES = 12
 """Gearboxes whose lives are worked out for the table; those of further ones count by proportion."""
 ENDS = {"first_pit": "first pit", "rated": "rated damage", "functional": "functional end"}
 
@@ -97,13 +97,15 @@ def history_text(summary: dict[str, Any]) -> str:
     return f"{said}: it begins again {int(schedule_h // history_h)} times" if history_h <= schedule_h else said
 
 
-def cost_summary(cost: LifeCost, summary: dict[str, Any], config: Config) -> dict[str, Any]:
+def cost_summary(cost: SetCost, summary: dict[str, Any], config: Config) -> dict[str, Any]:
     """Return the CPU hours of a set, and what they were worked out from."""
     from dataclasses import asdict
 
     records = summary["records"]
-    pitted = round(records * summary["life"]["pitted_inspections"])
-    hours = cost.hours(config.specimens, records, pitted, config.duration_s)
+    damaged = config.specimens * (len(config.states) - 1)
+    if summary["life"] is not None:
+        damaged = round(records * summary["life"]["pitted_inspections"])
+    hours = cost.hours(config.specimens, damaged, records, config.duration_s)
     return {"cpu_hours": hours, **asdict(cost)}
 
 
@@ -115,10 +117,8 @@ def cost_text(found: dict[str, Any]) -> str:
     workers = default_workers()
     here = f"about {_duration(found['cpu_hours'])} of this processor, {_duration(found['cpu_hours'] / workers)} with "
     here += counted(workers, "process", "processes")
-    if "signal_s" not in found:
-        return f"{here} (estimated from the trial)"
-    of_each = f"{found['signal_s']:.2g} s per second of signal, {found['damage_s']:.2g} s more per inspection with pits"
-    return f"{here} (estimated from four records: {of_each}, {found['gearbox_s']:.2g} s per gearbox)"
+    of_each = f"{found['signal_s']:.2g} s per second of signal, {found['damage_s']:.2g} s per damaged state"
+    return f"{here} (estimated from the trial: {of_each}, {found['gearbox_s']:.2g} s per gearbox)"
 
 
 def _duration(hours: float) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from siggen.sets.trial import SetTrial
 
 
-NOTES = ("stiffness_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
+NOTES = ("size_notes", "stiffness_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
 """Lists of sentences in the summary, in the order in which they are printed."""
 
 
@@ -40,7 +40,7 @@ def plan(
             min=0,
             max=1000,
             help="Gearboxes of which a short record of every state is simulated, to tell what would be lost and what "
-            "the set costs; 0: none. By default a sample of five records, of states evenly spread.",
+            "the set costs; 0: none. By default a sample of three records, of states evenly spread; of dear gears one.",
             metavar="N",
         ),
     ] = None,
@@ -85,14 +85,7 @@ def plan(
 
 def _cost(config: Config, summary: dict[str, Any], tried: SetTrial | None) -> dict[str, Any] | None:
     """Return the CPU hours of a set and how long that is here; None where nothing may be tried."""
-    if tried is None:
-        return None
-    if config.life is None:
-        return {"cpu_hours": tried.cpu_s / 3600.0}
-    from siggen.sets.record_cost import life_cost
-
-    with working("timing four records (--trial 0 leaves this out)"):
-        return cost_summary(life_cost(config), summary, config)
+    return None if tried is None else cost_summary(tried.cost, summary, config)
 
 
 def _tried(config: Config, gearboxes: int | None) -> SetTrial | None:
@@ -197,10 +190,12 @@ def _notes(config: Config) -> dict[str, Any]:
     from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
+    from siggen.checks.size_notes import size_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.specimen.gears import model_notes
 
     notes = {
+        "size_notes": size_notes(config),
         "stiffness_notes": _of_every_pair(config, model_notes),
         "variation": variation_notes(config),
         "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],

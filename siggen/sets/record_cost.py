@@ -1,91 +1,86 @@
-"""CPU time of a set of lives, by proportion from a few records of one gearbox."""
+"""CPU time of a set, by proportion from a few short records."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil
-from typing import TYPE_CHECKING, Any
+from statistics import mean
+from typing import TYPE_CHECKING
 
-from siggen.planning.gearbox import gearbox_life
-from siggen.planning.plan import record_ids_of
-from siggen.sets import physics as contents
-from siggen.sets.trial import shortened
+from siggen.record.stage_times import collected
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.columns.record import RecordFailure, SimulatedRecord
 
-LONGER_S = 2.0
-"""By which a record is longer that tells what a second of signal costs."""
-LOOKED_THROUGH = 20
-"""Gearboxes, at most, among which one is sought that shows both whole and pitted teeth."""
+    Result = SimulatedRecord | RecordFailure
+
+START_S = 0.9
+"""Seconds of signal that cost as much as finding the step and settling do: 0.9 to 1.3 in three gearboxes of quickstart,
+0.8 in planetary, by records of 0.25 to 0.35 s and of 0.85 to 1.5 s."""
+PREPARING = ("plan", "tables")
 
 
 @dataclass(frozen=True, slots=True)
-class LifeCost:
+class RecordTime:
+    """CPU seconds of one record: drawing a gearbox and its tables, and all else; whether its state has damage."""
+
+    prepared_s: float
+    run_s: float
+    damaged: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SetCost:
     """CPU seconds on this machine.
 
     Attributes
     ----------
     gearbox_s : float
-        Of a gearbox: its gears, its housing, the tables of its life.
+        Of a gearbox: its drawing, its housing, its healthy gears.
+    damage_s : float
+        Of the tables of teeth that no earlier record had: of a state, of an inspection with pits.
     record_s : float
         Of a record, without its signal.
-    damage_s : float
-        Of tables for teeth that no earlier record had, in the middle of a pitted life.
     signal_s : float
         Of a second of signal.
     """
 
     gearbox_s: float
-    record_s: float
     damage_s: float
+    record_s: float
     signal_s: float
 
-    def hours(self, gearboxes: int, records: int, pitted: int, duration_s: float) -> float:
-        """Return the CPU hours of a set of which so many inspections see a pitted tooth."""
-        of_records = records * (self.record_s + duration_s * self.signal_s) + pitted * self.damage_s
+    def hours(self, gearboxes: int, damaged: int, records: int, duration_s: float) -> float:
+        """Return the CPU hours of a set in which so many states of its gearboxes have damage of their own."""
+        of_records = records * (self.record_s + duration_s * self.signal_s) + damaged * self.damage_s
         return (gearboxes * self.gearbox_s + of_records) / 3600.0
 
 
-def life_cost(config: Config) -> LifeCost:
-    """Return what records of one gearbox cost, behind a trial that has loaded what they need."""
-    specimen, pitted = _tried(config)
-    each = len(config.operating_points) * config.repeats
-    ids = record_ids_of(config, specimen)[::each]
-    first, whole, damaged = ids[0], ids[: max(1, min(2, pitted))], ids[pitted]
-    short = shortened(config)
-    longer = _lasting(short, min(short.duration_s + LONGER_S, config.duration_s))
-    physics = contents.physics()
-
-    def cost_s(of: Config, *records: int) -> float:
-        return _cpu_s(lambda: list(physics.simulate(of, sorted(set(records)))))
-
-    once, both, with_damage = cost_s(short, first), cost_s(short, *whole), cost_s(short, first, damaged)
-    longer_by_s = longer.duration_s - short.duration_s
-    signal_s = max((cost_s(longer, first) - once) / longer_by_s, 0.0) if longer_by_s > 0.0 else 0.0
-    record_s = max(both - once - short.duration_s * signal_s, 0.0)
-    own_s = max(once - record_s - short.duration_s * signal_s, 0.0)
-    tables_s = _cpu_s(lambda: physics.life_rows(config, specimen))
-    return LifeCost(own_s + tables_s, record_s, max(with_damage - both, 0.0), signal_s)
+def timed(results: Iterator[Result], times: list[RecordTime]) -> Iterator[Result]:
+    """Yield results of a simulation, with the time of each added to a list."""
+    while True:
+        with collected("rest") as found:
+            result = next(results, None)
+        if result is None:
+            return
+        prepared_s = sum(found.seconds.get(name, 0.0) for name in PREPARING)
+        fault = getattr(result, "labels", {}).get("fault", "healthy")
+        times.append(RecordTime(prepared_s, sum(found.seconds.values()) - prepared_s, fault != "healthy"))
+        yield result
 
 
-def _lasting(config: Config, duration_s: float) -> Config:
-    return config.model_copy(update={"duration_s": ceil(duration_s * config.fs_hz) / config.fs_hz})
+def set_cost(times: Sequence[RecordTime], again: RecordTime | None, duration_s: float) -> SetCost:
+    """Return what a set costs of which records of a duration took these times.
 
-
-def _tried(config: Config) -> tuple[int, int]:
-    """Return a gearbox and an inspection in the middle of its pitted ones; of gearboxes without, their last."""
-    for specimen in range(min(config.specimens, LOOKED_THROUGH)):
-        found = gearbox_life(config, specimen)
-        pitted = [k for k, age in enumerate(found.ages_h) if found.clock.time(age) >= found.course.ends.first_pit]
-        if pitted and pitted[0] > 1:
-            return specimen, pitted[len(pitted) // 2]
-    return 0, len(gearbox_life(config, 0).ages_h) - 1
-
-
-def _cpu_s(work: Callable[[], Any]) -> float:
-    begun_s = time.process_time()
-    work()
-    return time.process_time() - begun_s
+    Parameters
+    ----------
+    times : sequence of RecordTime
+        The first one is of a gearbox that nothing was known of, with all loading.
+    again : RecordTime or None
+        Of another gearbox, with nothing left to load; None where that was not tried.
+    duration_s : float
+    """
+    first = again or times[0]
+    damaged = [one.prepared_s for one in times[1:] if one.damaged]
+    signal_s = mean(one.run_s for one in [*times[1:], first]) / (duration_s + START_S)
+    return SetCost(first.prepared_s, mean(damaged or [first.prepared_s]), START_S * signal_s, signal_s)

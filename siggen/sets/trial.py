@@ -6,7 +6,6 @@ gearboxes each, records of 8 and of 60 turns lost the same number in all 15 stat
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil, sqrt
@@ -16,20 +15,23 @@ from typing import TYPE_CHECKING
 from siggen.columns.record import RecordFailure, non_finite
 from siggen.planning.plan import record_ids_of
 from siggen.sets import physics as contents
+from siggen.sets.record_cost import RecordTime, SetCost, set_cost, timed
 
 if TYPE_CHECKING:
     from siggen.columns.record import SimulatedRecord
     from siggen.config import Config
 
-RECORDS = 5
-"""That are tried unless told otherwise: of every state of one gearbox or more, or of as many states, evenly spread.
-Where several pairs of gears mesh they are shared among these, and two are the least."""
-SIZES = 25
+RECORDS = 3
+"""That are tried unless told otherwise: of as many states, evenly spread, or of a new gearbox and a pitted one. Where
+gears are dear, one healthy record."""
+DEAR = 3
+"""As many meshes take as long as three pairs of spur gears; one of helical gears does."""
+SIZES = 15
 """Damaged pairs that are sized: of as many gearboxes as have so many, at least one."""
 TURNS = 8
 """Of the slower shaft that carries damage."""
-LONGER_S = 0.5
-"""By which a record is longer that tells what a second of signal costs."""
+LOOKED_THROUGH = 20
+"""Gearboxes, at most, among which one is sought that shows both whole and pitted teeth."""
 NORMAL_95 = 1.96
 FOUND_LOSS, BESIDE_LOSS, FOUND_LENGTH_MM = 0.15, 0.03, 0.2
 """Of the preset bench: what is found alone and what beside a healthy record (docs/understand/presets.md). Not through
@@ -95,11 +97,11 @@ class StateTrial:
 
 @dataclass(frozen=True, slots=True)
 class SetTrial:
-    """States in the order of the configuration, gearboxes whose damage was sized, CPU seconds of the whole set."""
+    """States in the order of the configuration, gearboxes whose damage was sized, and what records cost."""
 
     states: tuple[StateTrial, ...]
     sized: int
-    cpu_s: float
+    cost: SetCost
 
 
 def trial(config: Config, gearboxes: int | None = None, progress: Callable[[int, int], None] | None = None) -> SetTrial:
@@ -115,54 +117,58 @@ def trial(config: Config, gearboxes: int | None = None, progress: Callable[[int,
         Called with (records done, records of the trial).
     """
     short, physics = shortened(config), contents.physics()
-    meshes = 1 + len(config.stages) if config.planetary is None else 2 * len(config.planetary.positions_deg)
-    most = max(2, RECORDS // meshes) if gearboxes is None else config.state_count
-    wanted = max(1, most // config.state_count) if gearboxes is None else gearboxes
-    tried = min(wanted, config.specimens)
+    meshes = _meshes(config)
+    first, picked = _sample(config, meshes) if gearboxes is None else (0, tuple(range(config.state_count)))
+    tried = range(first, first + min(1 if gearboxes is None else gearboxes, config.specimens))
     found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in config.state_names}
-    picked = _spread(len(found), most)
-    total = tried * len(picked)
-    spent_s: list[float] = []
-    for specimen in range(tried):
+    times: list[RecordTime] = []
+    for specimen in tried:
         ids = _record_ids(short, specimen)  # a gearbox may fail before its last inspection
         places = [i for i in picked if i < len(ids)]
-        begun_s = time.process_time()
-        for i, result in zip(places, physics.simulate(short, [ids[i] for i in places]), strict=True):
+        results = iter(physics.simulate(short, [ids[i] for i in places]))
+        for i, result in zip(places, timed(results, times), strict=True):
             if progress is not None:
-                progress(len(spent_s), total)
+                progress(len(times) - 1, len(tried) * len(picked))
             found[config.state_names[i]].append(result)
-            begun_s, before_s = time.process_time(), begun_s
-            spent_s.append(begun_s - before_s)
+    again: list[RecordTime] = []
+    if meshes < DEAR:
+        other = _record_ids(short, (first + 1) % config.specimens)[:1]
+        list(timed(iter(physics.simulate(short, other)), again))
     count = 0 if config.life is not None else min(max(1, SIZES // (meshes * config.state_count)), config.specimens)
     sizes = [physics.damage_sizes(config, specimen) for specimen in range(count)]
     states = tuple(
         _state_trial(name, results, [one[name] for one in sizes if name in one]) for name, results in found.items()
     )
-    return SetTrial(tuple(one for one in states if one.tried or count), count, _set_cpu_s(config, short, spent_s))
+    cost = set_cost(times, again[0] if again else None, short.duration_s)
+    return SetTrial(tuple(one for one in states if one.tried or count), count, cost)
+
+
+def _meshes(config: Config) -> int:
+    """Return how many pairs of spur gears take as long as the meshes of a gearbox."""
+    if config.planetary is not None:
+        return 2 * len(config.planetary.positions_deg)
+    pairs = (config.gears, *(stage.gears for stage in config.stages))
+    return sum(1 if one.helix_deg == 0.0 else DEAR for one in pairs)
+
+
+def _sample(config: Config, meshes: int) -> tuple[int, tuple[int, ...]]:
+    """Return a gearbox and the states, or inspections, of it that stand for all."""
+    if config.life is not None:
+        from siggen.planning.gearbox import gearbox_life
+
+        for specimen in range(min(config.specimens, LOOKED_THROUGH)):
+            found = gearbox_life(config, specimen)
+            pitted = [k for k, age in enumerate(found.ages_h) if found.clock.time(age) >= found.course.ends.first_pit]
+            if pitted and pitted[0] > 0:
+                return specimen, (0, pitted[len(pitted) // 2])
+        return 0, (0, len(gearbox_life(config, 0).ages_h) - 1)
+    return 0, tuple(_spread(config.state_count, RECORDS if meshes < DEAR else 1))
 
 
 def _spread(count: int, most: int) -> list[int]:
     """Return so many of the first whole numbers, the first and the last among them."""
     steps = min(count, most) - 1
     return [i * (count - 1) // max(steps, 1) for i in range(steps + 1)]
-
-
-def _set_cpu_s(config: Config, short: Config, spent_s: Sequence[float]) -> float:
-    """Return the CPU seconds of a whole set of which short records took so long, the first of them with all loading."""
-    longer = short.model_copy(update={"duration_s": short.duration_s + LONGER_S})
-    one, records = _record_ids(short, 0)[:1], len(record_ids_of(config, 0))
-    once_s, longer_s = _record_cpu_s(short, one), _record_cpu_s(longer, one)
-    signal_s = max(longer_s - once_s, 0.0) / LONGER_S
-    next_s = median(spent_s[1:] or [once_s])
-    return config.specimens * (
-        once_s + (records - 1) * next_s + records * (config.duration_s - short.duration_s) * signal_s
-    )
-
-
-def _record_cpu_s(config: Config, ids: Sequence[int]) -> float:
-    begun_s = time.process_time()
-    list(contents.physics().simulate(config, ids))
-    return time.process_time() - begun_s
 
 
 def shortened(config: Config) -> Config:

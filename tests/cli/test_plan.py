@@ -109,6 +109,18 @@ def test_the_plan_says_what_varies_within_a_record(path):
     assert json.loads(run("plan", path, "--json"))["variation"] == []
 
 
+def test_a_set_too_small_to_judge_models_by_is_told_with_the_size_to_take(path):
+    assert json.loads(run("plan", path, "--json"))["size_notes"] == []
+    small = ("--set", "specimens=24", "--set", "duration_s=0.4")
+    few, short = json.loads(run("plan", path, *small, "--json"))["size_notes"]
+    assert "below 6 the limits of every score are too wide to tell models apart; take specimens: 30 or more" in few
+    assert short.startswith("duration_s: the slowest record has 12 turns of the first shaft, fewer than 2 windows of 8")
+    assert short.endswith("take 0.53 s or more")
+    said = " ".join(run("plan", path, *small).split())
+    assert f"note: {few}" in said
+    assert f"note: {short}" in said
+
+
 def test_a_set_of_pairs_tells_them_and_the_mesh_frequencies_of_all(tmp_path):
     found = tmp_path / "set.yaml"
     pairs = [{"teeth": teeth, "module_mm": 2.5, "face_width_mm": 25} for teeth in ([18, 47], [20, 51], [25, 56])]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from siggen.planning.plan import planned_record
+from siggen.sets.record_cost import START_S, RecordTime, SetCost, set_cost
 from siggen.sets.trial import RECORDS, StateTrial, shortened, trial
 from tests.config.minimal import config as minimal
 from tests.dataset.fake_set import fake_config, fake_physics, simulate_none, simulate_with_failures
@@ -46,9 +47,23 @@ def test_a_sample_takes_gearboxes_where_states_are_few_and_states_where_they_are
         assert [one.tried for one in trial(fake_config()).states] == [1, 1, 1]
         states = [{"name": f"state_{i}"} for i in range(12)]
         found = trial(fake_config(states=states)).states
-    assert [one.tried for one in found] == [1, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]
+    assert [one.tried for one in found] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1]
     assert sum(one.tried for one in found) == RECORDS
     assert found[1].interval == (0.0, 1.0)
+
+
+def test_a_set_costs_by_its_gearboxes_damaged_states_and_seconds_of_signal() -> None:
+    """Known: the first record loads 5 s of code, so the gearbox after it tells; 1.9 s of work are 1 s of signal."""
+    times = [
+        RecordTime(6.0, 3.0, damaged=False),
+        RecordTime(0.5, 1.9, damaged=True),
+        RecordTime(0.1, 1.9, damaged=False),
+    ]
+    cost = set_cost(times, RecordTime(1.0, 1.9, damaged=False), 1.0)
+    assert cost == SetCost(gearbox_s=1.0, damage_s=0.5, record_s=START_S, signal_s=1.0)
+    assert cost.hours(10, 20, 30, 2.0) * 3600 == pytest.approx(10 * 1.0 + 20 * 0.5 + 30 * (START_S + 2.0))
+    alone = set_cost(times[:1], None, 1.0)
+    assert (alone.gearbox_s, alone.damage_s, alone.signal_s) == (6.0, 6.0, pytest.approx(3.0 / (1.0 + START_S)))
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,40 @@
+"""Notes on a set that is too small to judge a model by: few gearboxes in the test split, short records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from siggen.config import BLOCK, Config
+from siggen.errors import counted
+from siggen.keys.number import bounds
+from siggen.planning.plan import specimen_count
+
+FEWEST_TESTED = 6
+WINDOW_TURNS, FEWEST_WINDOWS = 8, 2
+
+
+def size_notes(config: Config) -> tuple[str, ...]:
+    """Return a sentence on each."""
+    return (*_of_split(config), *_of_records(config))
+
+
+def _of_split(config: Config) -> Iterator[str]:
+    tested = specimen_count(config, "test")
+    if tested < FEWEST_TESTED and config.splits.by != "pair":
+        share = config.splits.test
+        more = f"specimens: {-(-FEWEST_TESTED * BLOCK // share)} or more" if share else "a share of splits.test"
+        yield (
+            f"splits: {counted(tested, 'gearbox', 'gearboxes')} in the test split: below {FEWEST_TESTED} the limits of "
+            f"every score are too wide to tell models apart; take {more}"
+        )
+
+
+def _of_records(config: Config) -> Iterator[str]:
+    slowest_hz = min(abs(bound) for point in config.operating_points for bound in bounds(point.speed_hz))
+    slowest_hz *= config.variation.speed_ratios[0]
+    turns, wanted = config.duration_s * slowest_hz, FEWEST_WINDOWS * WINDOW_TURNS
+    if turns < wanted:
+        yield (
+            f"duration_s: the slowest record has {turns:.3g} turns of the first shaft, fewer than {FEWEST_WINDOWS} "
+            f"windows of {WINDOW_TURNS}, which models read; take {wanted / slowest_hz:.2g} s or more"
+        )
