@@ -128,7 +128,8 @@ class Scores:
             lines.append(f"  {TITLES.get(row.name, row.name):{width}}  {_shown(row.score, '.3f')}{difference}")
         if self.gearboxes < FEWEST_GEARBOXES:
             few = counted(self.gearboxes, "gearbox", "gearboxes")
-            lines += ["", f"{few}: too few to tell classifiers apart; from {FEWEST_GEARBOXES} on limits mean something"]
+            said = f"shares have exact limits, all else and differences have limits from {FEWEST_GEARBOXES} on"
+            lines += ["", f"{few}: too few to tell classifiers apart; {said}"]
         return "\n".join(lines)
 
 
@@ -261,8 +262,13 @@ def _row(
         measure=measure.name,
         records=part,
         name=name,
-        score=(area_interval if measure.is_share else interval)(samples, measure.gearboxes(truth)),
+        score=(area_interval if measure.is_share else _resampled)(samples, measure.gearboxes(truth)),
         chance=measure.chance(truth),
-        difference=None if own is None else interval(own - samples, truth.gearboxes),
+        difference=None if own is None else _resampled(own - samples, truth.gearboxes),
         falls=measure.falls,
     )
+
+
+def _resampled(samples: np.ndarray, gearboxes: int) -> Interval:
+    """Return limits by resampling; few gearboxes that agree would make them meet, so they have none."""
+    return interval(samples, gearboxes if gearboxes >= FEWEST_GEARBOXES else 0)

@@ -1,19 +1,22 @@
 """Print docs/reference/python.md: `python docs/scripts/python_reference.py > docs/reference/python.md`.
 
-Signatures and docstrings of the public names of siggen; what follows of diagnostics is rendered by the site.
+Signatures and docstrings of the public names of siggen and diagnostics.
 """
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
 import textwrap
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import Any
 
 import siggen
 from siggen.dataset.reading import Dataset
 
+ROOT = Path(__file__).parents[2]
 GROUPS = {
     "Gearboxes": ("single_stage", "machine", "planetary", "draw", "Gearbox", "State", "Point"),
     "Records": ("run", "runs", "Case", "Record", "Spectrum", "LineOrders"),
@@ -121,62 +124,72 @@ def page() -> str:
         parts.append(f"## {title}\n")
         parts += [entry(name, getattr(siggen, name)) + "\n" for name in names]
     parts.append(entry("open(...)", Dataset).replace("`siggen.open(...)`", "What `siggen.open` returns") + "\n")
-    return "\n".join(parts) + DIAGNOSTICS
+    return "\n".join([*parts, of_diagnostics()])
 
 
-DIAGNOSTICS = """
-## diagnostics
+DIAGNOSTICS = {
+    "## diagnostics\n\n`import diagnostics` loads nothing. An example: "
+    "[your own classifier](../understand/baselines.md#your-own-classifier).": {
+        "diagnostics.table": "indicators.classifier_table", "diagnostics.averages": "training.average_rows",
+        "FeatureMatrix": "indicators.matrix", "diagnostics.windows": "loader.window_arrays",
+        "Windows": "loader.window_arrays", "diagnostics.LogisticBaseline": "training.estimators",
+        "diagnostics.BoostingBaseline": "training.estimators", "diagnostics.score": "scoring.score",
+        "Scores": "scoring.score", "ScoreRow": "scoring.score_row", "diagnostics.open_benchmark": "scoring.benchmark",
+        "diagnostics.score_benchmark": "scoring.benchmark_scores",
+    },
+    "## diagnostics.loader\n\nWindows of a set for PyTorch. [Load a set](../start/load_a_set.md) has an example.": {
+        "diagnostics.loader.WindowStream": "loader.window_stream",
+        "diagnostics.loader.WindowLoader": "loader.window_stream",
+        "diagnostics.loader.WindowDataset": "loader.window_dataset",
+        "diagnostics.loader.RowGroupSampler": "loader.window_dataset",
+        "diagnostics.loader.StreamSettings": "loader.window_index",
+        "diagnostics.loader.Shuffling": "loader.epoch_order",
+    },
+    "## A measured recording\n\nAll indicators of a file in one call: `diagnostics.machine.recording_indicators`.": {
+        "recording_indicators": "machine.recording_indicators", "RecordingIndicators": "machine.recording_indicators",
+        "RecordingFacts": "recordings.taken",
+    },
+}  # fmt: skip
+"""Heading -> name, as it is imported or the class that a function returns -> module that defines it."""
 
-`import diagnostics` loads nothing. An example: [your own classifier](../understand/baselines.md#your-own-classifier).
 
-::: diagnostics.table
+def of_diagnostics() -> str:
+    """Return the sections of diagnostics, whose sources are read: torch and scikit-learn need not be there."""
+    parts = []
+    for heading, homes in DIAGNOSTICS.items():
+        parts += [heading, *(read_entry(name, home) for name, home in homes.items())]
+    return "\n\n".join(parts) + "\n"
 
-::: diagnostics.indicators.matrix.FeatureMatrix
 
-::: diagnostics.windows
+def read_entry(name: str, home: str) -> str:
+    """Return heading, signature and docstring of a name in a source, of a class with those of its public methods."""
+    source = ast.parse((ROOT / "diagnostics" / f"{home.replace('.', '/')}.py").read_text(encoding="utf-8"))
+    short = name.rpartition(".")[2]
+    (node,) = (one for one in source.body if getattr(one, "name", "") == short)
+    doc = ast.get_docstring(node) or ""
+    if isinstance(node, ast.ClassDef):
+        made = next((one for one in node.body if getattr(one, "name", "") == "__init__"), None)
+        shown = f"class {short}{called(made) if made else ''}".removesuffix(" -> None")
+        doc += "\n\n" + (ast.get_docstring(made) or "") if made else ""
+        of_class = [one for one in node.body if isinstance(one, ast.FunctionDef) and not one.name.startswith("_")]
+        methods = [read_member(one) for one in of_class]
+    else:
+        shown, methods = f"{short}{called(node)}", []
+    text = "\n".join(textwrap.wrap(shown, 100, subsequent_indent="    "))
+    return "\n\n".join([f"### `{name}`", f"```text\n{text}\n```", described(doc.strip()), *methods])
 
-::: diagnostics.open_benchmark
 
-::: diagnostics.score_benchmark
+def read_member(node: ast.FunctionDef) -> str:
+    """Return a method or property of a source as one item."""
+    is_property = any("property" in ast.unparse(one) for one in node.decorator_list)
+    return f"* `.{node.name}{'' if is_property else called(node)}`: {first_sentence(ast.get_docstring(node) or '')}"
 
-::: diagnostics.loader.window_arrays.Windows
 
-::: diagnostics.LogisticBaseline
+def called(node: ast.FunctionDef) -> str:
+    """Return the arguments and the result of a function."""
+    arguments = re.sub(r"^self(, )?", "", ast.unparse(node.args))
+    return f"({arguments})" + (f" -> {ast.unparse(node.returns)}" if node.returns else "")
 
-::: diagnostics.BoostingBaseline
-
-::: diagnostics.score
-
-::: diagnostics.scoring.score.Scores
-
-::: diagnostics.scoring.score_row.ScoreRow
-
-## diagnostics.loader
-
-Windows of a set for PyTorch. [Load a set](../start/load_a_set.md) has an example.
-
-::: diagnostics.loader.WindowStream
-
-::: diagnostics.loader.WindowLoader
-
-::: diagnostics.loader.WindowDataset
-
-::: diagnostics.loader.RowGroupSampler
-
-::: diagnostics.loader.StreamSettings
-
-::: diagnostics.loader.Shuffling
-
-## A measured recording
-
-All indicators of a file in one call:
-
-::: diagnostics.machine.recording_indicators.recording_indicators
-
-::: diagnostics.machine.recording_indicators.RecordingIndicators
-
-::: diagnostics.recordings.measured_recording.RecordingFacts
-"""
 
 if __name__ == "__main__":
     print(page())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import diagnostics.loader
 import siggen
 from tests.house.source_tree import ROOT
 
@@ -19,4 +20,6 @@ def test_the_page_of_the_python_api_is_what_its_script_prints() -> None:
 
 def test_it_has_every_public_name() -> None:
     page = PAGE.read_text(encoding="utf-8")
-    assert not [name for name in siggen.__all__ if f"### `siggen.{name}`" not in page]
+    for package in (siggen, diagnostics, diagnostics.loader):
+        named = (f"{package.__name__}.{name}" for name in package.__all__)
+        assert not [name for name in named if f"### `{name}`" not in page]

@@ -167,6 +167,18 @@ def test_an_error_in_area_is_that_of_its_mean(dataset: Any) -> None:
         diagnostics.score(dataset, {"record_id": test["record_id"], "area_mm2": -np.ones(24)})
 
 
+def test_few_gearboxes_that_agree_get_no_limits_but_shares_exact_ones(dataset: Any, tmp_path: Path) -> None:
+    """Resamples of four gearboxes that are all as wrong have no width; four that are all right still may be luck."""
+    own, few = labels_of(dataset, "validation"), dataset.labels("validation", ["damaged_area_mm2", "state"])
+    truth = np.array(few["damaged_area_mm2"].to_pylist())
+    answers = {"record_id": own["record_id"], "area_mm2": truth + 2.0, "damage": truth}
+    found = diagnostics.score(dataset, answers, split="validation")
+    assert found.gearboxes == 4
+    assert np.isnan(row(found, AREA, "all").score.low)
+    assert row(found, "AUC", "severe").score.low == pytest.approx(0.025 ** (1 / 4))
+    assert "4 gearboxes: too few to tell classifiers apart; shares have exact limits, all else and dif" in str(found)
+
+
 def test_risk_is_counted_over_all_that_are_as_sure(dataset: Any) -> None:
     rng = np.random.default_rng(4)
     answers = np.stack([rng.integers(0, 6, 40), rng.integers(0, 2, 40)], axis=1).astype(np.float64)
