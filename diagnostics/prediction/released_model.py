@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     from diagnostics.training.cnn_files import NetworkFacts
 
 NETWORK_FILE = "cnn.safetensors"
-LOADED_ONCE = ("skops.io", "diagnostics.training.cnn_files")
-"""What the process that tries models loads before it has limits, as far as it is installed."""
+LOADED_ONCE = ("diagnostics.training.skops_io",)
+"""What the process that tries models loads before it has limits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +185,8 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     if strange := [file.name for file in files if not file.is_file()]:
         raise UsageError(f"{folder}: {', '.join(strange)} cannot be read through; allowed: regular files")
     size = sum(file.stat().st_size for file in files)
-    with read_apart(folder / FACTS_FILE, f"{__name__}:try_model", size=size):
+    tried_by = "diagnostics.prediction.model_with_network" if (folder / NETWORK_FILE).exists() else __name__
+    with read_apart(folder / FACTS_FILE, f"{tried_by}:try_model", size=size):
         return _loaded(folder, own)  # as it was just read within limits
 
 

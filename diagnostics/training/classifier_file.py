@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import asdict
-from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -72,12 +71,10 @@ def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
 
 
 def _skops_io() -> ModuleType:
-    """Return skops.io, imported when it is needed.
+    """Return skops.io, imported when it is needed."""
+    from diagnostics.training.skops_io import skops_io
 
-    Where torch is installed its import comes along, seconds of it: skops lists all estimators of scikit-learn, and one
-    package on that way wraps torch. Hiding torch for so long is no way out: scipy keeps asking for it by name.
-    """
-    return import_module("skops.io")
+    return skops_io
 
 
 def _classifier(path: Path, pipeline: Any, facts: dict[str, Any]) -> FeatureClassifier:

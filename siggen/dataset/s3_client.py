@@ -6,6 +6,7 @@ import importlib.util
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 from siggen.errors import DatasetError, UsageError, how_to_install
@@ -38,6 +39,13 @@ def s3_client() -> Any:
     """
     if importlib.util.find_spec("boto3") is None:
         raise UsageError(f"s3:// needs boto3: {how_to_install('s3')}")
+    # what a client is made of; a forked process makes its own
+    return _client(os.getpid(), tuple(sorted(item for item in os.environ.items() if item[0].startswith("AWS_"))))
+
+
+@cache
+def _client(process: int, variables: tuple[tuple[str, str], ...]) -> Any:  # noqa: ARG001 - they tell clients apart
+    """Return one client for all objects and threads, which may share it; to make it takes a quarter of a second."""
     import boto3
     from botocore.config import Config
 

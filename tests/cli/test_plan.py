@@ -22,7 +22,9 @@ def path(tmp_path):
 
 
 def run(*arguments) -> str:
-    result = CliRunner().invoke(app, [str(argument) for argument in arguments], env={"COLUMNS": "160"})
+    """Return what the command prints without the trial, which has tests of its own (tests/sets/test_trial.py)."""
+    given = [*map(str, arguments), "--trial", "0"]
+    result = CliRunner().invoke(app, given, env={"COLUMNS": "160"})
     assert result.exit_code == 0, result.output
     return result.stdout
 

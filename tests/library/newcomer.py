@@ -49,7 +49,7 @@ hoist = hoist.with_(
     State("d_cracked", (Crack("d", depth_mm=1.0),)),
 )
 for state in hoist.states:
-    siggen.run(hoist, state.name, speed_hz=16, torque_nm=50, duration_s=0.3).plot("input_vertical")
+    siggen.run(hoist, state.name, speed_hz=16, torque_nm=50, duration_s=0.1).plot("input_vertical")
 
 
 # 5  a fault of one's own: one method
@@ -65,7 +65,7 @@ class Dent(siggen.Damage):
 
 
 dented = gearbox.with_(State("dented", (Dent("pinion"),)))
-siggen.run(dented, "dented", speed_hz=25, torque_nm=40, duration_s=0.3)
+siggen.run(dented, "dented", speed_hz=25, torque_nm=40, duration_s=0.1)
 
 
 # 6  a sensor of one's own: what it reads, and what it does to it
@@ -79,11 +79,11 @@ class StrainGauge:
         return [siggen.Channel(f"{self.name}_strain", "1", (force,), lambda f: 1 / (1 + 1j * f / 5e3))]
 
 
-strained = siggen.run(gearbox.with_(StrainGauge("seat", "input")), speed_hz=25, torque_nm=40, duration_s=0.3)
+strained = siggen.run(gearbox.with_(StrainGauge("seat", "input")), speed_hz=25, torque_nm=40, duration_s=0.1)
 assert np.std(strained.channels["seat_strain"]) > 0.0
 
 # 7  a gearbox of a set, in all its states
-config = siggen.load_config("quickstart", ["duration_s=0.3"])
+config = siggen.load_config("quickstart", ["duration_s=0.1"])
 third = siggen.draw(config, 3)
 levels = {one.name: np.std(siggen.run(third, one.name).channels["lid_vertical"]) for one in third.states}
 print(*levels)

@@ -52,7 +52,7 @@ def test_a_pit_leaves_no_land_from_the_very_share_that_an_outlook_takes(unit: in
 
 def test_a_life_ends_anywhere_among_its_continuations_from_its_first_pit_and_from_a_large_one() -> None:
     young, old = [], []
-    for unit in range(80):
+    for unit in range(60):
         one = course(unit)
         young.append(rank(one, one.ends.first_pit))
         times = np.arange(one.ends.first_pit, one.ends.functional, 0.2 * STEP)
@@ -66,4 +66,4 @@ def test_a_life_ends_anywhere_among_its_continuations_from_its_first_pit_and_fro
 
 def rank(one: PittingCourse, time: float) -> float:
     """Return which share of continuations from a damage time end before the life itself does."""
-    return float((one.outlook(time, 100) < one.ends.functional).mean())
+    return float((one.outlook(time, 60) < one.ends.functional).mean())

@@ -137,9 +137,9 @@ def test_areas_of_the_unions_are_those_of_growth_and_of_the_very_outlines(unit: 
 
 def test_a_later_outline_holds_an_earlier_one_at_any_two_ages() -> None:
     rng = np.random.default_rng(5)
-    for unit in range(20):
+    for unit in range(12):
         one = course(unit, share=0.4)
-        for _ in range(50):
+        for _ in range(20):
             early, late = sorted(one.ends.first_pit + rng.random(2) * (one.ends.functional - one.ends.first_pit))
             older, newer = one.damage(early), one.damage(late)
             assert older is not None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -23,12 +24,14 @@ DROPPED = ("PYTHONPATH", "VIRTUAL_ENV", "SIGGEN_TRACEBACK")
 SHELL = "set -eu -o pipefail\n"
 
 
-def reader_folder(folder: Path) -> Path:
-    """Fill a folder with what a reader of the pages has beside the installed programs."""
-    for name in BESIDE:
+def reader_folder(folder: Path, blocks: Sequence[Block]) -> Path:
+    """Fill a folder with what a reader of the pages has beside the installed programs, as far as blocks name it."""
+    text = "\n".join(block.source for block in blocks)
+    # scripts of one folder import from the others
+    for name in BESIDE if re.search(r"\b(benchmarks|docs|tests)\b", text) else ("configs",):
         shutil.copytree(ROOT / name, folder / name, ignore=LEFT_OUT)
     for name in ("docs/figures", "runs"):
-        (folder / name).mkdir(exist_ok=True)
+        (folder / name).mkdir(parents=True, exist_ok=True)
     return folder
 
 

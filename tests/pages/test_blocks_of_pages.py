@@ -63,13 +63,13 @@ def wrong(things: Given, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Ite
     with ExitStack() as open_until_the_end:
 
         def followed(page: Path, slow: bool) -> str:
-            folder = reader_folder(tmp_path)
+            wanted = [block for block in blocks(page) if block.is_run and (slow or not block.is_slow)]
+            there = [b for b in wanted if all(importlib.util.find_spec(name) for name in b.marked("needs"))]
+            folder = reader_folder(tmp_path, there)
             for name in given(page.read_text(encoding="utf-8"), slow=slow):
                 things.put(name, folder, SMALLER if slow else READ_ALONE)
                 if name == STORE:
                     open_until_the_end.enter_context(s3_server(monkeypatch))
-            wanted = [block for block in blocks(page) if block.is_run and (slow or not block.is_slow)]
-            there = [b for b in wanted if all(importlib.util.find_spec(name) for name in b.marked("needs"))]
             return failing(there, folder, reader_environment())
 
         yield followed

@@ -17,16 +17,12 @@ LINE_HZ = 2 * 30.0 / (1.0 - SLIP)
 RIPPLE = {"speed": {"ripple_once": 0.002}}
 
 
-def test_it_is_a_line_of_active_and_magnetising_current() -> None:
-    config = loaded(CLAMP, duration_s=1.0, **OFF)
-    current = record(config).channels["clamp_phase_a"]
-    assert line(current, config.fs_hz, LINE_HZ) == pytest.approx(np.hypot(5.0, 10.0 * 60 / 80), rel=1e-4)
-
-
-def test_a_ripple_once_per_turn_stands_beside_the_line_by_one_shaft_order() -> None:
+def test_a_line_of_active_and_magnetising_current_has_a_ripple_once_per_turn_beside_it_by_one_shaft_order() -> None:
     still, moved = (
         record(loaded(CLAMP, MOTOR, duration_s=1.0, variation=variation, **OFF)).channels for variation in ({}, RIPPLE)
     )
+    drawn = np.hypot(5.0, 10.0 * 60 / 80)
+    assert line(still["clamp_phase_a"], 25_600.0, LINE_HZ) == pytest.approx(drawn, rel=1e-4)
     speed = line(moved["motor_rotation"], 25_600.0, 30.0)
     assert speed == pytest.approx(0.002 * 2 * np.pi * 30.0, rel=0.1)  # the coupling lets the rotor swing by itself too
     slip = 2 * speed / (2 * np.pi * LINE_HZ)

@@ -231,7 +231,7 @@ def test_the_model_starts_where_its_record_does() -> None:
             assert np.abs(own - found).max() < 1e-6 * np.ptp(own)
 
 
-@pytest.mark.parametrize("coupling", ["none", "body"])
+@pytest.mark.parametrize("coupling", [pytest.param("none", marks=pytest.mark.slow), "body"])
 def test_scipy_gives_the_motion_with_damping_by_asperity_share(coupling: str) -> None:
     model, own = beginning("tests/configs/casing.yaml", 12, 300, 32, f"stiffness.coupling={coupling}")
     assert {"mesh.0.law.contact.touch_m", "mesh.0.law.damping_film_root_kg"} <= set(model)

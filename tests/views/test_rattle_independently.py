@@ -78,7 +78,7 @@ def impacts(force_n: FloatArray) -> list[int]:
     return [int(flank[k]) for k in begun if flank[k] != 0.0]
 
 
-@pytest.mark.parametrize(("torque_nm", "knock_m_s"), KNOCKS)
+@pytest.mark.parametrize(("torque_nm", "knock_m_s"), ONE_FAST)
 def test_scipy_gives_the_motion_of_flanks_that_bounce_within_the_backlash(torque_nm: float, knock_m_s: float) -> None:
     # Impacts multiply what steps leave: 16 per sample leave up to 1.9e-3, 32 and 64 up to 3e-4.
     model, own = knocked(torque_nm, knock_m_s, 32)
@@ -94,7 +94,7 @@ def test_scipy_gives_the_motion_of_flanks_that_bounce_within_the_backlash(torque
     assert largest(own, by_scipy(closer, own, 1e-5)) > 0.02
 
 
-@pytest.mark.parametrize(("torque_nm", "knock_m_s"), KNOCKS[:2])
+@pytest.mark.parametrize(("torque_nm", "knock_m_s"), ONE_FAST[:2])
 def test_runge_kutta_bounces_as_scipy_does(torque_nm: float, knock_m_s: float) -> None:
     # First order at impacts, which make it larger: 64 steps per sample leave up to 9e-3.
     model, own = knocked(torque_nm, knock_m_s, 256, reference=True)

@@ -76,13 +76,13 @@ def test_from_a_set_to_scores_of_own_classifiers_beside_the_baselines(rig: Path,
     (rig / "tree.py").write_text(blocks()[0])
     in_python = walk(rig, "python tree.py")
     assert walk(rig, "siggen-diagnostics score set mine.parquet") == in_python
-    walk(rig, "siggen-diagnostics score set mine.parquet --baselines models --out scores.csv")
+    told = printed(rig, "siggen-diagnostics score set mine.parquet --baselines models --out scores.csv")["scores"]
     rows = pyarrow.csv.read_csv(rig / "scores.csv").to_pylist()
     assert {row["name"] for row in rows} == {"yours", "indicators", "boosting", "rms"}
-    assert printed(rig, "siggen-diagnostics score set mine.parquet --baselines models")["scores"] == rows
+    assert told == rows
     reported = json.loads((models / "metrics.json").read_text())["classifiers"]
-    told = [row for row in rows if row["name"] != "yours" and row["records"] != "sham against healthy"]
-    for row in told:  # a sham is judged by `score` alone
+    judged = [row for row in rows if row["name"] != "yours" and row["records"] != "sham against healthy"]
+    for row in judged:  # a sham is judged by `score` alone
         if row["measure"] in ("AUC", "balanced accuracy", "macro AUROC"):
             assert (row["score"], row["low"], row["high"]) == published(row, reported[row["name"]])
 

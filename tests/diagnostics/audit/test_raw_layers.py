@@ -20,7 +20,7 @@ GAIN = 10.0 ** (0.5 / 20.0)
 """Half a decibel up on one channel, as much down on another: the mean over the channels stays."""
 
 
-TWICE = Plant(points=1, repeats=2)
+TWICE = Plant(specimens=6, points=1, repeats=2)
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore:unclosed file:ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning"
 )
 KINDS = [*dialects.texts(), *dialects.arrays()]
-CUTS = 16
+CUTS = 10
 
 
 @pytest.fixture(autouse=True, scope="module")

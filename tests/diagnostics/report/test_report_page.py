@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
@@ -28,6 +29,7 @@ from diagnostics.report import report
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.report import PageOptions, write_report
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
+from diagnostics.training import cnn, network_training
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.realism import meaning_of_scores
 from diagnostics.training.training import Training
@@ -208,8 +210,10 @@ def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
 
 
 def test_seven_revolutions_and_no_validation_specimens_still_train_every_classifier(
-    make_dataset: Callable[..., Any], tmp_path: Path
+    make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(cnn, "NetworkSettings", partial(cnn.NetworkSettings, most_epochs=4))
+    monkeypatch.setattr(network_training, "PERMUTED_EPOCHS", 2)
     short = with_channels(make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25), CHANNELS[:1])
     earlier = tmp_path / "figures" / "confusion_network.png"
     earlier.parent.mkdir()
@@ -217,7 +221,7 @@ def test_seven_revolutions_and_no_validation_specimens_still_train_every_classif
     write_report(short, tmp_path, seed=0)
     metrics = json.loads((tmp_path / "metrics.json").read_text())
     assert set(metrics["training"]["classifiers"]) == {"indicators", "boosting", "rms", "network"}
-    assert "no validation specimens: trained for 80 epochs without stopping" in metrics["notes"]
+    assert "no validation specimens: trained for 4 epochs without stopping" in metrics["notes"]
     assert any("gear sidebands not resolved by 2 gear revolutions" in note for note in metrics["notes"])
     assert any("no validation specimens" in note for note in metrics["notes"])
     assert not earlier.exists()

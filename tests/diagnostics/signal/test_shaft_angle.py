@@ -14,8 +14,7 @@ from tests.diagnostics.signal.made_gears import MadeGears, made_gears
 TEETH = (27, 71)
 
 
-@pytest.mark.parametrize("beside", [0.3, 1.5])
-@pytest.mark.parametrize("limits", [(22.0, 26.0), (15.0, 36.0)])
+@pytest.mark.parametrize(("beside", "limits"), [(0.3, (22.0, 26.0)), (1.5, (15.0, 36.0))])
 def test_angle_is_right_to_a_fiftieth_of_a_pitch_through_drift_load_steps_and_strong_sidebands(
     beside: float, limits: tuple[float, float]
 ) -> None:
@@ -73,7 +72,7 @@ def test_a_range_that_misses_the_speed_is_refused_with_the_speed_that_was_seen(l
 @pytest.mark.parametrize(
     ("teeth", "given"),
     [
-        *((TEETH, given) for given in ((26, 71), (28, 71), (27, 70), (27, 73))),
+        *((TEETH, given) for given in ((28, 71), (27, 70))),
         # sidebands of twice the pinion's teeth fall upon those of the pinion, or a cell beside them
         *(((33, 66), given) for given in ((33, 67), (34, 66))),
     ],

@@ -42,8 +42,8 @@ def matrix_of(values: np.ndarray, healthy_records: int = 1) -> FeatureMatrix:
     return FeatureMatrix(values, tuple(f"noise_{k}__x" for k in range(values.shape[1])), labels)
 
 
-def noise(records: int) -> np.ndarray:
-    return np.random.default_rng(4).lognormal(size=(records, NOISE_COLUMNS))
+def noise(records: int, columns: int = NOISE_COLUMNS) -> np.ndarray:
+    return np.random.default_rng(4).lognormal(size=(records, columns))
 
 
 def test_the_best_of_many_columns_of_noise_is_chance_on_gearboxes_that_did_not_choose_it() -> None:
@@ -58,7 +58,7 @@ def test_the_best_of_many_columns_of_noise_is_chance_on_gearboxes_that_did_not_c
 
 
 def test_a_column_that_shows_damage_is_chosen_whatever_its_direction() -> None:
-    values = noise(3 * GEARBOXES)
+    values = noise(3 * GEARBOXES, 60)
     matrix = matrix_of(values)
     values[:, 7] = np.exp(-np.array([STATES.index(name) for name in matrix.labels["state"]]))
     found = judged_detectors(matrix, None, seed=0)
@@ -70,7 +70,7 @@ def test_a_column_that_shows_damage_is_chosen_whatever_its_direction() -> None:
 
 
 def test_a_healthy_reference_removes_what_differs_from_gearbox_to_gearbox() -> None:
-    values = noise(4 * GEARBOXES)
+    values = noise(4 * GEARBOXES, 60)
     matrix = matrix_of(values, healthy_records=2)
     gearbox = np.exp(np.random.default_rng(5).normal(scale=3.0, size=GEARBOXES))[matrix.labels["specimen_id"]]
     damage = np.array([STATES.index(name) for name in matrix.labels["state"]])
