@@ -47,7 +47,7 @@ class Fitted:
 
 def jackknife(values: np.ndarray, statistic: Callable[[np.ndarray], float] = np.mean) -> Fitted:
     """Return a statistic of recordings (n,) with its interval."""
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
     known = np.asarray(values, dtype=np.float64)
     known = known[np.isfinite(known)]
@@ -58,7 +58,7 @@ def jackknife(values: np.ndarray, statistic: Callable[[np.ndarray], float] = np.
         return Fitted(whole, -math.inf, math.inf)
     without = np.array([statistic(np.delete(known, k)) for k in range(known.size)])
     error = math.sqrt((known.size - 1) / known.size * float(np.square(without - without.mean()).sum()))
-    reach = float(t.ppf(0.5 + 0.5 * CONFIDENCE, known.size - 1)) * error
+    reach = float(stdtrit(known.size - 1, 0.5 + 0.5 * CONFIDENCE)) * error
     return Fitted(whole, whole - reach, whole + reach)
 
 

@@ -171,7 +171,7 @@ def group_bound(values: np.ndarray, group: np.ndarray, share: float) -> float:
     share : float
         Between 0.5 and 1.
     """
-    from scipy.stats import t
+    from scipy.special import stdtrit
 
     members = [values[group == number] for number in np.unique(group)]
     means = np.array([found.mean() for found in members])
@@ -180,7 +180,7 @@ def group_bound(values: np.ndarray, group: np.ndarray, share: float) -> float:
     of_means = float(means.var(ddof=1)) if means.size > 1 else within
     records = np.mean([1.0 / found.size for found in members])  # what scatter within adds to a mean's variance
     between = max(of_means - within * float(records), 0.0)
-    quantile = float(t.ppf(share, max(means.size - 1, 1)))
+    quantile = float(stdtrit(max(means.size - 1, 1), share))
     return float(means.mean()) + quantile * float(np.sqrt(between + within + of_means / means.size))
 
 

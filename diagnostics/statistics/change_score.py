@@ -144,10 +144,10 @@ def _score(deviation: np.ndarray) -> float:
 
 def _normal(references: np.ndarray, new: float, rate: float, prior: float) -> tuple[float, float]:
     """Return the share of log scores above the new one, and the score that `rate` of them exceed."""
-    from scipy.stats import t
+    from scipy.special import stdtr, stdtrit
 
     middle, degrees = float(references.mean()), prior + references.size - 1
     squares = prior * PRIOR_SCORE_SPREAD**2 + float(((references - middle) ** 2).sum())
     spread = max(sqrt(squares / degrees), LEAST_SPREAD) * sqrt(1.0 + 1.0 / references.size)
-    limit = np.exp(middle + spread * t.isf(rate, degrees))
-    return float(t.sf((new - middle) / spread, degrees)), float(limit)
+    limit = np.exp(middle - spread * stdtrit(degrees, rate))
+    return float(stdtr(degrees, (middle - new) / spread)), float(limit)
