@@ -8,6 +8,7 @@ from typing import Any
 
 from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears, Pair, Wheel
+from siggen.config.planetary import RING, ROLES
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
@@ -159,5 +160,6 @@ def _named(sections: Mapping[str, Any]) -> Iterator[Problem]:
         for where, one in state.placed(f"states.{index}"):
             gear = str(getattr(one, "gear", ""))
             if pair_of(sections, gear) is None:
+                front = ("pinion", "gear") if sections.get("planetary") is None else (*ROLES, RING)
                 names = [f"{stage.name}.{which}" for stage in sections["stages"] for which in ("pinion", "gear")]
-                yield Problem(f"{where}.gear", f"'{gear}'", f"allowed: {', '.join(['pinion', 'gear', *names])}")
+                yield Problem(f"{where}.gear", f"'{gear}'", f"allowed: {', '.join([*front, *names])}")

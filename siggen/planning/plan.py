@@ -134,18 +134,6 @@ class Plan:
         """Number of records."""
         return len(self.records)
 
-    def specimens_of(self, split: str) -> tuple[int, ...]:
-        """Return the specimens of a split in ascending order.
-
-        Raises
-        ------
-        ValueError
-            If there is no such split.
-        """
-        if split not in SPLITS:
-            raise ValueError(f"there is no split {split!r}; splits are {', '.join(SPLITS)}")
-        return tuple(i for i in range(self.config.specimens) if split_of(self.config, i) == split)
-
 
 def plan(config: Config) -> Plan:
     """Return the plan of a configuration."""

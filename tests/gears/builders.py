@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from math import radians
 
 from siggen.gears.damage.pit import FlankPit
@@ -40,3 +41,8 @@ def layers(count, per_layer, step_face_mm=1.0, step_height_mm=0.4, height_mm=1.9
         for layer in range(count)
         for i in range(per_layer)
     )
+
+
+def even_places(planets: int) -> tuple[Fraction, ...]:
+    """Return places of equally spaced planets in turns."""
+    return tuple(Fraction(i, planets) for i in range(planets))

@@ -16,7 +16,6 @@ from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.geometry.gear_pair import GearPair as Pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.library.shape_fault import shape_of
 from siggen.views.stiffness_curves import stiffness_curves
@@ -229,8 +228,15 @@ def test_what_a_law_or_a_gearbox_has_not_is_refused() -> None:
         mesh_stiffness(PAIR, points_per_pitch=10.5)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="pair: received 'pair'; allowed: a GearPair"):
         siggen.flank_picture("pair", [])  # type: ignore[arg-type]
-    with pytest.raises(UsageError, match=r"teeth=\(5, 6\) of module 2 mm: "):
-        Pair.of((5, 6), 2)
+    for given, said in (
+        ({"teeth": (5, 6)}, r"teeth=\(5, 6\) of module 3 mm: "),
+        ({"teeth": ("18", 47)}, r"teeth: received \('18', 47\); allowed: 2 whole numbers, such as \(18, 47\)"),
+        ({"teeth": 18}, "teeth: received 18; allowed: 2 whole numbers"),
+        ({"module_mm": "3"}, "module_mm: received '3'; allowed: a number"),
+        ({"shifts": (0.1, "a")}, r"shifts: received \(0.1, 'a'\); allowed: 2 numbers"),
+    ):
+        with pytest.raises(UsageError, match=said):
+            GearPair.of(**{"teeth": (18, 47), "module_mm": 3, **given})  # type: ignore[arg-type]
     gearbox = siggen.single_stage((23, 61), 2.5)
     for state, said in (
         (State("X", (Pit(),)), "State.name: received the text 'X'; allowed: lower-case"),

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.housing.box import SIDES, Axis, Bolt, Box, Seat, plane_axes
+from siggen.dynamics.housing.box import SIDES, Axis, Bolt, Seat, plane_axes
 from siggen.dynamics.housing.box_energy import bolt_rows
 from siggen.dynamics.housing.half_functions import HalfFunctions
 
@@ -77,16 +77,6 @@ def bolt_motions(halves: tuple[HalfFunctions, HalfFunctions], bolt: Bolt) -> dic
         found[f"front/{axis.name.lower()}"] = Motion(even[axis], odd[axis])
         found[f"back/{axis.name.lower()}"] = Motion(mirrored[0] * even[axis], mirrored[1] * odd[axis])
     return found
-
-
-def box_motions(box: Box, halves: tuple[HalfFunctions, HalfFunctions]) -> dict[str, Motion]:
-    """Return the motions of all seats as shaft/wall/direction."""
-    return {
-        f"{shaft}/{wall}/{name}": motion
-        for shaft, seat in box.seats.items()
-        for wall in ("front", "back")
-        for name, motion in seat_motions(halves, seat, wall).items()
-    }
 
 
 def _at(half: HalfFunctions, place: PlatePlace) -> FloatArray:

@@ -126,14 +126,6 @@ def line_kernels(
     ]
 
 
-def kernel_matrix(cells: int, cell_m: float, half_width_m: float, depth_m: float, poisson_ratio: float) -> FloatArray:
-    """Return K (cells, cells) itself, dimensionless, as the module's docstring has it (no fit, ε of the secant)."""
-    offset = np.arange(cells)
-    row: FloatArray = _near(offset, 0.5 * exp(-0.5) * half_width_m / cell_m)
-    row = row - _below(offset.astype(np.float64) * cell_m, cell_m, depth_m, poisson_ratio)
-    return np.asarray(row[np.abs(offset[:, None] - offset[None, :])])
-
-
 def _near(offset: NDArray[np.int64], width: float) -> FloatArray:
     return np.asarray(0.5 * (np.arcsinh((offset + 0.5) / width) - np.arcsinh((offset - 0.5) / width)))
 

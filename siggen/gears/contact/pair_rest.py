@@ -47,11 +47,6 @@ class PairRest(NamedTuple):
         return PairRest(self.rigid_m_per_n[chosen], self.tooth_m_per_n[chosen], self.length_m, uneven)
 
 
-def rigid_rest(compliance_m_per_n: FloatArray) -> PairRest:
-    """Return the rest (k,) of teeth that are rigid across the face."""
-    return PairRest(compliance_m_per_n, np.zeros_like(compliance_m_per_n), np.inf)
-
-
 def pair_rest(
     pair: GearPair,
     teeth: tuple[ToothCompliance, ToothCompliance],

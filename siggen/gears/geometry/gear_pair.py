@@ -10,6 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import acos, atan, cos, isfinite, pi, radians, tan
+from typing import Any
+
+import numpy as np
 
 from siggen.errors import UsageError
 from siggen.gears.geometry.involute import inverse_involute, involute_function
@@ -126,8 +129,15 @@ class GearPair:
         Raises
         ------
         UsageError
-            If these teeth cannot be made or cannot mesh: says why.
+            If an argument is no number, or these teeth cannot be made or cannot mesh: says why.
         """
+        whole, number = (int, np.integer), (int, float, np.number)
+        _check("teeth", teeth, 2, whole, "2 whole numbers, such as (18, 47)")
+        for name, value in (("module_mm", module_mm), ("face_width_mm", face_width_mm or 1.0),
+                            ("pressure_angle_deg", pressure_angle_deg), ("helix_deg", helix_deg)):  # fmt: skip
+            _check(name, (value,), 1, number, "a number")
+        for name, values in (("shifts", shifts), ("bores_mm", bores_mm or (1.0, 1.0))):
+            _check(name, values, 2, number, "2 numbers")
         width_m = 1e-3 * (WIDTH_MODULES * module_mm if face_width_mm is None else face_width_mm)
         alpha, beta, bores_m = radians(pressure_angle_deg), radians(helix_deg), []
         for i, count in enumerate(teeth):
@@ -281,6 +291,14 @@ class GeometryProblem:
     def __str__(self) -> str:
         """One line: where, name, what was received, what is allowed."""
         return f"{self.where}: {self.name}: received {self.received}; {self.allowed}"
+
+
+def _check(argument: str, values: Any, count: int, kinds: tuple[type, ...], allowed: str) -> None:
+    """Refuse what are not so many numbers of these kinds."""
+    listed: tuple[Any, ...] = tuple(values) if isinstance(values, (tuple, list)) else ()
+    numbers = len(listed) == count and all(isinstance(one, kinds) for one in listed)
+    if not (numbers and all(map(isfinite, listed))):
+        raise UsageError(f"{argument}: received {values[0] if count == 1 else values!r}; allowed: {allowed}")
 
 
 def geometry_problems(pair: GearPair) -> tuple[GeometryProblem, ...]:

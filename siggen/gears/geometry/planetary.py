@@ -92,11 +92,6 @@ class PlanetarySet:
         return "rotation" if step == 0 else "translation" if step in {1, count - 1} else "planets"
 
 
-def even_places(planets: int) -> tuple[Fraction, ...]:
-    """Return places of equally spaced planets in turns."""
-    return tuple(Fraction(i, planets) for i in range(planets))
-
-
 def typed_places(positions_deg: Sequence[float], slots: int) -> tuple[Fraction, ...]:
     """Return places in turns of positions as a user types them; the exact one where a planet fits that near."""
     found = []

@@ -183,25 +183,6 @@ def table_of_pair(pair: GearPair, kinds: tuple[tuple[int, int], ...]) -> NDArray
     return table
 
 
-def table_error(pair: GearPair, damage: Damage, options: StiffnessOptions, tables: MeshTables) -> float:
-    """Return the largest relative error of linear interpolation in the tables, at all mid points (dimensionless).
-
-    `pair`, `damage` and `options` are those that the tables were made from.
-    """
-    rows = tables.pair_stiffness_n_per_m
-    middle = tables.start_m + tables.step_m * (np.arange(rows.shape[1] - 1) + 0.5)
-    direct = kind_stiffness(pair, damage, options, pair_kinds(pair, damage), middle)
-    error = _middle_error(rows, direct)
-    if tables.coupled is None:
-        return error
-    coupled = _coupled(pair, damage, options, tables.table_of_pair, middle, direct)
-    return max(error, _middle_error(tables.coupled.stiffness_n_per_m, coupled.stiffness_n_per_m))
-
-
-def _middle_error(rows: FloatArray, direct: FloatArray) -> float:
-    return float(np.max(np.abs(0.5 * (rows[:, 1:] + rows[:, :-1]) / direct - 1.0)))
-
-
 def largest_stiffness_loss(pair: GearPair, damage: Damage, options: StiffnessOptions) -> float:
     """Return max (K_healthy - K_damaged)/K_healthy of the mesh over the angle of a whole hunting period.
 

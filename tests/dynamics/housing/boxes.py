@@ -7,6 +7,7 @@ from dataclasses import replace
 from siggen.dynamics.housing.box import Bolt, Box, Material, Seat, Thicknesses
 from siggen.dynamics.housing.half_functions import HalfFunctions
 from siggen.dynamics.housing.housing_modes import degrees
+from siggen.dynamics.housing.motion import Motion, seat_motions
 
 IRON = Material(1.1e11, 0.26, 7200.0)
 STEEL = Material(2.06e11, 0.3, 7850.0)
@@ -23,3 +24,13 @@ def iron_box(**changes) -> Box:
 def halves_of(box: Box) -> tuple[HalfFunctions, HalfFunctions]:
     own = degrees(box)
     return HalfFunctions(box.size_m, own, False), HalfFunctions(box.size_m, own, True)
+
+
+def box_motions(box: Box, halves: tuple[HalfFunctions, HalfFunctions]) -> dict[str, Motion]:
+    """Return the motions of all seats as shaft/wall/direction."""
+    return {
+        f"{shaft}/{wall}/{name}": motion
+        for shaft, seat in box.seats.items()
+        for wall in ("front", "back")
+        for name, motion in seat_motions(halves, seat, wall).items()
+    }

@@ -11,9 +11,9 @@ from siggen.dynamics.housing.housing_modes import (
     housing_modes,
 )
 from siggen.dynamics.housing.modes import TableModes, table_motion
-from siggen.dynamics.housing.motion import PlatePlace, bolt_motions, box_motions, motion_at
+from siggen.dynamics.housing.motion import PlatePlace, bolt_motions, motion_at
 from siggen.dynamics.housing.plate_energy import sheet
-from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, iron_box
+from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, box_motions, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
 from tests.dynamics.housing.timoshenko_beam import free_bending_hz
 from tests.reference.housing.third_octaves import bands_db, centres_hz, distance, lines_hz

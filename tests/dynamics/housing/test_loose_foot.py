@@ -12,8 +12,8 @@ from siggen.dynamics.housing.box import Axis
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.housing_modes import HousingModes, housing_modes
 from siggen.dynamics.housing.loose_foot import LoosenedModes, loosened, springs
-from siggen.dynamics.housing.motion import Motion, PlatePlace, bolt_motions, box_motions, motion_at
-from tests.dynamics.housing.boxes import IRON, iron_box
+from siggen.dynamics.housing.motion import Motion, PlatePlace, bolt_motions, motion_at
+from tests.dynamics.housing.boxes import IRON, box_motions, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
 from tests.reference.housing.solid_box import solid_box
 

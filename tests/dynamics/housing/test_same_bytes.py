@@ -14,8 +14,7 @@ PROGRAM = """
 import hashlib
 from siggen.dynamics.housing.housing_modes import housing_modes
 from siggen.dynamics.housing.loose_foot import loosened
-from siggen.dynamics.housing.motion import box_motions
-from tests.dynamics.housing.boxes import iron_box
+from tests.dynamics.housing.boxes import box_motions, iron_box
 box = iron_box()
 sound = housing_modes(box, 6000.0)
 for found in (sound, loosened(sound, box, 0.1)):

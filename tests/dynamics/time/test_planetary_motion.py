@@ -9,9 +9,10 @@ from scipy.integrate import solve_ivp
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.pair_motion import MeanState, PairMotion
-from siggen.gears.geometry.planetary import PlanetarySet, even_places, planetary_problems
+from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems
 from tests.dynamics.planetary_set import meshes, planetary_stage
 from tests.dynamics.trains import planetary_structure
+from tests.gears.builders import even_places
 
 TEETH = PlanetarySet(25, 26, 77, even_places(3))
 """One harmonic in three is in step at all planets; planets with even teeth."""

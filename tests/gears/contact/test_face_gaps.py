@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_gaps import FaceGaps, _nearest, face_gaps
 from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
-from siggen.gears.contact.pair_rest import rigid_rest
+from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import FlankSpall
@@ -79,15 +79,19 @@ def test_the_carrying_length_is_the_land_or_the_whole_face():
     assert length(np.full(100, 0.6e-3), whole) == pytest.approx(20e-3)
 
 
+def rigid(positions: int) -> PairRest:
+    return PairRest(np.zeros(positions), np.zeros(positions), np.inf)
+
+
 def test_arrays_that_do_not_fit_are_refused():
     other = flank_chords(PAIR.gear, (), PAIR.face_width_m, SLICES + 1)
     with pytest.raises(ValueError, match="as many on both"):
         face_gaps(PAIR, flanks()[0], other, np.array([PAIR.pitch_point_m]))
     gaps = face_gaps(PAIR, *flanks(), np.array([PAIR.pitch_point_m]))
     with pytest.raises(ValueError, match="as many as positions"):
-        pair_faces(PAIR, gaps, np.zeros(2), rigid_rest(np.zeros(2)), FaceOptions(60e3))
+        pair_faces(PAIR, gaps, np.zeros(2), rigid(2), FaceOptions(60e3))
     with pytest.raises(ValueError, match="one for each slice"):
-        pair_faces(PAIR, gaps, np.array([PAIR.pitch_point_m]), rigid_rest(np.zeros(1)), FaceOptions(60e3), np.zeros(3))
+        pair_faces(PAIR, gaps, np.array([PAIR.pitch_point_m]), rigid(1), FaceOptions(60e3), np.zeros(3))
 
 
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(0, 4)), min_size=1, max_size=6))

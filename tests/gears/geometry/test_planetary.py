@@ -4,7 +4,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from siggen.gears.geometry.planetary import PlanetarySet, even_places, planetary_problems, typed_places
+from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems, typed_places
+from tests.gears.builders import even_places
 
 EVEN = PlanetarySet(24, 27, 78, even_places(3))
 UNEVEN = PlanetarySet(24, 27, 78, (Fraction(0), Fraction(33, 102), Fraction(70, 102)))
