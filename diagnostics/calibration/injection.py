@@ -29,6 +29,7 @@ from diagnostics.calibration.path_draws import number_limits
 from diagnostics.recordings.configured_train import config_train
 from diagnostics.records.gear_train import train_labels
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
+from siggen.columns.record import label_columns
 from siggen.errors import SolverFailure, UsageError
 from siggen.keys.column import Role
 
@@ -187,7 +188,8 @@ def _complete(rows: Sequence[dict[str, Any]], config: Any) -> None:
     torque_nm = 0.5 * sum(number_limits(torque))
     states = dict.fromkeys(["healthy", *(row["state"] for row in rows)])
     numbers = {state: number for number, state in enumerate(states)}
-    teeth = {config.names.column(name): count for name, count in train_labels(config_train(config)).items()}
+    named = {column.filled_by: column.name for column in label_columns(config)}
+    teeth = {named[name]: count for name, count in train_labels(config_train(config)).items()}
     for row in rows:
         row["state_id"], row["torque_nm"] = numbers[row["state"]], float(torque_nm)
         row.update(teeth)

@@ -90,8 +90,8 @@ def read_rig(file: Path) -> Rig:
     if config.gears.pairs:
         raise UsageError(f"{file}: gears differ within the set; a calibration is of one machine of known teeth")
     names = config.names
-    drive = drivetrain(configured_train(file), [own for _, own in names.shafts], [own for _, own in names.meshes])
-    found = Rig(file, config.canonical(), drive, tuple(map(names.force, config.places.pressed)))
+    called = [shaft.word for shaft in names.shafts], [mesh.word for mesh in names.meshes]
+    found = Rig(file, config.canonical(), drivetrain(configured_train(file), *called), config.places.pressed)
     if not found.sensors:
         raise UsageError(f"{file}: sensors: received {', '.join(found.left_out)}; allowed: at least one accelerometer")
     return found

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from siggen.config.names import NO_NAMES, Names
+from diagnostics.records.own_words import NO_WORDS, OwnWords
 
 ELLIPSE_CORNERS = 48
 DIGITS = 3
 
 
-def _sections(config: Mapping[str, Any], gear: str, names: Names) -> tuple[Any, Any]:
+def _sections(config: Mapping[str, Any], gear: str, names: OwnWords) -> tuple[Any, Any]:
     """Return the sections of a gear's mesh and of the gear itself; of a machine those that its user wrote."""
     mesh, _, role = gear.rpartition(".")
     stages = [one for one, _ in names.meshes] or ["", *(stage["name"] for stage in config.get("stages") or ())]
@@ -29,7 +29,7 @@ def _at(section: Any, path: str) -> Any:
     return section
 
 
-def flank_size(config: Mapping[str, Any], gear: str, teeth: int, names: Names = NO_NAMES) -> dict[str, float] | None:
+def flank_size(config: Mapping[str, Any], gear: str, teeth: int, names: OwnWords = NO_WORDS) -> dict[str, float] | None:
     """Return face width and heights of pitch circle and tip above the flank's point on the base circle [mm].
 
     Heights lie along the tooth's axis, as in the table of damage: r cos(g_r) - R_b cos(g_b) with the half tooth angle

@@ -107,10 +107,19 @@ def chosen_labels(dataset: Dataset) -> dict[str, np.ndarray]:
 
 def shown_internals(dataset: Dataset) -> list[dict[str, str]]:
     """Return name, title and shown unit of the stored quantities that the page draws; none for a set without them."""
-    stored = {column.name for column in getattr(dataset, "internal_columns", ())}
-    return [
-        {"name": name, "title": title, "unit": unit} for name, (title, unit, _) in WAVES_SHOWN.items() if name in stored
-    ]
+    stored, waves = {column.name for column in getattr(dataset, "internal_columns", ())}, _waves(dataset)
+    return [{"name": name, "title": title, "unit": unit} for name, (title, unit, _) in waves.items() if name in stored]
+
+
+def _waves(dataset: Dataset) -> dict[str, tuple[str, str, float]]:
+    """Return the quantities that the page draws, of every mesh where there are several; as `WAVES_SHOWN`."""
+    names = dataset.names()[0]
+    return dict(WAVES_SHOWN) | {
+        names.quantity(mesh, name): (f"{title}, {mesh.word}", unit, factor)
+        for mesh in names.meshes[: len(names.meshes) if names.given else 0]
+        for name, (title, unit, factor) in WAVES_SHOWN.items()
+        if names.quantity(mesh, name) != name
+    }
 
 
 def internal_waves(
@@ -129,7 +138,7 @@ def internal_waves(
         Stretch of every record that is kept whole, as of its signals.
     """
     found: list[dict[str, Any]] = [{} for _ in ids]
-    names = [quantity["name"] for quantity in shown_internals(dataset)]
+    names, waves = [quantity["name"] for quantity in shown_internals(dataset)], _waves(dataset)
     place = {int(record): row for row, record in enumerate(ids)}
     if not names:
         return found
@@ -137,7 +146,7 @@ def internal_waves(
         for line, record in enumerate(batch.column("record_id").to_pylist()):
             row = place.get(record)
             if row is not None:
-                series = {name: WAVES_SHOWN[name][2] * np.asarray(batch.column(name)[line].values) for name in names}
+                series = {name: waves[name][2] * np.asarray(batch.column(name)[line].values) for name in names}
                 found[row] = {name: packed_wave(values, detail, fine[row]) for name, values in series.items()}
     return found
 

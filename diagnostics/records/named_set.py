@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pyarrow as pa
 
 from diagnostics.records.gear_train import GEARS
-from siggen.config.names import BREAK, NO_NAMES, Names, changed_beside
+from diagnostics.records.own_words import BREAK, NO_WORDS, OwnWords, changed_beside, own_words
 from siggen.dataset import reading
 from siggen.dataset.reading import Dataset, RowGroup
 from siggen.keys.column import Role
@@ -38,7 +38,7 @@ OF_GEAR = re.compile(
 class Words:
     """The user's names in texts, tables and figures about a set, but for data; without any, nothing changes."""
 
-    names: Names = NO_NAMES
+    names: OwnWords = NO_WORDS
     channels: frozenset[str] = frozenset()
 
     def __call__(self, text: str) -> str:
@@ -137,7 +137,7 @@ class Words:
 class NamedSet(Dataset):
     """A set with names of its own, whose columns have those of the program."""
 
-    def read_as(self, names: Names, short: Mapping[str, str]) -> NamedSet:
+    def read_as(self, names: OwnWords, short: Mapping[str, str]) -> NamedSet:
         """Return the set with the words of a machine: column of the files -> column here."""
         self.own_names, self._short = names, dict(short)
         self._own = {here: there for there, here in short.items()}
@@ -193,11 +193,11 @@ def open_set(path: PurePath | str) -> Dataset:
     """Return a set as diagnostics reads it; raises DatasetError as `siggen.open`."""
     dataset = reading.open(path)
     names, short = dataset.names()
-    if names == NO_NAMES:
+    if not names.given:
         return dataset
     dataset.__class__ = NamedSet
     assert isinstance(dataset, NamedSet)
-    return dataset.read_as(names, short)
+    return dataset.read_as(own_words(names), short)
 
 
 def words_of(dataset: Dataset) -> Words:

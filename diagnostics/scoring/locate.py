@@ -27,10 +27,10 @@ def gear_teeth(dataset: Dataset) -> dict[str, str]:
     names, columns = dataset.names()[0], dataset.labels().column_names
     if is_planetary(columns):
         return {member: f"teeth_{member}" for member in MEMBERS}
-    if names.gears:
-        columns_of = {own: f"teeth_{short.replace('.', '_')}" for short, own in names.gears}
+    if names.given:
+        known = {gear.word: (f"teeth_{gear.column}", f"teeth_{gear.inner_column}") for gear in names.gears}
         # read in the user's words, or in those of the program
-        return {own: named if (named := names.column(one)) in columns else one for own, one in columns_of.items()}
+        return {word: named if named in columns else inner for word, (named, inner) in known.items()}
     further = {f"{mesh}.{gear}": f"teeth_{mesh}_{gear}" for mesh in further_meshes(columns) for gear in GEARS}
     return {**{gear: f"teeth_{gear}" for gear in GEARS}, **further}
 

@@ -16,7 +16,7 @@ import siggen
 from siggen.checks.quantity_names import available_quantities
 from siggen.columns.gearbox_columns import HOUSING_COLUMNS
 from siggen.columns.record import damage_schema, record_schema
-from siggen.config.names import NO_NAMES
+from siggen.names import PAIR as PAIR_NAMES
 from siggen.record.quantities import quantity_column
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -45,10 +45,10 @@ ADDED = {
 PLATES = "`housing.kind: plates`"
 SENSOR_PARTS = ("pink_noise", "mains")
 NAMES = {
-    r"theta_\w+_rad": "rotation of motor (m), pinion (1), gear (2) and load (l) about the mean rotation",
-    r"[xy]_\w+_m": "horizontal (x) and vertical (y) motion of pinion (1), gear (2) and casing (c)",
-    r"phi_c_rad": "rocking of the casing",
-    r"phi_[xy]_[12]_rad": "tilt of pinion (1) and gear (2): how x or y of its flanks grows along the shaft",
+    r"theta_\w+_rad": "rotation of motor, gears and load about the mean rotation",
+    r"[xy]_\w+_m": "horizontal (x) and vertical (y) motion of gears and casing",
+    r"phi_casing_rad": "rocking of the casing",
+    r"phi_[xy]_\w+_rad": "tilt of a gear: how x or y of its flanks grows along the shaft",
     r"clean_accel_.*": "acceleration at this place without path, sensor and noise",
     r"bearing_force_.*": "force on the housing at both bearings of this shaft",
     r"pair_k_force_n": "force of this pair along the line of action",
@@ -154,7 +154,7 @@ def internals() -> Iterator[str]:
     """Yield the internal quantities of a gearbox with casing, tooth pairs and oil friction, a line for each meaning."""
     names: dict[str, list[str]] = {}
     for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml")):
-        column = quantity_column(name, NO_NAMES)
+        column = quantity_column(name, PAIR_NAMES)
         shown = re.sub(r"pair_\d+", "pair_k", name)
         spelled = column.meaning.startswith(name.replace("_", " "))
         note = column.meaning.removeprefix(name.replace("_", " ")) if spelled else ""

@@ -30,7 +30,7 @@ def _unused(config: Config) -> Iterator[str]:
         rotor = getattr(config.dynamics, which)
         given = [key for key in STIFFNESSES if key in rotor.model_fields_set]
         if rotor.bearing is not None and given:
-            at = f"dynamics.{which}"
+            at = config.names.own_path(f"dynamics.{which}.bearing").removesuffix(".bearing")
             yield (
                 f"{' and '.join(f'{at}.{key}' for key in given)}: not used: {at}.bearing has a stiffness by load; "
                 f"{at}.bearing: null takes the given one"
@@ -49,4 +49,5 @@ def _of(config: Config) -> Iterator[tuple[str, str]]:
                 f"{balls} bear it over {degrees(one.half_zone_rad):.0f} degrees to either side (clearance "
                 f"{clearance_um:.3g} um)"
             )
-            yield f"both bearings of the {which} under {point.torque_nm:.3g} N m (gearbox 0)", text
+            shaft = next(one.called for one in config.names.shafts if one.inner == which)
+            yield f"both bearings of {shaft} under {point.torque_nm:.3g} N m (gearbox 0)", text

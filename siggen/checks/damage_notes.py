@@ -27,7 +27,7 @@ def _on_torques(config: Config) -> Iterator[str]:
         yield f"{idle}{also}"
     if any(low < 0.0 for low, _ in torques):
         harmless = ", so damage of drive flanks changes nothing, and a missing tooth counts as whole" if damaged else ""
-        yield f"torques below 0 N m load the back flanks: the gear drives the pinion{harmless}"
+        yield f"torques below 0 N m load the back flanks: the driven gear drives{harmless}"
 
 
 def state_notes(config: Config) -> tuple[str, ...]:

@@ -73,7 +73,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     of_physics = [
         *physical_problems(parsed),
         *state_problems(parsed),
-        *response_problems(parsed.sections, parsed.names),
+        *response_problems(parsed.sections),
         *mode_problems(parsed.sections),
     ]
     told = [*written, *parsed.problems, *unread, *unread_modes, *unusable]

@@ -8,6 +8,7 @@ from typing import Any
 
 from siggen.config import Background, ModalHousing
 from siggen.config.data_file import data_file_bytes, shortened_path
+from siggen.config.short_form import names_in
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
@@ -61,8 +62,9 @@ def mode_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
         return
     present = (*map(shape_column, table.shapes), *table.base)
     sensors = tuple(sections.get("sensors", {}).values())
-    stages = (stage.name for stage in sections.get("stages", ()))
-    seats = seats_of(stages) if sections.get("planetary") is None else SEATS_OF_SET
+    planetary = sections.get("planetary") is not None
+    names = names_in(sections.get("machine"), sections.get("stages", ()), planetary=planetary)
+    seats = SEATS_OF_SET if planetary else seats_of(names)
     for column, use in {**_needed(sensors, seats), **_needed_behind(sections.get("background"))}.items():
         if column not in present:
             allowed = f"allowed: a column of this name, for {use}"

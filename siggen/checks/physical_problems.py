@@ -23,6 +23,7 @@ from siggen.checks.stage_layout_problems import stage_layout_problems
 from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
 from siggen.config import Dynamics, Gears, ParsedConfig, Stiffness
+from siggen.config.short_form import names_in
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import allowed_text, found_problems, in_mm
@@ -89,7 +90,8 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
         for path, damage in state.placed(f"states.{index}"):
             problems += _state_problems(flanks, damage, path, through_face=through_face)
     if sections.get("manufacture") is not None:
-        problems += _outside_tolerances(sound, ("pinion", "gear"))
+        driver, driven = names_in(sections.get("machine"), (), planetary=False).first.gears
+        problems += _outside_tolerances(sound, {"pinion": driver.word, "gear": driven.word})
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)
     problems += bearing_problems(sections)
     problems += variation_problems(sections, sound)
@@ -109,7 +111,7 @@ def _of_ring(sections: Mapping[str, Any]) -> Iterator[Problem]:
     sound = [one for one in map(gear_pair, corners(_without_material(gears))) if not geometry_problems(one)]
     rings = rings_round(section, sound)
     if sections.get("manufacture") is not None:
-        yield from _outside_tolerances(rings, ("gear",), "ring")
+        yield from _outside_tolerances(rings, {"gear": "ring"})
     found = [
         problem
         for state, one in ring_sections(sections)["states"].items()
@@ -119,11 +121,11 @@ def _of_ring(sections: Mapping[str, Any]) -> Iterator[Problem]:
     yield from {problem.path: problem for problem in reversed(found)}.values()
 
 
-def _outside_tolerances(pairs: Sequence[GearPair], members: Sequence[str], name: str = "") -> Iterator[Problem]:
+def _outside_tolerances(pairs: Sequence[GearPair], members: Mapping[str, str]) -> Iterator[Problem]:
     for pair in pairs:
-        for which in members:
+        for which, name in members.items():
             for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which, pair.helix_rad):
-                received = f"tolerances for a {name or which} with {problem.name} {problem.received}"
+                received = f"tolerances for a {name} with {problem.name} {problem.received}"
                 yield Problem("manufacture", received, f"{problem.allowed}; or null")
 
 

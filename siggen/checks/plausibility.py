@@ -7,7 +7,7 @@ know before a set is made. They are judgement, beside the limits of the standard
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 from math import pi, sqrt
 from operator import mul
@@ -69,7 +69,8 @@ def implausible(config: Config) -> tuple[str, ...]:
     """Return a sentence on every implausible number of a configuration, in the order of its sections."""
     if config.gears.pairs:
         return (*_of_pairs(config), *missing(config))
-    found = (config.names.text(str(quantity)) for quantity in quantities(config) if quantity.implausible)
+    outside = (quantity for quantity in quantities(config) if quantity.implausible)
+    found = (str(replace(quantity, path=config.names.own_path(quantity.path))) for quantity in outside)
     return (*found, *missing(config))
 
 
@@ -150,14 +151,14 @@ def _load(config: Config, pair: GearPair) -> Iterator[Quantity]:
         force = [abs(low), abs(high)]
         at = f"operating_points.{i}"
         speeds = [abs(speed) * 2.0 * pi * pair.pinion.pitch_radius_m for speed in bounds(point.speed_hz)]
-        hint = "speeds are turns of the pinion per second, not per minute"
+        hint = "speeds are turns of the input shaft per second, not per minute"
         yield Quantity(f"{at}.speed_hz", "pitch-line velocity [m/s]", _ends(speeds), 0.02, 100.0, hint)
         if low <= 0.0 <= high:  # idle is no mistake: what the largest torque does is judged, if there is one
             force = [max(force)]
         if max(force) == 0.0:
             continue
         pressure = [1e-6 * _hertz_pa(pair, value) for value in force]
-        hint = "torques are N m on the pinion; 1500 MPa is what case-hardened flanks bear"
+        hint = "torques are N m on the input shaft; 1500 MPa is what case-hardened flanks bear"
         yield Quantity(
             f"{at}.torque_nm", "contact stress at the pitch point [MPa]", _ends(pressure), 50.0, 2000.0, hint
         )
@@ -207,8 +208,8 @@ def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
         )
     disc = disc_inertia_kg_m2(pair.pinion, pair.face_width_m)
     for name in ("motor_inertia_kg_m2", "load_inertia_kg_m2"):
-        hint = "is it in kg m²?"
-        yield _of(f"dynamics.{name}", "inertia over the pinion's disc", getattr(dynamics, name), 0.1, 1e5, hint, disc)
+        what, hint = "inertia over the disc of the first gear", "is it in kg m²?"
+        yield _of(f"dynamics.{name}", what, getattr(dynamics, name), 0.1, 1e5, hint, disc)
     if dynamics.model == "casing":
         yield from _housing(config.housing, pair)
     approach = 1e6 * highest / radius / (pair.face_width_m * 14e9)
@@ -263,9 +264,7 @@ def _slowest_shaft(config: Config) -> tuple[str, float]:
         return "the carrier", 1.0 / (1.0 + config.planetary.ring_teeth / config.gears.pinion.teeth)
     pairs = [config.gears, *(stage.gears for stage in config.stages)]
     orders = accumulate((pair.pinion.teeth / pair.gear.teeth for pair in pairs), mul, initial=1.0)
-    words = ["the pinion shaft", "the gear shaft", *(f"the shaft of {stage.name}.gear" for stage in config.stages)]
-    own = [f"the shaft {name}" for _, name in config.names.shafts]
-    order, shaft = min(zip(orders, own or words, strict=True))
+    order, shaft = min(zip(orders, (shaft.called for shaft in config.names.shafts), strict=True))
     return shaft, order
 
 

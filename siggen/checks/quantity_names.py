@@ -12,6 +12,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
 from siggen.keys.drawing import corners
+from siggen.names import Names
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.stages import turns
@@ -29,7 +30,7 @@ def quantity_problems(config: Config) -> list[Problem]:
     asked = () if section is None else section.named
     if not asked:
         return []
-    available = tuple(map(config.names.column, available_quantities(config)))
+    available = available_quantities(config)
     problems = []
     for place, name in asked:
         if name not in available:
@@ -64,7 +65,7 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     if dynamics.mesh.law == "pairs":  # every integrator has the same quantities; this one starts no motion
         dynamics = by_reference(dynamics)
     motion = specimen_motion(dynamics, mesh, point, step_s)
-    return quantity_names(motion.structure, motion.internal_names)
+    return quantity_names(config.names, motion.structure, motion.internal_names)
 
 
 def _tabulated(
@@ -76,15 +77,20 @@ def _tabulated(
     return SpecimenMesh(pair, assembled, tables, teeth)
 
 
-def quantity_names(assembled: Structure, internal_names: tuple[str, ...]) -> tuple[str, ...]:
+def quantity_names(names: Names, assembled: Structure, internal_names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names of the quantities of a motion of this structure with these internals."""
     return (
-        "pinion_angle_rad",
+        angle_name(names),
         *(acceleration_name(place) for place in assembled.motions),
         *(bearing_force_name(place) for place in assembled.bearing_forces),
         *internal_names,
         "transmission_error_m",
     )
+
+
+def angle_name(names: Names) -> str:
+    """Return the name of the angle of the first driver."""
+    return f"{names.first.driver.body}_angle_rad"
 
 
 def acceleration_name(place: str) -> str:

@@ -41,5 +41,5 @@ def _of_shaft(section: Shaft, which: str, pair: GearPair) -> Iterator[Problem]:
         yield Problem(f"dynamics.shafts.{which}.bearing_span_mm", received, allowed)
     thickest_mm, root_mm = bounds(section.diameter_mm)[1], 2e3 * pair.member(which).root_radius_m
     if thickest_mm >= root_mm:
-        allowed = f"allowed: less than the root diameter of the {which}, {root_mm:.4g} mm"
+        allowed = f"allowed: less than the root diameter of its gear, {root_mm:.4g} mm"
         yield Problem(f"dynamics.shafts.{which}.diameter_mm", f"{thickest_mm:g}", allowed)

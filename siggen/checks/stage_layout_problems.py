@@ -19,10 +19,12 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Gears, Stage
 from siggen.config.gears import Pair
+from siggen.config.short_form import names_in
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import geometry_problems
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, bounds
+from siggen.names import Names
 from siggen.planning.stages import stage_sections
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.staged_structure import LEAST_SPAN
@@ -44,7 +46,8 @@ def stage_layout_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
         yield from _span(stage, index, _widest_mm(before) + _widest_mm(own))
     distances = [_centre_distances_mm(pair) for pair in every]
     if all(one.size for one in distances):
-        yield from _axes(every, stages, distances)
+        names = names_in(sections.get("machine"), stages, planetary=False)
+        yield from _axes(names, every, stages, distances)
 
 
 def _span(stage: Stage, index: int, faces_mm: float) -> Iterator[Problem]:
@@ -64,9 +67,9 @@ class _Shaft(NamedTuple):
     radius_mm: float
 
 
-def _axes(every: list[Pair], stages: tuple[Stage, ...], distances: list[FloatArray]) -> Iterator[Problem]:
+def _axes(names: Names, every: list[Pair], stages: tuple[Stage, ...], distances: list[FloatArray]) -> Iterator[Problem]:
     """Yield the first shaft that stands in one in front of it, by the stage whose direction sets it."""
-    shafts, tips = _shafts(every, stages), _tips_mm(every)
+    shafts, tips = _shafts(names, every), _tips_mm(every)
     turned = [np.zeros(1), *(np.radians(_values(stage.direction_deg)) for stage in stages)]
     for first, last in combinations(range(len(shafts)), 2):
         if last < first + 2:
@@ -90,12 +93,12 @@ def _axes(every: list[Pair], stages: tuple[Stage, ...], distances: list[FloatArr
         return
 
 
-def _shafts(every: list[Pair], stages: tuple[Stage, ...]) -> list[_Shaft]:
-    names = ("pinion_shaft", "gear_shaft", *(f"{stage.name}_shaft" for stage in stages))
+def _shafts(names: Names, every: list[Pair]) -> list[_Shaft]:
+    called = [f"{shaft.word}_shaft" for shaft in names.shafts]
     driven = [_bore_mm(pair, "gear") for pair in every]
     driving = [_bore_mm(pair, "pinion") for pair in every]
     common = [min(pair) for pair in zip(driven, driving[1:], strict=False)]
-    return [_Shaft(*one) for one in zip(names, (driving[0], *common, driven[-1]), strict=True)]
+    return [_Shaft(*one) for one in zip(called, (driving[0], *common, driven[-1]), strict=True)]
 
 
 def _tips_mm(every: list[Pair]) -> list[tuple[float, float]]:

@@ -61,7 +61,7 @@ def _driven_by_load(
         at_mesh = [sign * (torque_nm + inertia * speeding) for inertia in driven_kg_m2]
         if min(at_mesh, default=1.0) <= 0.0:
             received = f"{change:+g} of {bounds(point.speed_hz)[1]:g} Hz in {duration_s:g} s, with which "
-            received += "gear and load drive the pinion" if sign > 0.0 else "the pinion drives gear and load"
+            received += "the load drives" if sign > 0.0 else "the motor drives"
             received += f" ({sign * min(at_mesh):.4g} N m at the mesh)"
             advice = "above 0 at the mesh; raise end_ratio, duration_s or the torque"
             if sign < 0.0:

@@ -169,7 +169,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "duration_s": config.duration_s,
         "signal_hours": records * config.duration_s / 3600,
         "mesh_hz": list(_mesh_range_hz(config)),
-        "mesh": config.names.mesh(""),
+        "mesh": config.names.first.word,
         "stages_hz": {name: list(ends) for name, ends in _stage_ranges_hz(config).items()},
         "specimens_of_split": specimens,
         "states": _state_counts(config, specimens),
@@ -203,9 +203,7 @@ def _notes(config: Config) -> dict[str, Any]:
         "state_notes": state_notes(config),
         "shaft_notes": _of_every_pair(config, shaft_notes),
     }
-    own = {kind: [config.names.text(note) for note in found] for kind, found in notes.items()}
-    said = {"manufacture": _manufacture(config)}
-    return {**said, **own, "implausible": implausible(config)}
+    return {"manufacture": _manufacture(config), **notes, "implausible": implausible(config)}
 
 
 def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> list[str]:
@@ -241,7 +239,7 @@ def _stage_ranges_hz(config: Config) -> dict[str, tuple[float, float]]:
 
     first, ends = config.gears.pinion.teeth, _mesh_range_hz(config)
     return {
-        config.names.mesh(stage.name): (float(teeth / first) * ends[0], float(teeth / first) * ends[1])
+        config.names.mesh(stage.name).word: (float(teeth / first) * ends[0], float(teeth / first) * ends[1])
         for stage, teeth in zip(config.stages, turned_teeth(config.gears, config.stages), strict=True)
     }
 

@@ -109,13 +109,13 @@ def tvms(
         meaning = stiffness_meaning(usable.dynamics, torque)
     if out is not None:
         table = curve_table(curves, **asdict(further))
-        write_table_file(table.rename_columns([usable.names.column(name) for name in table.column_names]), out)
+        write_table_file(table, out)
     if png is not None:
         with working("drawing the picture", compiles=False):
-            save_stiffness_figure(curves, png, usable.names, **asdict(further), title=meaning)
-    echo(usable.names.text(meaning), err=True)
+            save_stiffness_figure(curves, png, **asdict(further), title=meaning)
+    echo(meaning, err=True)
     for note in model_notes(usable):
-        echo(f"note: {usable.names.text(note)}", err=True)
+        echo(f"note: {note}", err=True)
     if out is not None:
         echo(str(out))
     if png is not None:

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
 from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.manufacture_columns import manufacture_columns
-from siggen.columns.planetary_columns import of_planets
-from siggen.columns.stage_columns import stage_columns
+from siggen.columns.of_parts import frequency_of, of_gear, of_shaft
+from siggen.columns.planetary_columns import SET_COLUMNS, manufacture_of_others, planetary_operating_columns
 from siggen.columns.state_columns import state_columns
 from siggen.keys.column import HERTZ, MILLIMETRE, Column, Role, in_role, list_of
+from siggen.names import Names
 from siggen.sensors.quantity import STILL_M_S2
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
-LABEL_COLUMNS = in_role(
-    Role.TARGET,
+STATE_COLUMNS = (
     Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
     Column("severity", pa.string(), "", "healthy, slight, moderate, severe, or a name of the configuration"),
-    Column("faulty_gear", pa.string(), "", "gear with damage: none, pinion, gear, both, STAGE.pinion, ... or several"),
-    Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
-    Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
+)
+FAULTY_TEETH = Column("faulty_teeth_{}", list_of(pa.int32()), "", "indices of {}'s damaged teeth", Role.TARGET)
+DAMAGE_COLUMNS = (
     Column("damage_count", pa.int32(), "", "number of single damages on all teeth"),
     Column(
         "damaged_area_mm2",
@@ -67,18 +68,46 @@ LABEL_COLUMNS = in_role(
         Role.CONSEQUENCE,
     ),
 )
-OPERATING_COLUMNS = in_role(
-    Role.CONDITION,
-    Column("teeth_pinion", pa.int32(), "", "number of teeth of the pinion", section="gears"),
-    Column("teeth_gear", pa.int32(), "", "number of teeth of the gear", section="gears"),
-    Column("speed_hz", pa.float64(), HERTZ, "nominal speed of the input (pinion) shaft"),
-    Column("torque_nm", pa.float64(), "N m", "torque at the input shaft"),
-    Column("pinion_shaft_hz", pa.float64(), HERTZ, "rotation frequency of the pinion's shaft"),
-    Column("gear_shaft_hz", pa.float64(), HERTZ, "rotation frequency of the gear's shaft"),
-    Column("mesh_hz", pa.float64(), HERTZ, "tooth mesh frequency"),
-    Column("start_angle_rad", pa.float64(), "rad", "pinion angle at the first sample", Role.PROVENANCE),
-    section="operating_points",
-)
+TEETH = Column("teeth_{}", pa.int32(), "", "number of teeth of {}", section="gears")
+SHAFT_HZ = Column("{}_shaft_hz", pa.float64(), HERTZ, "rotation frequency of {}")
+TORQUE = Column("torque_nm", pa.float64(), "N m", "torque at the input shaft")
+
+
+def target_columns(names: Names) -> tuple[Column, ...]:
+    """Return the columns about damage; teeth of the first mesh alone."""
+    words = ", ".join(gear.word for gear in names.gears)
+    faulty = Column("faulty_gear", pa.string(), "", f"gear with damage: none, {words} or several")
+    teeth = (of_gear(FAULTY_TEETH, gear) for gear in names.first.gears)
+    return in_role(Role.TARGET, *STATE_COLUMNS, faulty, *teeth, *DAMAGE_COLUMNS)
+
+
+def operating_columns(names: Names) -> tuple[Column, ...]:
+    """Return the columns of speed, load and teeth of the first mesh."""
+    driver, shafts = names.first.driver, names.shafts[:2]
+    at_start = f"angle of {driver.called} at the first sample"
+    start = Column("start_angle_rad", pa.float64(), "rad", at_start, Role.PROVENANCE)
+    return in_role(
+        Role.CONDITION,
+        *(of_gear(TEETH, gear) for gear in names.first.gears),
+        Column("speed_hz", pa.float64(), HERTZ, f"nominal speed of the input shaft, that of {driver.called}"),
+        TORQUE,
+        *(of_shaft(SHAFT_HZ, shaft) for shaft in shafts),
+        frequency_of(names.first),
+        start,
+        section="operating_points",
+    )
+
+
+def columns_behind(names: Names) -> tuple[Column, ...]:
+    """Return teeth and frequencies of the meshes behind the first one."""
+    found: list[Column] = []
+    for mesh, shaft in zip(names.meshes[1:], names.shafts[2:], strict=True):
+        found += [of_gear(FAULTY_TEETH, gear) for gear in mesh.gears]
+        found += [of_gear(replace(TEETH, section=""), gear) for gear in mesh.gears]
+        found += [frequency_of(mesh), of_shaft(SHAFT_HZ, shaft)]
+    return in_role(Role.CONDITION, *found, section="stages")
+
+
 INTEGRATION_COLUMNS = in_role(
     Role.CONSEQUENCE,
     Column(
@@ -97,27 +126,33 @@ INTEGRATION_COLUMNS = in_role(
     ),
 )
 """Columns of sets of the law pairs."""
-VARIATION_COLUMNS = in_role(
-    Role.CONDITION,
-    Column("speed_std_hz", pa.float64(), HERTZ, "standard deviation of the pinion's speed about pinion_shaft_hz"),
-    Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque, what speeds the train up included"),
-    Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
-    section="variation",
-)
-"""Columns of sets in which speed or torque varies within a record."""
+
+
+def variation_columns(names: Names) -> tuple[Column, ...]:
+    """Return the columns of sets in which speed or torque varies within a record."""
+    shaft = names.shafts[0].word
+    speed = f"standard deviation of the input shaft's speed about {shaft}_shaft_hz"
+    return in_role(
+        Role.CONDITION,
+        Column("speed_std_hz", pa.float64(), HERTZ, speed),
+        Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque, what speeds the train up included"),
+        Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
+        section="variation",
+    )
 
 
 def common_columns(config: Config) -> tuple[Column, ...]:
-    """Return the columns of labels and operating conditions that belong to no channel, in the words of the program."""
-    varying = VARIATION_COLUMNS if config.variation.active else ()
-    stepped = INTEGRATION_COLUMNS if config.dynamics.method == "exponential" else ()
-    return of_planets(config, (
-        *LABEL_COLUMNS,
+    """Return the columns of labels and operating conditions that belong to no channel."""
+    names, planetary = config.names, config.planetary is not None
+    return (
+        *target_columns(names),
         *state_columns(config),
-        *OPERATING_COLUMNS,
-        *stepped,
+        *(planetary_operating_columns() if planetary else operating_columns(names)),
+        *(INTEGRATION_COLUMNS if config.dynamics.method == "exponential" else ()),
         *gearbox_columns(config),
-        *stage_columns(config),
-        *varying,
+        *(() if planetary else columns_behind(names)),
+        *(variation_columns(names) if config.variation.active else ()),
         *manufacture_columns(config),
-    ))  # fmt: skip
+        *(SET_COLUMNS if planetary else ()),
+        *(manufacture_of_others(config) if planetary else ()),
+    )

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 DAMAGE_COLUMNS = (
     Column("record_id", pa.int64(), "", "record that shows the damage", Role.KEY),
-    Column("gear", pa.string(), "", "pinion or gear; none for damage that is on no gear"),
-    Column("tooth", pa.int32(), "", "index of the tooth; -1 for all teeth of the gear, or none"),
+    Column("gear", pa.string(), "", "gear with the damage; none for damage that is on no gear"),
+    Column("tooth", pa.int32(), "", "index of the tooth; -1 for all teeth of its gear, or none"),
     Column("kind", pa.string(), "", "what the damage is"),
     Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, polygon or none"),
     Column(

@@ -61,7 +61,7 @@ def _series(config: Config, record: SimulatedRecord, name: str) -> np.ndarray:
     internals: Mapping[str, np.ndarray] = record.internals or {}
     where = f"record {record.planned.record_id}, internal quantity {name}"
     if name not in internals:
-        if name.startswith(PAIR_PREFIX):
+        if PAIR_PREFIX in name:
             # Its teeth never have that many pairs in reach: what pairs without contact have.
             return np.full(config.samples, np.nan if is_of_contact_alone(name) else 0.0, dtype=np.float32)
         raise DatasetError(f"{where}: missing; the record has {', '.join(sorted(internals))}")

@@ -6,30 +6,41 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.keys.column import MICROMETRE, Column, Role, in_role
+from siggen.columns.of_parts import of_gear
+from siggen.keys.column import MICROMETRE, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.config import Config, Manufacture
 
 GEAR_ERROR_COLUMNS = (
-    ("accuracy_class_{}", pa.int32(), "", "flank tolerance class of the {} by ISO 1328-1:2013"),
-    ("tolerance_share_{}", pa.float64(), "", "share of that class's tolerances that the {} may use"),
-    ("pitch_deviation_{}_um", pa.float64(), MICROMETRE, "largest single pitch deviation of the {}"),
-    ("cumulative_pitch_{}_um", pa.float64(), MICROMETRE, "total cumulative pitch deviation of the {}"),
-    ("runout_{}_um", pa.float64(), MICROMETRE, "radial runout of the {}, twice its eccentricity; part of its pitch"),
-    ("profile_slope_{}_um", pa.float64(), MICROMETRE, "largest profile slope deviation of the {}'s teeth"),
-    ("profile_form_{}_um", pa.float64(), MICROMETRE, "largest profile form deviation of the {}'s teeth"),
-    ("profile_deviation_{}_um", pa.float64(), MICROMETRE, "largest total profile deviation of the {}'s teeth"),
+    Column("accuracy_class_{}", pa.int32(), "", "flank tolerance class of {} by ISO 1328-1:2013"),
+    Column("tolerance_share_{}", pa.float64(), "", "share of that class's tolerances that {} may use"),
+    Column("pitch_deviation_{}_um", pa.float64(), MICROMETRE, "largest single pitch deviation of {}"),
+    Column("cumulative_pitch_{}_um", pa.float64(), MICROMETRE, "total cumulative pitch deviation of {}"),
+    Column("runout_{}_um", pa.float64(), MICROMETRE, "radial runout of {}, twice its eccentricity; part of its pitch"),
+    Column("profile_slope_{}_um", pa.float64(), MICROMETRE, "largest profile slope deviation of {}'s teeth"),
+    Column("profile_form_{}_um", pa.float64(), MICROMETRE, "largest profile form deviation of {}'s teeth"),
+    Column("profile_deviation_{}_um", pa.float64(), MICROMETRE, "largest total profile deviation of {}'s teeth"),
 )
 """Columns of each gear in sets with manufacturing errors: as a machine measures them about the shaft's axis."""
 
 
 CROWNING_COLUMNS = (
-    ("crowning_{}_um", pa.float64(), MICROMETRE, "crowning of the {}: what its teeth miss at both ends of the face"),
+    Column("crowning_{}_um", pa.float64(), MICROMETRE, "crowning of {}: what its teeth miss at both ends of the face"),
 )
 HELIX_COLUMNS = (
-    ("helix_slope_{}_um", pa.float64(), MICROMETRE, "helix slope deviation of the {}; part of lead_misalignment_um"),
-    ("helix_form_{}_um", pa.float64(), MICROMETRE, "helix form deviation of the {}"),
+    Column("helix_slope_{}_um", pa.float64(), MICROMETRE, "helix slope deviation of {}; part of lead_misalignment_um"),
+    Column("helix_form_{}_um", pa.float64(), MICROMETRE, "helix form deviation of {}"),
+)
+
+WAVE_COLUMNS = (
+    Column("ghost_orders_{}", list_of(pa.int32()), "", "waves over all teeth of {}, per turn of its shaft"),
+    Column(
+        "ghost_amplitudes_{}_um",
+        list_of(pa.float64()),
+        MICROMETRE,
+        "amplitudes of these waves on the flanks of {}, averaged over the face",
+    ),
 )
 
 
@@ -37,18 +48,9 @@ def manufacture_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns of manufacturing errors; none for sets of perfect gears."""
     if config.manufacture is None:
         return ()
-    section = config.manufacture
-    named = (
-        *GEAR_ERROR_COLUMNS,
-        *(CROWNING_COLUMNS if section.has_crowning else ()),
-        *(HELIX_COLUMNS if section.has_helix else ()),
-    )
-    of_gears = (
-        Column(name.format(which), kind, unit, meaning.format(which))
-        for which in ("pinion", "gear")
-        for name, kind, unit, meaning in named
-    )
-    waves = _wave_columns() if config.manufacture.flank_waves == "on" else ()
+    gears = config.names.first.gears
+    of_gears = (of_gear(column, gear) for gear in gears for column in error_columns(config.manufacture))
+    waves = (of_gear(column, gear) for gear in gears for column in wave_columns(config.manufacture))
     lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"
     return in_role(
         Role.PROVENANCE,
@@ -60,14 +62,15 @@ def manufacture_columns(config: Config) -> tuple[Column, ...]:
     )
 
 
-def _wave_columns() -> tuple[Column, ...]:
-    number, length = (pa.list_(pa.field("element", kind, nullable=False)) for kind in (pa.int32(), pa.float64()))
-    amplitude = "amplitudes of these waves on the flanks, averaged over the face"
-    return tuple(
-        column
-        for which in ("pinion", "gear")
-        for column in (
-            Column(f"ghost_orders_{which}", number, "", f"waves over all teeth of the {which}, per turn of its shaft"),
-            Column(f"ghost_amplitudes_{which}_um", length, MICROMETRE, amplitude),
-        )
+def error_columns(section: Manufacture) -> tuple[Column, ...]:
+    """Return the columns of errors of one gear, which is left open."""
+    return (
+        *GEAR_ERROR_COLUMNS,
+        *(CROWNING_COLUMNS if section.has_crowning else ()),
+        *(HELIX_COLUMNS if section.has_helix else ()),
     )
+
+
+def wave_columns(section: Manufacture) -> tuple[Column, ...]:
+    """Return the columns of waves of one gear, which is left open."""
+    return WAVE_COLUMNS if section.flank_waves == "on" else ()

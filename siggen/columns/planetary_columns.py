@@ -2,41 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.columns.manufacture_columns import manufacture_columns
+from siggen.columns.manufacture_columns import error_columns, wave_columns
+from siggen.columns.of_parts import frequency_of, of_gear, of_shaft, quantity_of
 from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
+from siggen.names import PLANETARY
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
-RENAMED = {
-    "faulty_gear": ("faulty_gear", "gear with damage: none, sun, planet, ring, both (sun and planet) or several"),
-    "faulty_teeth_pinion": ("faulty_teeth_sun", "indices of the sun's damaged teeth"),
-    "faulty_teeth_gear": ("faulty_teeth_planet", "indices of the first planet's damaged teeth"),
-    "teeth_pinion": ("teeth_sun", "number of teeth of the sun"),
-    "teeth_gear": ("teeth_planet", "number of teeth of each planet"),
-    "speed_hz": ("speed_hz", "nominal speed of the input (sun) shaft"),
-    "pinion_shaft_hz": ("sun_shaft_hz", "rotation frequency of the sun's shaft"),
-    "gear_shaft_hz": ("planet_hz", "rotation frequency of the planets about their pins, against the carrier"),
-    "bearing_velocity_gear_um_s": (
-        "bearing_velocity_carrier_um_s", "waviness of the carrier's bearings, 1800 to 10000 Hz at 30 turns/s",
-    ),
-    "coupling_force_gear_n": (
-        "coupling_force_carrier_n", "once per turn, of the misaligned coupling on the carrier's shaft",
-    ),
-    "start_angle_rad": (
-        "start_angle_rad",
-        "angle of the sun at the first sample; that of the carrier by their ratio",
-    ),
-}  # fmt: skip
-"""Column of a pair -> its name and its meaning in a planetary set."""
-EACH = "_each_planet"
-ADDED = in_role(
+EACH = "each_planet"
+SET_COLUMNS = in_role(
     Role.CONDITION,
     Column("faulty_teeth_ring", list_of(pa.int32()), "", "indices of the ring's damaged teeth", Role.TARGET),
     Column("teeth_ring", pa.int32(), "", "number of teeth of the ring"),
@@ -49,44 +30,38 @@ ADDED = in_role(
 )
 
 
-def of_planets(config: Config, columns: Iterable[Column]) -> tuple[Column, ...]:
-    """Return the columns of a set; of gearboxes that are pairs as they are."""
-    if config.planetary is None:
-        return tuple(columns)
-    errors = manufacture_of_others(config)
-    return (*in_words_of_set(config, columns), *ADDED, *(column for column, _ in errors))
+def planetary_operating_columns() -> tuple[Column, ...]:
+    """Return the columns of speed, load and teeth of sun and planets."""
+    sun, planet = PLANETARY.first.gears
+    teeth = "number of teeth of the sun", "number of teeth of each planet"
+    against = "rotation frequency of the planets about their pins, against the carrier"
+    start = "angle of the sun at the first sample; that of the carrier by their ratio"
+    return in_role(
+        Role.CONDITION,
+        *(
+            replace(of_gear(Column("teeth_{}", pa.int32(), "", "", section="gears"), gear), meaning=meaning)
+            for gear, meaning in zip((sun, planet), teeth, strict=True)
+        ),
+        Column("speed_hz", pa.float64(), HERTZ, "nominal speed of the input shaft, that of the sun"),
+        Column("torque_nm", pa.float64(), "N m", "torque at the input shaft"),
+        of_shaft(Column("{}_shaft_hz", pa.float64(), HERTZ, "rotation frequency of {}"), PLANETARY.shafts[0]),
+        Column("planet_hz", pa.float64(), HERTZ, against, quantity="hz", of="planet"),
+        frequency_of(PLANETARY.first),
+        Column("start_angle_rad", pa.float64(), "rad", start, Role.PROVENANCE),
+        section="operating_points",
+    )
 
 
-def in_words_of_set(config: Config, columns: Iterable[Column]) -> tuple[Column, ...]:
-    """Return columns of a pair as a planetary set has them; of gearboxes that are pairs as they are."""
-    return tuple(columns) if config.planetary is None else tuple(_renamed(column) for column in columns)
+def manufacture_of_others(config: Config) -> Iterator[Column]:
+    """Yield the columns of errors of the ring and of all planets, as lists, of the flanks towards the sun."""
+    if config.manufacture is not None:
+        for column in (*error_columns(config.manufacture), *wave_columns(config.manufacture)):
+            yield _made(column, "ring", "the ring")
+        for column in error_columns(config.manufacture):
+            yield _made(replace(column, type=list_of(column.type)), EACH, "each planet")
 
 
-def manufacture_of_others(config: Config) -> Iterator[tuple[Column, str]]:
-    """Yield the columns of errors of the ring and of all planets, each with the column of a pair's gear for it.
-
-    Those of planets are lists, of the flanks towards the sun.
-    """
-    for column in manufacture_columns(config):
-        if "_gear" in column.name:
-            meaning = column.meaning.replace("gear", "ring")
-            yield replace(column, name=column.name.replace("_gear", "_ring"), meaning=meaning), column.name
-    for column in manufacture_columns(config):
-        if "_gear" in column.name and not pa.types.is_list(column.type):
-            name, meaning = column.name.replace("_gear", EACH), column.meaning.replace("the gear", "each planet")
-            yield replace(column, name=name, meaning=meaning, type=list_of(column.type)), column.name
-
-
-def renamed(name: str) -> str:
-    """Return the name of a pair's column in a planetary set."""
-    return RENAMED[name][0] if name in RENAMED else name.replace("_pinion", "_sun").replace("_gear", "_planet")
-
-
-def _renamed(column: Column) -> Column:
-    name = renamed(column.name)
-    if column.name in RENAMED:
-        return replace(column, name=name, meaning=RENAMED[column.name][1])
-    if name == column.name:
-        return column
-    meaning = column.meaning.replace("pinion", "sun").replace("gear", "planet")
-    return replace(column, name=name, meaning=meaning)
+def _made(column: Column, word: str, called: str) -> Column:
+    named = replace(column, name=column.name.format(word), meaning=column.meaning.format(called))
+    (made,) = in_role(Role.PROVENANCE, named, section="manufacture")
+    return replace(made, quantity=quantity_of(column), of=word)

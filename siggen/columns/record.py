@@ -13,7 +13,6 @@ from siggen.columns.background_columns import background_columns
 from siggen.columns.common_columns import common_columns
 from siggen.columns.damage_columns import damage_columns
 from siggen.columns.instrument_columns import instrument_columns
-from siggen.columns.own_columns import own_columns
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
@@ -93,7 +92,7 @@ ID_COLUMNS = in_role(
     Column("split", pa.string(), "", "train, validation or test"),
 )
 TACHO_COLUMN = Column(
-    "tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample", Role.SIGNAL
+    "tacho_s", list_of(pa.float64()), "s", "times of the input shaft's pulses from the first sample", Role.SIGNAL
 )
 
 
@@ -103,7 +102,7 @@ def channels(config: Config) -> tuple[ChannelColumn, ...]:
         ChannelColumn(
             name=name,
             sensor=sensor.name,
-            place=config.names.place(sensor.place),
+            place=sensor.place,
             axis=axis,
             unit=sensor.quantity.unit,
             column=sensor.quantity.column(name),
@@ -131,10 +130,14 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `SimulatedRecord.labels` holds: labels, conditions, errors of the gears, labels of every channel."""
     named = ((name, sensor.quantity) for sensor in config.sensors for name, _ in sensor.channels)
     per_channel = (column for one in named for column in channel_label_columns(*one))
-    common, behind = (
-        own_columns(config.names, columns) for columns in (common_columns(config), background_columns(config))
-    )
-    return (*common, *per_channel, *instrument_columns(config), *behind)
+    return (*common_columns(config), *per_channel, *instrument_columns(config), *background_columns(config))
+
+
+def named_labels(config: Config, labels: Mapping[str, object]) -> dict[str, object]:
+    """Return the labels of a record by the names of their columns."""
+    column_of = {column.filled_by: column.name for column in label_columns(config)}
+    named = {column_of.get(label, label): value for label, value in labels.items()}
+    return {**named, "faulty_gear": config.names.gear(str(labels["faulty_gear"]))}
 
 
 def label_names(config: Config) -> tuple[str, ...]:
@@ -146,8 +149,7 @@ def record_schema(config: Config) -> pa.Schema:
     """Return the schema of `data/*.parquet`: ids, labels, operating, per-channel labels, signals, tacho."""
     signals = [_signal_field(config, channel) for channel in channels(config)]
     labels = [column.field() for column in (*ID_COLUMNS, *label_columns(config))]
-    (tacho,) = own_columns(config.names, [TACHO_COLUMN])
-    return pa.schema([*labels, *signals, tacho.field()], metadata=schema_metadata(config))
+    return pa.schema([*labels, *signals, TACHO_COLUMN.field()], metadata=schema_metadata(config))
 
 
 def label_schema(config: Config) -> pa.Schema:
@@ -158,8 +160,7 @@ def label_schema(config: Config) -> pa.Schema:
 
 def damage_schema(config: Config) -> pa.Schema:
     """Return the schema of `damage/*.parquet`."""
-    columns = own_columns(config.names, damage_columns(config))
-    return pa.schema([column.field() for column in columns], metadata=schema_metadata(config))
+    return pa.schema([column.field() for column in damage_columns(config)], metadata=schema_metadata(config))
 
 
 def schema_metadata(config: Config) -> dict[str, str]:

@@ -72,14 +72,16 @@ class ShaftLines(Section):
 class ForeignMesh(Section):
     """Lines of an undamaged mesh that is not simulated, with sidebands of a shaft; presses on the housing."""
 
-    order: Annotated[Number, Within(above=0, most=10_000)] = Field(description="of the mesh, per turn of the pinion")
+    order: Annotated[Number, Within(above=0, most=10_000)] = Field(
+        description="of the mesh, per turn of the input shaft"
+    )
     force_share: Annotated[Number, Within(least=0, most=2)] = Field(
         default=LogUniform(low=0.005, high=0.05),
         description="first line over the mean mesh force (derived: mesh 1 is 1 to 4 % of it, others "
         "were measured 6 to 26 dB below mesh 1)",
     )
     shaft_order: Annotated[Number | None, Within(above=0, most=10_000, words=(None,))] = Field(
-        default=None, description="turns of the sidebands' shaft per turn of the pinion; null: the gear's shaft"
+        default=None, description="turns of the sidebands' shaft per turn of the input shaft; null: the second shaft"
     )
 
 

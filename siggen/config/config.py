@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -19,9 +19,8 @@ from siggen.config.internals import Internals
 from siggen.config.life import Life
 from siggen.config.machine import Machine
 from siggen.config.manufacture import Manufacture
-from siggen.config.names import NO_NAMES, Names
 from siggen.config.planetary import Planetary
-from siggen.config.short_form import names_of, own_form
+from siggen.config.short_form import names_in, own_form
 from siggen.config.stages import Stage
 from siggen.config.states import StateSection, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
@@ -33,6 +32,7 @@ from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
 from siggen.life.pitting import EXAMPLE
+from siggen.names import Names
 from siggen.sensors.places import Places
 from siggen.sensors.registry import SensorSection
 
@@ -68,9 +68,9 @@ class Splits(Section):
 class OperatingRange(Section):
     """Speed and torque of one operating point, drawn per specimen."""
 
-    speed_hz: Annotated[Number, Within(above=0, most=1e5)] = Field(description="rotation of the pinion shaft")
+    speed_hz: Annotated[Number, Within(above=0, most=1e5)] = Field(description="rotation of the input shaft")
     torque_nm: Annotated[Number, Within(least=-1e8, most=1e8)] = Field(
-        description="torque on the pinion shaft; 0: idle, below 0: the gear drives, on the back flanks"
+        description="torque on the input shaft; 0: idle, below 0: the load drives, on the back flanks"
     )
 
 
@@ -180,11 +180,8 @@ class Config(Section):
 
     @property
     def names(self) -> Names:
-        """The user's own names of gears, shafts and meshes; without a machine those of the short form."""
-        if self.machine is None:
-            return NO_NAMES
-        sensors = (name for sensor in self.sensors for name in (sensor.name, *(name for name, _ in sensor.channels)))
-        return _keeping(self.machine, (self.name, *(state.name for state in self.states), *sensors))
+        """What its gears, shafts and meshes are called."""
+        return names_in(self.machine, self.stages, planetary=self.planetary is not None)
 
     def grown_from(self, state_id: int) -> int | None:
         """Return the index of the state whose damage a state contains, or None."""
@@ -196,7 +193,7 @@ class Config(Section):
 
     @property
     def places(self) -> Places:
-        """Where sensors may stand and what presses on the housing, in words of the short form."""
+        """Where sensors may stand, and what presses on the housing."""
         found = places_of(dict(self))
         assert found is not None, "only sections that are wrong have none"
         return found
@@ -218,11 +215,6 @@ class Config(Section):
         del content["specimens"]
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
-
-
-@cache
-def _keeping(machine: Machine, texts: tuple[str, ...]) -> Names:
-    return names_of(machine).keeping(texts)
 
 
 def _identity_content(value: Any) -> Any:

@@ -15,8 +15,9 @@ from siggen.config.housing import ModalHousing, PlateHousing
 from siggen.config.life_problems import life_problems
 from siggen.config.planetary import RING, in_pair
 from siggen.config.planetary_problems import sets_problems
+from siggen.config.short_form import names_in
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
-from siggen.config.stages import shaft_turns
+from siggen.config.stages import shaft_orders
 from siggen.config.states import SEVERITIES, StateSection
 from siggen.errors import Problem
 from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
@@ -104,16 +105,17 @@ def places_of(sections: Mapping[str, Any]) -> Places | None:
     """Return what there is for sensors; None where sections that say so are wrong themselves."""
     if not {"dynamics", "stages"} <= sections.keys():
         return None
-    model, stages = sections["dynamics"].model, tuple(stage.name for stage in sections["stages"])
+    model, stages = sections["dynamics"].model, sections["stages"]
     housing, planetary = sections.get("housing"), sections.get("planetary") is not None
+    names = names_in(sections.get("machine"), stages, planetary=planetary)
     if model == "casing" and isinstance(housing, ModalHousing):
         model = MODAL
     if planetary or stages:  # other models and housings are refused
-        return Places(model if model in {MODAL, "casing"} else "8dof", stages, planetary=planetary)
+        return Places(model if model in {MODAL, "casing"} else "8dof", names, planetary=planetary)
     helical = "gears" in sections and bounds(sections["gears"].helix_deg) != (0.0, 0.0)
     if model == "casing" and isinstance(housing, PlateHousing):
-        return Places(PLATES, helical=helical)
-    return None if model == "casing" and housing is None else Places(model, helical=helical)
+        return Places(PLATES, names, helical=helical)
+    return None if model == "casing" and housing is None else Places(model, names, helical=helical)
 
 
 def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
@@ -133,7 +135,9 @@ def _sensor_turns(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
     pinion = sections["duration_s"] * min(bounds(point.speed_hz)[0] for point in sections["operating_points"])
     gears = sections["gears"]
     slowest = Fraction(min(gears.teeth_of("pinion")), max(gears.teeth_of("gear")))
-    turns = {name: pinion * float(one) for name, one in shaft_turns(slowest, sections["stages"]).items()}
+    names = names_in(sections.get("machine"), sections["stages"], planetary=sections.get("planetary") is not None)
+    orders = names.of_turning(shaft_orders(slowest, sections["stages"]))
+    turns = {name: pinion * order for name, order in orders.items()}
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.duration_problems(turns):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
@@ -311,6 +315,8 @@ def _growth_problems(milder: StateSection, state: StateSection, path: str) -> It
 def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if "gears" not in sections:
         return
+    of_set = sections.get("planetary") is not None
+    names = names_in(sections.get("machine"), sections.get("stages", ()), planetary=of_set)
     for index, state in sections.get("states", {}).items():
         hit = (
             (f"{path}.{key}", *rest) for path, one in state.placed(f"states.{index}") for key, *rest in one.hit_teeth()
@@ -318,13 +324,13 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
         for path, gear, teeth in hit:
             if (pair := pair_of(sections, gear)) is None:  # told by `_stages_named`
                 continue
-            selected = most_teeth(teeth)
+            selected, called = most_teeth(teeth), names.gear(gear)
             planetary = sections.get("planetary") if gear == RING else None
             name = in_pair(gear.rpartition(".")[2])
             count = min(pair.teeth_of(name)) if planetary is None else planetary.ring_teeth
             if isinstance(selected, int):
                 if selected > count:
-                    yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")
+                    yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {called}")
                 continue
-            allowed = f"allowed: an index from 0 to {count - 1}, the {gear} has {count} teeth"
+            allowed = f"allowed: an index from 0 to {count - 1}, the {called} has {count} teeth"
             yield from (Problem(path, f"tooth {tooth}", allowed) for tooth in selected if tooth >= count)

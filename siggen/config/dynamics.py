@@ -36,7 +36,7 @@ class Unbalance(Section):
 
     grade_mm_s: Annotated[Number, Within(least=0, most=100)] = Field(
         default=0.0,
-        description="eccentricity times speed at 50 Hz of the pinion shaft; 2.5 and 6.3 are the grades G2.5 and G6.3",
+        description="eccentricity times speed at 50 Hz of the input shaft; 2.5 and 6.3 are the grades G2.5 and G6.3",
     )
 
 
@@ -116,8 +116,8 @@ class Dynamics(Section):
     load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=1e-2, description=MACHINE)
     pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")
     gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
-    input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")
-    output_coupling: OutputCoupling = Field(default=OutputCoupling(), description="between gear and load")
+    input_coupling: Coupling = Field(default=Coupling(), description="between motor and the first gear")
+    output_coupling: OutputCoupling = Field(default=OutputCoupling(), description="between the last gear and load")
     # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
     mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")

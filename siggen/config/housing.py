@@ -23,7 +23,7 @@ INSIDE = (
     "centre distance at either end, 15 to 31 % above and a sump of 26 to 62 %, and as wide as the bearings need"
 )
 EACH = "of each, horizontal (shear) and vertical (axial)"
-FOOT = "what one foot has left of its stiffness: the pinion's, behind, or the first bolt of a rigid housing"
+FOOT = "what one foot has left of its stiffness: that beside the driver, behind, or the first bolt of a rigid housing"
 
 
 class PlateHousing(Section):

@@ -30,7 +30,7 @@ def _block(block: tuple[float, ...]) -> tuple[float, ...]:
 
 BLOCK = AllowedText(
     f"[hours above 0, torque from 0 to {MOST_RATIO:g} over that of the first operating point], or [hours, torque in "
-    "N m, speed in Hz] of the pinion shaft, both 0 or more"
+    "N m, speed in Hz] of the input shaft, both 0 or more"
 )
 Block = Annotated[tuple[Real, ...], AfterValidator(_block), BLOCK]
 
@@ -47,7 +47,7 @@ class Life(Section):
 
     damage: Pitting = Field(default=Pitting(), description="law by which damage begins and grows")
     reference_torque_nm: Annotated[Real, Field(gt=0, le=1e8)] = Field(
-        description="torque on the pinion shaft to which the law's turns belong"
+        description="torque on the input shaft to which the law's turns belong"
     )
     scale: Annotated[Number, Within(above=0, most=1e6)] = Field(
         default=1.0, description="all times of the law are this much longer; drawn for each gearbox"

@@ -12,7 +12,7 @@ from siggen.config.stages import IDLER
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 
-TAKEN = ("motor", "load", "casing", "either", "both", "several", "none", "mesh")
+TAKEN = ("motor", "load", "casing", "base", "either", "several", "none", "mesh")
 """Words with a meaning of their own in places of sensors and in labels."""
 
 

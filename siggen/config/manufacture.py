@@ -14,11 +14,11 @@ from siggen.keys.section import Section
 
 CLASS = (
     "flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or {one_of: [a, b]}; of the driven gear, null: "
-    "drawn like the pinion's, for itself"
+    "drawn like the driver's, for itself"
 )
 CROWNING = (
     "lead crowning: a parabola that takes so much at both ends of the face; of the "
-    "driven gear, null: drawn like the pinion's, for itself"
+    "driven gear, null: drawn like the driver's, for itself"
 )
 
 

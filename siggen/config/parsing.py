@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
@@ -14,11 +14,11 @@ from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
 from siggen.config.machine import Machine
 from siggen.config.machine_problems import machine_problems
-from siggen.config.names import NO_NAMES, Names
 from siggen.config.short_form import names_of, short_form
 from siggen.errors import Problem
 from siggen.keys.problems import MISSING, MOST_PROBLEMS, missing_key, received_text, section_problems, unknown_keys
 from siggen.keys.wording import allowed_text
+from siggen.names import PAIR, Names
 
 LISTS = ("states", "sensors")
 """Sections whose entries are checked one by one, so that one bad entry does not hide what is wrong with the others."""
@@ -41,13 +41,13 @@ class ParsedConfig:
     problems
         Everything that is wrong, physics not considered.
     names
-        The user's own names of gears, shafts and meshes; sections and problems of physics have those of the short form.
+        Of gears, shafts and meshes; sections of a file with a machine are those of pairs.
     """
 
     config: Config | None
     sections: Mapping[str, Any]
     problems: tuple[Problem, ...]
-    names: Names = NO_NAMES
+    names: Names = PAIR
 
 
 def parse(raw: Mapping[str, object]) -> ParsedConfig:
@@ -57,20 +57,11 @@ def parse(raw: Mapping[str, object]) -> ParsedConfig:
     machine, wrong = _validated(_adapter("machine"), raw["machine"], ("machine",))
     if wrong := wrong or machine_problems(machine):
         return ParsedConfig(None, MappingProxyType({}), tuple(wrong))  # words of all else are those of its names
-    names = names_of(machine).keeping(_texts({key: value for key, value in raw.items() if key != "machine"}))
+    names = names_of(machine)
     short, wrong = short_form(raw, machine, names)
     parsed, told = _parsed(short, machine), {problem.path for problem in wrong}
     problems = [*wrong, *(one for one in map(names.problem, parsed.problems) if one.path not in told)]
     return ParsedConfig(None if wrong else parsed.config, parsed.sections, tuple(problems), names)
-
-
-def _texts(value: object) -> Iterator[str]:
-    """Yield all texts of a file."""
-    if isinstance(value, str):
-        yield value
-    items = value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ()
-    for item in items:
-        yield from _texts(item)
 
 
 def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:

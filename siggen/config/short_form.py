@@ -6,20 +6,32 @@ pinion is `dynamics.pinion`, that of the gear `dynamics.gear`, those behind are 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from typing import Any
 
 from siggen.config.dynamics import Rotor
 from siggen.config.gears import ToothForm, Wheel
 from siggen.config.inheritance import REPLACED
-from siggen.config.machine import Machine
+from siggen.config.machine import Machine, MachineMesh
 from siggen.config.machine_problems import idlers, train
-from siggen.config.names import DRIVEN, DRIVER, KEYS, Names, renamed_keys
-from siggen.config.stages import IDLER
+from siggen.config.stages import IDLER, Stage
 from siggen.errors import Problem
 from siggen.keys.problems import nearest, received_text
 from siggen.keys.section import Section
+from siggen.names import (
+    DRIVEN,
+    DRIVER,
+    KEYS,
+    PLANETARY,
+    ROLES,
+    GearName,
+    MeshName,
+    Names,
+    ShaftName,
+    of_stages,
+    renamed_keys,
+)
 
 WITH_KEYS = ("dynamics", "manufacture", "sensors", "background")
 """Sections with keys of their own for driver and driven gear."""
@@ -27,28 +39,49 @@ WITH_KEYS = ("dynamics", "manufacture", "sensors", "background")
 
 @cache
 def names_of(machine: Machine) -> Names:
-    """Return the words of a machine without problems."""
-    found = train(machine)
-    gears, shared = {gear.name: index for index, gear in enumerate(machine.gears)}, idlers(machine)
-    named, shafts, meshes, paths = [], [(DRIVER, found.shafts[0])], [], []
+    """Return the names of a machine without problems."""
+    found, shared = train(machine), idlers(machine)
+    inner = ("", *(machine.meshes[place].name for place in found.meshes[1:]))
+    meshes = tuple(
+        _mesh_name(name, machine.meshes[place], shared) for name, place in zip(inner, found.meshes, strict=True)
+    )
+    of_shafts = zip((DRIVER, *(name or DRIVEN for name in inner)), found.shafts, strict=True)
+    shafts = [(name, machine.shafts[place].name) for name, place in of_shafts]
+    named = tuple(ShaftName(name, own, f"the shaft {own}") for name, own in shafts)
+    return Names(meshes, named, tuple(_paths(machine)), given=True)
+
+
+def names_in(machine: Machine | None, stages: tuple[Stage, ...], *, planetary: bool) -> Names:
+    """Return the names of a gearbox by valid sections."""
+    if machine is not None:
+        return names_of(machine)
+    return PLANETARY if planetary else of_stages(*(stage.name for stage in stages))
+
+
+def _mesh_name(inner: str, mesh: MachineMesh, shared: Collection[str]) -> MeshName:
+    gears = []
+    for role, gear in zip(ROLES, (mesh.driver, mesh.driven), strict=True):
+        word = f"{mesh.name}.{gear}" if gear in shared else gear  # a flank of each mesh
+        gears.append(GearName(f"{inner}.{role}" if inner else role, word, gear, word))
+    return MeshName(inner, mesh.name, *gears)
+
+
+def _paths(machine: Machine) -> Iterator[tuple[str, str]]:
+    """Yield keys of sections and where the machine has them."""
+    found, gears = train(machine), {gear.name: index for index, gear in enumerate(machine.gears)}
     for number, place in enumerate(found.meshes):
         mesh, path = machine.meshes[place], f"stages.{number - 1}." if number else ""
-        short = mesh.name if number else ""
-        meshes.append((short, mesh.name))
-        shafts.append((short or DRIVEN, found.shafts[number + 1]))
-        for role, gear in ((DRIVER, mesh.driver), (DRIVEN, mesh.driven)):
-            own = f"{mesh.name}.{gear}" if gear in shared else gear  # a flank of each mesh
-            named.append((f"{short}.{role}" if short else role, own))
-            paths.append((f"{path}gears.{role}", f"machine.gears.{gears[gear]}"))
-        paths += [(f"{path}gears", f"machine.meshes.{place}")]
+        for role, gear in zip(ROLES, (mesh.driver, mesh.driven), strict=True):
+            yield f"{path}gears.{role}", f"machine.gears.{gears[gear]}"
+        yield f"{path}gears", f"machine.meshes.{place}"
         if number:
             here = f"stages.{number - 1}"
-            paths += [(f"{here}.{key}", f"machine.meshes.{place}.{key}") for key in ("name", "direction_deg")]
-            paths += [(f"{here}.span_mm", f"machine.shafts.{found.shafts[number]}.span_mm")]
-            paths += [(f"{here}.gear", f"machine.shafts.{found.shafts[number + 1]}"), (here, f"machine.meshes.{place}")]
-    paths += [(f"dynamics.{short}", f"machine.shafts.{place}") for short, place in shafts[:2]]
-    own_shafts = tuple((short, machine.shafts[place].name) for short, place in shafts)
-    return Names(tuple(named), own_shafts, tuple(meshes), tuple(paths))
+            yield from ((f"{here}.{key}", f"machine.meshes.{place}.{key}") for key in ("name", "direction_deg"))
+            yield f"{here}.span_mm", f"machine.shafts.{found.shafts[number]}.span_mm"
+            yield f"{here}.gear", f"machine.shafts.{found.shafts[number + 1]}"
+            yield here, f"machine.meshes.{place}"
+    for role, place in zip(ROLES, found.shafts, strict=False):
+        yield f"dynamics.{role}", f"machine.shafts.{place}"
 
 
 def short_form(raw: Mapping[str, Any], machine: Machine, names: Names) -> tuple[dict[str, Any], list[Problem]]:
@@ -147,9 +180,7 @@ def _given(section: Section, model: type[Section]) -> dict[str, Any]:
 def _words(names: Names) -> Iterator[tuple[str, str, dict[str, str]]]:
     """Yield section and key of what holds a word of the machine, and its words in the short form with the user's."""
     yield "states", "gear", names.damaged
-    yield "states", "bearing", names.places
-    yield "sensors", "place", names.places
-    yield "background", "shaft", dict(names.shafts)
+    yield "states", "bearing", names.bearings
 
 
 def _replaced(value: Any, key: str, table: Mapping[str, str]) -> Any:
@@ -163,14 +194,12 @@ def _replaced(value: Any, key: str, table: Mapping[str, str]) -> Any:
 
 
 def _unknown(value: Any, path: str, key: str, table: Mapping[str, str]) -> Iterator[Problem]:
-    """Yield words that are no name of the machine; of places those of the short form alone, others have their own."""
+    """Yield words that are no name of the machine."""
     items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
     for name, item in items:
         if name == key and isinstance(item, str) and item not in table.values():
-            if item in table or key != "place":
-                known = list(table.values())
-                allowed = f"allowed: one of {', '.join(known)}{nearest(item, known)}"
-                yield Problem(f"{path}.{name}", f"'{item}'", allowed)
+            known = list(table.values())
+            yield Problem(f"{path}.{name}", f"'{item}'", f"allowed: one of {', '.join(known)}{nearest(item, known)}")
         else:
             yield from _unknown(item, f"{path}.{name}", key, table)
 
@@ -187,4 +216,4 @@ def _with_short_paths(state: Any, names: Names) -> Any:
     changes = state.get("changes") if isinstance(state, Mapping) else None
     if not isinstance(changes, Mapping):
         return state
-    return {**state, "changes": {names.short_path(str(path)): to for path, to in changes.items()}}
+    return {**state, "changes": {names.inner_path(str(path)): to for path, to in changes.items()}}

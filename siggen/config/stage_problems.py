@@ -82,9 +82,7 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
     if not sections.get("stages"):
         return
     if "dynamics" in sections:
-        yield from _of_dynamics(
-            sections["dynamics"], sections.get("housing"), named=sections.get("machine") is not None
-        )
+        yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
     if "gears" in sections:
         yield from _of_gears(sections["gears"], sections["stages"])
     background = sections.get("background")
@@ -95,12 +93,10 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
             yield Problem(f"operating_points.{index}.torque_nm", str(point.torque_nm), f"allowed: above 0 {BESIDE}")
 
 
-def _of_dynamics(dynamics: Dynamics, housing: object, *, named: bool) -> Iterator[Problem]:
-    kinds = {"rigid"} if named else {"rigid", "modal"}  # columns of modes are called in words of the program
-    if dynamics.model == "casing" and getattr(housing, "kind", "rigid") not in kinds:
-        kind, allowed = getattr(housing, "kind", ""), " or ".join(sorted(kinds, reverse=True))
-        beside = f"{BESIDE}{' in names of your own' if named else ''}, or dynamics.model: 8dof"
-        yield Problem("housing.kind", f"'{kind}' (plates by default)", f"allowed: {allowed} {beside}")
+def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
+    if dynamics.model == "casing" and (kind := getattr(housing, "kind", "rigid")) not in {"rigid", "modal"}:
+        allowed = f"allowed: rigid or modal {BESIDE}, or dynamics.model: 8dof"
+        yield Problem("housing.kind", f"'{kind}' (plates by default)", allowed)
     if dynamics.shafts is not None:
         yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
     if dynamics.mesh.law != "pairs":

@@ -94,11 +94,9 @@ def turned(gears: Pair, stages: tuple[Stage, ...]) -> Iterator[Fraction]:
         yield turns
 
 
-def shaft_turns(ratio: Fraction, stages: tuple[Stage, ...]) -> dict[str, Fraction]:
-    """Return what turns -> its turns per turn of the first pinion, whose gear turns by `ratio`."""
-    found, turns = {"motor": Fraction(1), "pinion": Fraction(1), "gear": ratio}, ratio
+def shaft_orders(ratio: Fraction, stages: tuple[Stage, ...]) -> list[float]:
+    """Return the turns of every shaft per turn of the first one, whose gear turns the second one by `ratio`."""
+    orders = [Fraction(1), ratio]
     for stage in stages:
-        found[f"{stage.name}.pinion"] = turns
-        turns *= Fraction(stage.gears.pinion.teeth, stage.gears.gear.teeth)
-        found[f"{stage.name}.gear"] = turns
-    return {**found, "load": turns}
+        orders.append(orders[-1] * Fraction(stage.gears.pinion.teeth, stage.gears.gear.teeth))
+    return [float(order) for order in orders]

@@ -49,7 +49,7 @@ class TorqueVariation(Section):
 class Variation(Section):
     """What varies within a record; nothing by default."""
 
-    speed: SpeedVariation = Field(default=SpeedVariation(), description="rotation of the pinion")
+    speed: SpeedVariation = Field(default=SpeedVariation(), description="rotation of the input shaft")
     torque: TorqueVariation = Field(default=TorqueVariation(), description="torque of motor and load")
 
     @property

@@ -59,7 +59,7 @@ def making(config: Config) -> str:
         f"4. **Sensing.** {_sensing_text(config)}",
     )
     listed = "\n".join(fill(step, WIDTH, subsequent_indent="   ", break_on_hyphens=False) for step in steps)
-    return config.names.text(f"## How it was made\n\n{listed}\n\n{_states_text(config)}\n")
+    return f"## How it was made\n\n{listed}\n\n{_states_text(config)}\n"
 
 
 def _states_text(config: Config) -> str:
@@ -113,11 +113,11 @@ def _stages_text(config: Config) -> str:
 
 def _machine_text(config: Config) -> str:
     """Say which gears mesh, by the names of the user."""
-    names, pairs = config.names, (config.gears, *(stage.gears for stage in config.stages))
+    pairs = (config.gears, *(stage.gears for stage in config.stages))
     meshes = [
-        f"`{own}`, in which {names.gears[2 * i][1]} with {pair.pinion.teeth} teeth drives {names.gears[2 * i + 1][1]} "
-        f"with {pair.gear.teeth}"
-        for i, ((_, own), pair) in enumerate(zip(names.meshes, pairs, strict=True))
+        f"`{mesh.word}`, in which {mesh.driver.word} with {pair.pinion.teeth} teeth drives {mesh.driven.word} with "
+        f"{pair.gear.teeth}"
+        for mesh, pair in zip(config.names.meshes, pairs, strict=True)
     ]
     return f"Spur gears in the order of power: {'; '.join(meshes)}; all meshes are simulated together."
 
@@ -148,9 +148,7 @@ def damage_text(config: Config) -> str:
         return " ".join(["No teeth are damaged.", *changed] if changed else ["None: every state is healthy."])
     nouns = list(dict.fromkeys(noun for kind in kinds if kind.nouns for noun in kind.nouns.split(" and ")))
     said = [_flank_text(config, " and ".join(nouns))] if nouns else []
-    return " ".join(
-        [*said, *dict.fromkeys(config.names.of_any_mesh(kind.acts) for kind in kinds if kind.acts), GROWTH, *changed]
-    )
+    return " ".join([*said, *dict.fromkeys(kind.acts for kind in kinds if kind.acts), GROWTH, *changed])
 
 
 def _flank_text(config: Config, nouns: str) -> str:
@@ -211,7 +209,7 @@ def _steps_text(config: Config) -> str:
 
 def _acts(config: Config) -> list[str]:
     """Say how kinds of sensors read the model that need saying."""
-    return list(dict.fromkeys(config.names.of_any_mesh(one.acts) for one in config.sensors if one.acts))
+    return list(dict.fromkeys(one.acts for one in config.sensors if one.acts))
 
 
 def quantities_text(config: Config) -> str:

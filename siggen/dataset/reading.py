@@ -26,7 +26,7 @@ from siggen.errors import DatasetError, UsageError, counted
 from siggen.keys.column import Column, Role
 
 if TYPE_CHECKING:
-    from siggen.config.names import Names
+    from siggen.names import Names
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
@@ -116,7 +116,7 @@ class Dataset:
         return Split(self, *self._splits(split))
 
     def names(self) -> tuple[Names, dict[str, str]]:
-        """Return the user's names of gears, shafts and meshes, and the program's name of columns with an own one."""
+        """Return the names of gears, shafts and meshes, and what the simulation calls columns that bear one."""
         from siggen.dataset.set_names import set_names
 
         return set_names(self.config)

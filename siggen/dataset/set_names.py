@@ -1,26 +1,24 @@
-"""The user's own names of a finished set, by its config.yaml."""
+"""The names of a finished set's gears, shafts and meshes, by its config.yaml."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from siggen.columns.background_columns import background_columns
-from siggen.columns.common_columns import common_columns
-from siggen.config.names import NO_NAMES, Names
+from siggen.columns.record import label_columns
+from siggen.names import PAIR, Names
 
 
 def set_names(config: Mapping[str, Any]) -> tuple[Names, dict[str, str]]:
-    """Return the names of a set's gears, shafts and meshes, and the program's name of each column that has an own one.
+    """Return the names of a set, and what the simulation calls the value of each column that bears one of them.
 
-    Both empty for sets in the short form, and for sets of another version that this one cannot read.
+    Those of a pair without any column, for sets without a machine, and of a version that this one cannot read.
     """
     if config.get("machine") is None:
-        return NO_NAMES, {}
+        return PAIR, {}
     from siggen.config import parse
 
     found = parse(config).config
     if found is None:
-        return NO_NAMES, {}
-    columns = (*common_columns(found), *background_columns(found))
-    return found.names, {found.names.column(one.name): one.name for one in columns}
+        return PAIR, {}
+    return found.names, {column.name: column.filled_by for column in label_columns(found) if column.label}

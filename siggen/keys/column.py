@@ -39,6 +39,10 @@ class Column:
         None only of series that no sensor sees, which stand in a table of their own.
     section : str
         Section of the configuration that says how it is drawn; empty where none does.
+    quantity, of : str
+        What it holds, and of which gear, shaft or mesh, by the user's name; empty where the name says it all.
+    label : str
+        What the simulation calls its value; empty: as the column.
     """
 
     name: str
@@ -47,10 +51,21 @@ class Column:
     meaning: str
     role: Role | None = None
     section: str = ""
+    quantity: str = ""
+    of: str = ""
+    label: str = ""
+
+    @property
+    def filled_by(self) -> str:
+        """What the simulation calls its value."""
+        return self.label or self.name
 
     def field(self) -> pa.Field:
         """Return the Arrow field; no column of a set holds nulls."""
-        metadata = {"unit": self.unit, "meaning": self.meaning, "role": self.role or "", "section": self.section}
+        metadata = {
+            "unit": self.unit, "meaning": self.meaning, "role": self.role or "", "section": self.section,
+            "quantity": self.quantity, "of": self.of,
+        }  # fmt: skip
         return pa.field(self.name, self.type, nullable=False, metadata={k: v for k, v in metadata.items() if v})
 
 

@@ -16,6 +16,7 @@ from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
 from siggen.library.shape_fault import ShapeFault
+from siggen.names import ROLES, ShaftName
 from siggen.planning.gear_pair import gear_pair
 from siggen.planning.gearbox import inspection_count
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
@@ -243,17 +244,13 @@ class Gearbox:
     @cached_property
     def _words(self) -> dict[str, tuple[str, str]]:
         """What can be read -> its kind, and its word in the short form of files."""
-        places, names = self._config.places, self._config.names
-        shafts = dict(names.shafts) or {"pinion": "input", "gear": "output"}
-        bearings = {
-            f"{shafts.get(short, short)}.bearing": short
-            for short in (b.removesuffix("_bearing") for b in places.bearings)
-        }
+        places = self._config.places
+        bearings = {f"{called}.bearing": shaft.bearing for called, shaft in self._shafts.items()}
         return {
             **{one: ("place", one) for one in places.motions if one not in (*places.bearings, "casing")},
-            **{own: ("bearing", f"{short}_bearing") for own, short in bearings.items()},
+            **{own: ("bearing", bearing) for own, bearing in bearings.items()},
             **{one.replace("_", "."): ("coupling", one) for one in places.couplings},
-            **{names.gear(one): ("gear", one) for one in places.gears if places.shafts},
+            **{one: ("gear", one) for one in places.gears if places.shafts},
         }
 
     def _with_passed(self, config: Config) -> Config:
@@ -280,28 +277,33 @@ class Gearbox:
     @cached_property
     def _seats(self) -> dict[str, DamagedPlace]:
         """Name of every gear -> where it is."""
-        specimen, names = self._specimen, self._config.names
+        specimen, meshes = self._specimen, self._config.names.meshes
         if specimen.planetary is not None:
             outer, inner = planets_in_ring(specimen)
             seats = (("sun", outer, "pinion"), ("planet", outer, "gear"), (RING, inner, "gear"))
             return {name: DamagedPlace(one, which, name) for name, one, which in seats}
-        found = {}
-        for mesh, pair in zip(("", *(f"{one.name}." for one in specimen.stages)), self._pairs, strict=True):
-            for which in ("pinion", "gear"):
-                found[names.gear(mesh + which)] = DamagedPlace(
-                    gear_pair(pair), which, names.gear(mesh + which), mesh + which
-                )
-        return found
+        return {
+            gear.word: DamagedPlace(gear_pair(pair), role, gear.word, gear.inner)
+            for mesh, pair in zip(meshes, self._pairs, strict=True)
+            for role, gear in zip(ROLES, mesh.gears, strict=True)
+        }
 
     @property
     def _bearings(self) -> dict[str, str]:
         """Bearing of each of the first two shafts -> its word in a file."""
         if self._specimen.planetary is not None:
             return {}
-        shafts = self._config.names.shafts[:2]
-        if not shafts:
-            return {"input.bearing": "pinion_bearing", "output.bearing": "gear_bearing"}
-        return {f"{own}.bearing": f"{own}_bearing" for _, own in shafts}
+        return {f"{called}.bearing": shaft.bearing for called, shaft in [*self._shafts.items()][:2]}
+
+    @property
+    def _shafts(self) -> dict[str, ShaftName]:
+        """What the library calls shafts: those of a pair input and output."""
+        names = self._config.names
+        if self._config.planetary is not None:
+            return {}
+        words = [shaft.word for shaft in names.shafts]
+        called = words if names.given else ["input", "output", *words[2:]]
+        return dict(zip(called, names.shafts, strict=True))
 
     @cached_property
     def _specimen(self) -> Specimen:

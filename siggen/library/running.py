@@ -214,11 +214,8 @@ def _lines(gearbox: Gearbox) -> tuple[LineOrders, ...]:
         ring = specimen.planetary.ring_teeth
         carrier = sun / (sun + ring)
         return (LineOrders("", pitches_per_turn(sun, ring), {"carrier": carrier, "planet": carrier * ring / planet}),)
-    shafts = dict(names.shafts) or {"pinion": "pinion", "gear": "gear"}
-    found, turning, front = [], 1.0, shafts["pinion"]
-    meshes = ("", *(stage.name for stage in specimen.stages))
-    for mesh, pair, behind in zip(meshes, gearbox._pairs, turned(specimen.gears, specimen.stages), strict=True):
-        back = shafts.get(mesh or "gear", f"{mesh} gear")
-        found.append(LineOrders(names.mesh(mesh), turning * pair.pinion.teeth, {front: turning, back: float(behind)}))
-        turning, front = float(behind), back
+    found, orders = [], [1.0, *map(float, turned(specimen.gears, specimen.stages))]
+    for place, (mesh, pair) in enumerate(zip(names.meshes, gearbox._pairs, strict=True)):
+        shafts = {names.shafts[end].word: orders[end] for end in (place, place + 1)}
+        found.append(LineOrders(mesh.word, orders[place] * pair.pinion.teeth, shafts))
     return tuple(found)

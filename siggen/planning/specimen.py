@@ -8,6 +8,7 @@ from siggen.config import Config, Dynamics, Gears, ModalHousing, Planetary, Rigi
 from siggen.config.stages import with_idlers
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
+from siggen.names import PAIR, Names
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.housing_numbers import PlateNumbers, drawn_housing
 from siggen.seeding import Stage as Consumer
@@ -32,6 +33,7 @@ class Specimen:
     bearing_point: OperatingPoint | None = None
     stages: tuple[Stage, ...] = ()
     planetary: Planetary | None = None
+    names: Names = PAIR
 
     def under(self, point: OperatingPoint) -> Specimen:
         """Return the gearbox at an operating point; itself where its bearings have one stiffness."""
@@ -67,6 +69,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         bearing_point=draw_operating_point(own, specimen_id, 0) if follows_load(own.dynamics) else None,
         stages=tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages))),
         planetary=None if own.planetary is None else draw(own.planetary, supports, "planetary"),
+        names=own.names,
     )
 
 

@@ -65,7 +65,13 @@ def planet_config(config: Config, number: int) -> Config:
 def first_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return valid sections of a configuration as those of its first mesh alone."""
     # also without stages: damage may name one that is wrong itself, or not there
-    return _sections_on(sections, "")
+    return {**_sections_on(sections, ""), **_machine_alone(sections, 0)}
+
+
+def _machine_alone(sections: Mapping[str, Any], number: int) -> dict[str, Machine]:
+    """Return the section `machine` of one mesh alone, where there is one."""
+    machine: Machine | None = sections.get("machine")
+    return {} if machine is None else {"machine": mesh_alone(machine, number)}
 
 
 def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -74,7 +80,7 @@ def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[s
         return
     stages: tuple[Stage, ...] = sections.get("stages", ())
     for index, (stage, turning) in enumerate(zip(stages, turned(sections["gears"], stages), strict=False)):
-        own = {**_sections_on(sections, stage.name), "gears": _gears(stage)}
+        own = {**_sections_on(sections, stage.name), **_machine_alone(sections, index + 1), "gears": _gears(stage)}
         if "dynamics" in sections:
             own["dynamics"] = sections["dynamics"].model_copy(update=_rotors(stage))
         if "operating_points" in sections:
@@ -107,7 +113,7 @@ def stage_specimen(specimen: Specimen, index: int) -> Specimen:
     """Return a drawn gearbox with the pair of a further stage in place of the first one."""
     stage = specimen.stages[index]
     dynamics = specimen.dynamics.model_copy(update=_rotors(stage))
-    return replace(specimen, gears=_gears(stage), dynamics=dynamics, stages=())
+    return replace(specimen, gears=_gears(stage), dynamics=dynamics, stages=(), names=specimen.names.alone(index + 1))
 
 
 def turns(specimen: Specimen) -> tuple[float, ...]:

@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from siggen.config.planetary import NAMES, RING
 from siggen.dataset.card import faults
 from siggen.faults.registry import HEALTHY
+from siggen.names import SEVERAL
 from siggen.planning.lived import SEVERITIES
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
-FAULTY_GEARS = ("none", "pinion", "gear", "both")
 DTYPES = {pa.float64(): "float64", pa.float32(): "float32", pa.string(): "string", pa.bool_(): "bool"}
 
 
@@ -56,13 +55,7 @@ def class_names(config: Config) -> dict[str, tuple[str, ...]]:
 
 def _faulty_gears(config: Config) -> tuple[str, ...]:
     """Return what `faulty_gear` may say of the gearboxes of a set."""
-    none, *gears = FAULTY_GEARS
-    if config.machine is not None:
-        return (none, *(own for _, own in config.names.gears), "several")
-    if config.planetary is not None:
-        return (none, *(NAMES.get(gear, gear) for gear in gears), RING, "several")
-    behind = tuple(f"{stage.name}.{gear}" for stage in config.stages for gear in gears)
-    return (none, *gears, *behind, *(("several",) if behind else ()))
+    return ("none", *(gear.word for gear in config.names.gears), SEVERAL)
 
 
 def _entry(view: str, schema: pa.Schema, counts: Counts, names: Mapping[str, Sequence[str]]) -> dict[str, Any]:

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 NOT_NUMBERS = ("name", "seed", "specimens", "kind")
-WORDS = ("gear", "bearing", "place", "shaft")
-"""Keys that hold a gear, a shaft or a place of a machine."""
+WORDS = ("gear", "bearing")
+"""Keys that hold a gear or a bearing of a machine."""
 _Row: TypeAlias = tuple[str, str, str, bool]
 """Key, value, meaning and whether it is the default."""
 
@@ -25,8 +25,7 @@ _Row: TypeAlias = tuple[str, str, str, bool]
 def physics_section(config: Config) -> str:
     """Return a table of what the simulation of this set has and has not."""
     lines = [f"| {what} | {'on' if on else 'off'} | {how} |" for what, on, how in _physics(config)]
-    text = "\n".join(["## Physics that is on and off", "", "| what | | how |", "|---|---|---|", *lines, ""])
-    return config.names.text(text)
+    return "\n".join(["## Physics that is on and off", "", "| what | | how |", "|---|---|---|", *lines, ""])
 
 
 def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
@@ -70,13 +69,12 @@ def assumed_numbers_section(config: Config) -> str:
 def _own(config: Config) -> Iterator[_Row]:
     """Yield the rows of a machine in the words of its file."""
     names = config.names
-    words = {**names.damaged, **names.places, **dict(names.shafts)}
+    words = {**names.damaged, **names.bearings}
     for path, value, meaning, default in _numbers("", config, words):
         parts = path.split(".")
         if parts[0] in REPLACED or (parts[0] == "dynamics" and parts[1] in REPLACED_OF_DYNAMICS[:2]):
             continue
-        said = names.of_any_mesh(meaning) if parts[0] == "machine" else names.text(meaning)
-        yield names.problem(Problem(path, "", "")).path, value, said, default
+        yield names.problem(Problem(path, "", "")).path, value, meaning, default
 
 
 def _numbers(path: str, section: Section, words: Mapping[str, str]) -> Iterator[_Row]:

@@ -11,6 +11,7 @@ As balls pass, a bearing gives way by a drawn size; one whose stiffness follows 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from math import pi, sqrt
 
@@ -20,6 +21,7 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
 from siggen.keys.number import constant
+from siggen.names import ShaftName
 from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course
 from siggen.sensing.force_density import tabulated
@@ -27,7 +29,6 @@ from siggen.sensing.modulation import LevelCourse, shaft_course
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 from siggen.specimen.background_numbers import BANDS, BearingNumbers
 from siggen.specimen.loaded_bearings import BEARINGS, cage_sense
-from siggen.specimen.measured_path import INPUTS
 from siggen.specimen.structure import specimen_bearings
 
 CLASS_SPEED_HZ = 30.0
@@ -35,9 +36,6 @@ BAND_EDGES_HZ = (50.0, 300.0, 1800.0, 10_000.0)
 TAPS = 2048
 PHASE_SPREAD = 0.1
 """Noise of one shaft's bearings rises at the same angle, within this share of a turn to either side."""
-SEATS_OF_SHAFTS = tuple(
-    f"{place}/{axis}" for place in ("sun_bearing", "carrier_bearing") for axis in ("vertical", "horizontal")
-)
 SLIP = (0.005, 0.02)
 """Share by which the cage lags (assumed)."""
 PASSING_LINES = 3
@@ -63,6 +61,24 @@ def velocity_density(numbers: BearingNumbers, shaft_hz: float, frequency_hz: Flo
     return np.asarray(sqrt(ratio) * found)
 
 
+@dataclass(frozen=True, slots=True)
+class _Seat:
+    """A bearing along one of its axes."""
+
+    named: ShaftName
+    axis: str
+
+    @property
+    def shaft(self) -> str:
+        """Its shaft, as sections call it."""
+        return self.named.inner
+
+    @property
+    def stream(self) -> str:
+        """What its random numbers belong to."""
+        return f"{self.named.bearing}/{self.axis}"
+
+
 class BearingVelocities:
     """Velocities [m/s] of each bearing's waves, from the first sample of a course on; by input of the background."""
 
@@ -70,11 +86,12 @@ class BearingVelocities:
         self._bearings = bearings
         self._loaded = specimen_bearings(specimen)
         self._sense = {shaft: cage_sense(specimen.dynamics, shaft) for shaft in bearings}
-        names = INPUTS if specimen.planetary is None else SEATS_OF_SHAFTS
+        shafts = specimen.names.shafts[: len(bearings)]
+        self._seats = {f"{shaft.bearing}/{axis}": _Seat(shaft, axis) for shaft in shafts for axis in AXES[::-1]}
         taps = {shaft: _taps(numbers, course, shaft) for shaft, numbers in bearings.items()}
         self._noise = {
-            name: ShapedNoise(taps[shaft_of(name)], course.fs_hz, course.of_record(f"background.bearings.{name}"))
-            for name in names
+            name: ShapedNoise(taps[seat.shaft], course.fs_hz, course.of_record(f"background.bearings.{seat.stream}"))
+            for name, seat in self._seats.items()
         }
         self._levels = {shaft: _level(shaft, numbers, course) for shaft, numbers in bearings.items()}
         self.labels = {
@@ -86,17 +103,17 @@ class BearingVelocities:
         random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
         found, turned = {}, cache(lambda order: turns_of(course.angle_rad, order))
         for name, noise in self._noise.items():
-            shaft = shaft_of(name)
-            strength = _strength(self._bearings[shaft], course, name) * random[shaft]
-            found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(name, course, turned)
+            seat = self._seats[name]
+            strength = _strength(self._bearings[seat.shaft], course, seat) * random[seat.shaft]
+            found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(seat, course, turned)
         return found
 
-    def _passing(self, name: str, course: Course, turned: Turned) -> FloatArray:
+    def _passing(self, seat: _Seat, course: Course, turned: Turned) -> FloatArray:
         """Return the velocity (k,) of a displacement with every ball that passes the loaded side."""
-        shaft = shaft_of(name)
+        shaft = seat.shaft
         if shaft in self._loaded:
-            return self._varying(name, self._loaded[shaft], course, turned)
-        numbers, path = self._bearings[shaft], f"background.bearings.{name}.passing"
+            return self._varying(seat, self._loaded[shaft], course, turned)
+        numbers, path = self._bearings[shaft], f"background.bearings.{seat.stream}.passing"
         slip = SLIP[0] + (SLIP[1] - SLIP[0]) * course.of_record(f"background.bearings.{shaft}.slip").random()
         order = course.orders[shaft] * constant(numbers.ball_pass_order) * (1.0 - slip)
         size_m = 1e-6 * constant(numbers.compliance_um) * (WEAKEST + (1.0 - WEAKEST) * course.uniform(path))
@@ -108,13 +125,13 @@ class BearingVelocities:
         phase = 2.0 * pi * course.of_record(path).random(PASSING_LINES)[:count]
         return Comb(order, amplitude, phase).force_n(turned(order))
 
-    def _varying(self, name: str, loaded: LoadedBearing, course: Course, turned: Turned) -> FloatArray:
+    def _varying(self, seat: _Seat, loaded: LoadedBearing, course: Course, turned: Turned) -> FloatArray:
         """Return the velocity (k,) of what lies in series with both bearings' spring as balls pass under their load.
 
         Its axes are tied: the spring along each of them gets what pushes as both do.
         """
-        shaft, _, axis = name.partition("_bearing/")
-        stiffness, row = loaded.stiffness_n_per_m, AXES.index(axis)
+        shaft = seat.shaft
+        stiffness, row = loaded.stiffness_n_per_m, AXES.index(seat.axis)
         lines = (stiffness @ loaded.passing_lines_m(VARYING_LINES, self._sense[shaft]))[row] / stiffness[row, row]
         found = np.zeros(course.length)
         for end in "ab":
@@ -125,12 +142,6 @@ class BearingVelocities:
             rates = np.exp(2j * pi * rng.random() * number) * 2j * pi * number * order * course.point.speed_hz
             found += harmonic_sum(turned(order), lines[: number.size] * rates / BEARINGS)
         return found
-
-
-def shaft_of(name: str) -> str:
-    """Return the shaft of a bearing's input: of a planetary set sun and carrier stand for pinion and gear."""
-    held = name.partition("_")[0]
-    return {"sun": "pinion", "carrier": "gear"}.get(held, held)
 
 
 def _taps(numbers: BearingNumbers, course: Course, shaft: str) -> FloatArray:
@@ -144,7 +155,7 @@ def _level(shaft: str, numbers: BearingNumbers, course: Course) -> LevelCourse:
     return LevelCourse(constant(numbers.level_std), memory, rng)
 
 
-def _strength(numbers: BearingNumbers, course: Course, name: str) -> FloatArray:
+def _strength(numbers: BearingNumbers, course: Course, seat: _Seat) -> FloatArray:
     """Return the power (k,) of a bearing's noise, of mean 1, as its shaft turns."""
-    turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.bearings.{name}.turn") - 1.0)
-    return shaft_course([course.shaft_lines(shaft_of(name), constant(numbers.shaft_depth), turn)])
+    turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.bearings.{seat.stream}.turn") - 1.0)
+    return shaft_course([course.shaft_lines(seat.shaft, constant(numbers.shaft_depth), turn)])

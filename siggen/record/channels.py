@@ -13,7 +13,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
-from siggen.config.stages import shaft_turns
+from siggen.config.stages import shaft_orders
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
 from siggen.noise.source import Draws, NoisyChannel
@@ -116,7 +116,7 @@ def _running(
     return Running(
         config.fs_hz,
         _angle_rad(rotation, config.fs_hz, 0, config.samples),
-        {shaft: float(turned) for shaft, turned in shaft_turns(ratio, specimen.stages).items()},
+        specimen.names.of_turning(shaft_orders(ratio, specimen.stages)),
         point.torque_nm,
         _base_radii_m(specimen),
         {channel.name: channel.sensor.place for channel in instrument.channels},
@@ -126,12 +126,12 @@ def _running(
 
 def _base_radii_m(specimen: Specimen) -> dict[str, float]:
     """Return what turns -> base radius of the gear that it turns with."""
-    pairs = {"": specimen.gears, **{f"{stage.name}.": stage.gears for stage in specimen.stages}}
     found: dict[str, float] = {}
-    for name, pair in pairs.items():
-        both = gear_pair(pair)
-        found |= {f"{name}pinion": both.pinion.base_radius_m, f"{name}gear": both.gear.base_radius_m}
-    return {**found, "motor": found["pinion"], "load": both.gear.base_radius_m}
+    every = (specimen.gears, *(stage.gears for stage in specimen.stages))
+    for mesh, gears in zip(specimen.names.meshes, every, strict=False):  # of a planetary set, which no encoder is on
+        pair = gear_pair(gears)
+        found |= {mesh.driver.body: pair.pinion.base_radius_m, mesh.driven.body: pair.gear.base_radius_m}
+    return {**found, "motor": found[specimen.names.first.driver.body], "load": pair.gear.base_radius_m}
 
 
 def _disturbances(

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
 from siggen.config import Config
-from siggen.config.planetary import NAMES, RING
+from siggen.config.planetary import RING
 from siggen.gears.damage.part import Part, Parts
 from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
@@ -33,12 +33,10 @@ def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
 
 def _row(config: Config, part: Part, stage: str) -> dict[str, object]:
     """Return the row of a part, whose gear has the name of its stage before it, or that in a planetary set."""
-    row = part.table_row()
-    if config.planetary is not None:
-        return {**row, "gear": stage or NAMES.get(str(row["gear"]), row["gear"])}
+    row, names = part.table_row(), config.names
     gear = f"{stage}{DOT}{row['gear']}" if stage else str(row["gear"])
-    bearing = {"bearing": config.names.place(str(row["bearing"]))} if "bearing" in row else {}
-    return {**row, **bearing, "gear": config.names.gear(gear)}
+    bearing = {"bearing": names.bearings[str(row["bearing"])]} if row.get("bearing") else {}
+    return {**row, **bearing, "gear": names.gear(gear)}
 
 
 @lru_cache(maxsize=8)  # records of one specimen and state come one after the other

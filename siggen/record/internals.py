@@ -9,7 +9,6 @@ from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import available_quantities, quantity_problems
 from siggen.columns.record import channel_metadata, channels
 from siggen.config import Config
-from siggen.config.names import Names
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
 from siggen.keys.column import Column
@@ -45,7 +44,7 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
         "time_s": np.arange(config.samples) / config.fs_hz,
         "angle_rad": response.angle_rad,
         **{channel.column: stored[channel.name] for channel in channels(own)},
-        **(_own(internal_quantities(specimen, response), config.names) if internals else {}),
+        **(internal_quantities(specimen, response) if internals else {}),
     }
     facts = {
         "record_id": str(record_id),
@@ -58,10 +57,6 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
     own_facts = {channel.column: channel_metadata(channel, own.fs_hz) for channel in channels(own)}
     fields = [field.with_metadata(own_facts.get(field.name)) for field in pa.table(columns).schema]
     return pa.table(columns, pa.schema(fields, metadata=facts))
-
-
-def _own(found: dict[str, FloatArray], names: Names) -> dict[str, FloatArray]:
-    return {names.column(name): values for name, values in found.items()}
 
 
 def record_internals(
@@ -100,8 +95,5 @@ def stored_quantities(config: Config) -> tuple[Column, ...]:
     problems = quantity_problems(config)
     if problems:
         raise ConfigError(problems)
-    asked = config.internals.quantities
-    if config.internals.stores_all or config.names.gears:
-        available = {config.names.column(name): name for name in available_quantities(config)}
-        asked = tuple(available.values() if config.internals.stores_all else (available[name] for name in asked))
+    asked = available_quantities(config) if config.internals.stores_all else config.internals.quantities
     return tuple(quantity_column(name, config.names) for name in dict.fromkeys(asked))

@@ -20,6 +20,7 @@ from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
 from siggen.keys.number import constant
+from siggen.names import ROLES, SEVERAL
 from siggen.planning.gearbox import pair_of
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.specimen.gears import gear_pair
@@ -27,12 +28,10 @@ from siggen.specimen.housing import specimen_housing
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS
 from siggen.specimen.static_mesh import StaticMesh
 
-GEARS = ("pinion", "gear")
-
 
 def _faulty_gear(parts: Parts) -> str:
-    found = {one.gear for one in parts} & set(GEARS)
-    return "both" if len(found) > 1 else next(iter(found), "none")
+    found = {one.gear for one in parts} & set(ROLES)
+    return SEVERAL if len(found) > 1 else next(iter(found), "none")
 
 
 def damage_labels(
@@ -70,7 +69,8 @@ def damage_labels(
 def state_labels(config: Config, state_id: int) -> dict[str, object]:
     """Return the labels of `siggen.columns.state_columns`."""
     sham = {"sham": config.states[state_id].sham} if has_sham(config) else {}
-    keys = {CHANGED_COLUMN.name: [one.path for _, one in config.changes_of(state_id)]} if has_changes(config) else {}
+    paths = [config.names.own_path(one.path) for _, one in config.changes_of(state_id)]
+    keys = {CHANGED_COLUMN.name: paths} if has_changes(config) else {}
     words = combined_words(config)
     shown = shown_words(config, state_id) if words else ()
     primary = {PRIMARY_COLUMN.name: config.states[state_id].primary_fault} if words else {}

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from siggen.columns.planetary_columns import EACH, manufacture_of_others, renamed
+from siggen.columns.manufacture_columns import error_columns, wave_columns
+from siggen.columns.planetary_columns import EACH
 from siggen.config import Config
-from siggen.config.planetary import NAMES, RING
+from siggen.config.planetary import RING
+from siggen.names import DRIVEN, SEVERAL
 from siggen.planning.specimen import Specimen
 from siggen.record.stage_labels import ADDED, LARGEST, LOSS
 from siggen.specimen.planetary_numbers import pin_errors_m, planetary_teeth
@@ -20,19 +22,26 @@ def with_ring_labels(config: Config, suns: Sequence[Mapping[str, Any]], ring: Ma
     Counts and areas add up; of shares, lengths and losses the largest counts.
     """
     first = suns[0]
-    gears = [str(one) for one in (NAMES.get(first["faulty_gear"], first["faulty_gear"]),) if one != "none"]
+    gears = [str(one) for one in (first["faulty_gear"],) if one != "none"]
     gears += [RING] * (ring["faulty_gear"] != "none")
     return {
         **first,
         **{key: first[key] + ring[key] for key in ADDED},
         **{key: max(first[key], ring[key]) for key in LARGEST},
-        "faulty_gear": "several" if len(gears) > 1 else next(iter(gears), "none"),
+        "faulty_gear": SEVERAL if len(gears) > 1 else next(iter(gears), "none"),
         "faulty_teeth_ring": ring["faulty_teeth_gear"],
-        **{
-            column.name: [one[name] for one in suns] if EACH in column.name else ring[name]
-            for column, name in manufacture_of_others(config)
-        },
+        **_errors_of_others(config, suns, ring),
     }
+
+
+def _errors_of_others(config: Config, suns: Sequence[Mapping[str, Any]], ring: Mapping[str, Any]) -> dict[str, object]:
+    """Return the errors of the ring, and of each planet towards the sun, by those of driven gears of pairs."""
+    section = config.manufacture
+    if section is None:
+        return {}
+    errors, waves = error_columns(section), wave_columns(section)
+    of_ring = {one.name.format(RING): ring[one.name.format(DRIVEN)] for one in (*errors, *waves)}
+    return of_ring | {one.name.format(EACH): [sun[one.name.format(DRIVEN)] for sun in suns] for one in errors}
 
 
 def planetary_labels(
@@ -48,7 +57,7 @@ def planetary_labels(
     carrier_hz, of_each = sun_hz / (1.0 + teeth.ring / teeth.sun), float(labels["torque_nm"]) / len(teeth.places)
     torques = (of_each, of_each * teeth.planet / teeth.sun)
     return {
-        **{renamed(name): value for name, value in labels.items()},
+        **{name: value for name, value in labels.items() if name != "gear_shaft_hz"},
         "planet_hz": carrier_hz * teeth.ring / teeth.planet,
         "mesh_hz": carrier_hz * teeth.ring,
         LOSS: max(mesh.largest_loss(torque) for mesh, torque in zip(meshes, torques, strict=True)),

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.checks.quantity_names import acceleration_name, bearing_force_name
+from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_force_name
 from siggen.config import Config
-from siggen.config.names import Names
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
 from siggen.keys.column import Column
 from siggen.keys.number import constant
+from siggen.names import Names
 from siggen.planning.specimen import Specimen
 
 UNITS = {
@@ -31,36 +33,39 @@ MEANINGS = {
     "transmission_error_m": "dynamic transmission error on the line of action, shifts of the gears included: "
     "approach_m beyond the backlash it closed (mesh law linear), approach_m itself (pairs)",
     "friction_force_n": "friction of all pairs across the line of action",
-    "friction_moment_pinion_nm": "moment of the friction about the pinion's axis",
-    "friction_moment_gear_nm": "moment of the friction about the gear's axis",
-    "mesh_tilt_rad": "tilt of the pinion's flanks against the gear's in the plane of action, static tilt included",
+    "friction_moment_{0.body}_nm": "moment of the friction about the axis of {0.called}",
+    "friction_moment_{1.body}_nm": "moment of the friction about the axis of {1.called}",
+    "mesh_tilt_rad": "tilt of the flanks of {0.called} against those of {1.called} in the plane of action, static tilt "
+    "included",
     "mesh_moment_nm": "moment of all pairs across the face, positive with the load at the far end",
-    "pinion_angle_rad": "angle of the pinion within its revolution, from 0 to 2 pi",
+    "{0.body}_angle_rad": "angle of {0.called} within its revolution, from 0 to 2 pi",
 }
-
-
-ANGLE, TRANSMISSION_ERROR = "pinion_angle_rad", "transmission_error_m"
+"""Of a mesh, whose driver is 0 and whose driven gear is 1."""
+TRANSMISSION_ERROR = "transmission_error_m"
 APPROACH = "approach_m"
-"""Of the mesh without a name; a planetary set, whose meshes share one load, has none and no transmission error."""
+"""A planetary set, whose meshes share one load, has no transmission error."""
 
 
 def internal_quantities(specimen: Specimen, response: Response) -> dict[str, FloatArray]:
     """Return name -> (n,) at the samples of a response that holds its internals."""
-    inner = response.internals
+    inner, approach = response.internals, approach_name(specimen)
     return {
-        ANGLE: np.mod(response.angle_rad, 2.0 * np.pi),
+        angle_name(specimen.names): np.mod(response.angle_rad, 2.0 * np.pi),
         **{acceleration_name(place): a for place, a in response.acceleration_m_s2.items()},
         **{bearing_force_name(place): f for place, f in response.bearing_force_n.items()},
         **inner,
-        **({TRANSMISSION_ERROR: transmission_error_m(inner[APPROACH], specimen)} if APPROACH in inner else {}),
+        **({TRANSMISSION_ERROR: transmission_error_m(inner[approach], specimen)} if approach in inner else {}),
     }
+
+
+def approach_name(specimen: Specimen) -> str:
+    """Return the name of the approach that the transmission error follows from, that of the first mesh."""
+    return specimen.names.quantity(specimen.names.first, APPROACH) if specimen.planetary is None else ""
 
 
 def is_asked_for(config: Config, name: str) -> bool:
     """Return whether the section `internals` stores a quantity."""
-    return config.internals is not None and (
-        config.internals.stores_all or config.names.column(name) in config.internals.quantities
-    )
+    return config.internals is not None and (config.internals.stores_all or name in config.internals.quantities)
 
 
 def pinion_angle_rad(drive: Rotation, fs_hz: float, first: int, count: int) -> FloatArray:
@@ -69,14 +74,24 @@ def pinion_angle_rad(drive: Rotation, fs_hz: float, first: int, count: int) -> F
 
 
 def quantity_column(name: str, names: Names) -> Column:
-    """Return name, unit and meaning of a quantity as a column, in the user's words."""
+    """Return name, unit and meaning of a quantity as a column."""
     import pyarrow as pa
 
     unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
-    meaning = MEANINGS.get(name) or name.replace("_", " ")
+    meaning = _meanings(names).get(name) or name.replace("_", " ")
     if is_of_contact_alone(name):
         meaning += "; NaN while the pair does not touch on its drive flank"
-    return Column(names.column(name), pa.float32(), unit, names.text(meaning))
+    return Column(name, pa.float32(), unit, meaning)
+
+
+@cache
+def _meanings(names: Names) -> dict[str, str]:
+    """Return name -> meaning of the quantities of all meshes."""
+    return {
+        names.quantity(mesh, name.format(*mesh.gears)): meaning.format(*mesh.gears)
+        for mesh in names.meshes
+        for name, meaning in MEANINGS.items()
+    } | {angle_name(names): MEANINGS["{0.body}_angle_rad"].format(*names.first.gears)}
 
 
 def transmission_error_m(approach_m: FloatArray, specimen: Specimen) -> FloatArray:

@@ -9,8 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from siggen.checks.quantity_names import acceleration_name
-from siggen.columns.own_columns import own_labels
-from siggen.columns.record import RecordFailure, SimulatedRecord
+from siggen.columns.record import RecordFailure, SimulatedRecord, named_labels
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
@@ -167,7 +166,7 @@ def simulated(
     }, state.at_rest)  # fmt: skip
     internals = None
     if isinstance(response, StreamedInternals):
-        internals = {config.names.column(name): values for name, values in response.quantities().items()}
+        internals = response.quantities()
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
     return SimulatedRecord(planned, labels, channels, tacho_s, internals)
 
@@ -205,9 +204,9 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Simula
             state = state_of(record.state_id)
             made = simulated(machine.config, machine.specimen, machine.instrument, state, record)
             labels = {**made.labels, **machine.labels, **state_labels(whole, record.state_id)}
-            yield replace(made, labels=own_labels(whole, labels))
+            yield replace(made, labels=named_labels(whole, labels))
         except SolverFailure as failure:
-            yield RecordFailure(record.record_id, failure.status, whole.names.text(failure.reason))
+            yield RecordFailure(record.record_id, failure.status, failure.reason)
 
 
 def _staged_state(machine: Machine, state_id: int) -> SpecimenState:

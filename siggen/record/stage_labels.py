@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from siggen.names import ROLES, SEVERAL
 from siggen.planning.specimen import Specimen
 from siggen.planning.stages import DOT, turns
 from siggen.specimen.static_mesh import StaticMesh
@@ -15,7 +16,6 @@ LARGEST = (
     "mesh_stiffness_loss", "through_face", "sink_depth_um",
 )  # fmt: skip
 LOSS = "mesh_stiffness_loss_as_simulated"
-GEARS = ("pinion", "gear")
 
 
 def stage_labels(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any]]) -> dict[str, object]:
@@ -27,7 +27,7 @@ def stage_labels(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any
     teeth = {
         f"faulty_teeth_{name}_{gear}": labels[f"faulty_teeth_{gear}"]
         for name, labels in behind.items()
-        for gear in GEARS
+        for gear in ROLES
     }
     added = {key: sum(labels[key] for labels in every) for key in ADDED}
     largest = {key: max(labels[key] for labels in every) for key in LARGEST}
@@ -47,7 +47,7 @@ def stage_operating_labels(
     for stage, static, turned in zip(specimen.stages, behind, turning, strict=True):
         pair = static.pair
         losses.append(static.largest_loss(float(first["torque_nm"]) / turned))
-        found |= {f"teeth_{stage.name}_{gear}": pair.member(gear).teeth for gear in GEARS}
+        found |= {f"teeth_{stage.name}_{gear}": pair.member(gear).teeth for gear in ROLES}
         found[f"mesh_{stage.name}_hz"] = shaft_hz * pair.pinion.teeth
         shaft_hz *= pair.pinion.teeth / pair.gear.teeth
         found[f"{stage.name}_shaft_hz"] = shaft_hz
@@ -56,6 +56,6 @@ def stage_operating_labels(
 
 def _faulty_gear(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any]]) -> str:
     """Return which gear carries damage; `several` where gears of several meshes do."""
-    found = [] if first["faulty_gear"] == "none" else [str(first["faulty_gear"])]
-    found += [f"{name}{DOT}{one['faulty_gear']}" for name, one in behind.items() if one["faulty_gear"] != "none"]
-    return "several" if len(found) > 1 else next(iter(found), "none")
+    each = {"": str(first["faulty_gear"]), **{name: str(one["faulty_gear"]) for name, one in behind.items()}}
+    found = [f"{name}{DOT}{gear}" if name else gear for name, gear in each.items() if gear != "none"]
+    return SEVERAL if len(found) > 1 or SEVERAL in each.values() else next(iter(found), "none")

@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.checks.quantity_names import acceleration_name, bearing_force_name
+from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_force_name
 from siggen.config import Config
 from siggen.dynamics.time.response_stream import Piece, Pieces, ResponseStream
 from siggen.planning.specimen import Specimen
 from siggen.record.quantities import (
-    ANGLE,
-    APPROACH,
     TRANSMISSION_ERROR,
+    approach_name,
     is_asked_for,
     pinion_angle_rad,
     transmission_error_m,
@@ -35,8 +34,9 @@ class StreamedInternals:
         self._accelerations = tuple(acceleration_name(motion) for motion in self.motions)
         self._forces = tuple(bearing_force_name(place) for place in self.places)
         self._inner = stream.run.motion.internal_names
-        last = (TRANSMISSION_ERROR,) if APPROACH in self._inner else ()
-        names = (ANGLE, *self._accelerations, *self._forces, *self._inner, *last)
+        self._angle, self._approach = angle_name(specimen.names), approach_name(specimen)
+        last = (TRANSMISSION_ERROR,) if self._approach in self._inner else ()
+        names = (self._angle, *self._accelerations, *self._forces, *self._inner, *last)
         self._kept = {
             name: np.empty(stream.samples, dtype=np.float32)
             for name in dict.fromkeys(names)
@@ -70,9 +70,9 @@ class StreamedInternals:
         """Keep the internals (k, names) at the samples from `first` on, and what follows from them."""
         named = dict(zip(self._inner, block.T, strict=True))
         angle = pinion_angle_rad(self._stream.run.drive, self._stream.run.fs_hz, first, len(block))
-        self._keep(first, {ANGLE: angle, **named})
-        if APPROACH in named:
-            self._keep(first, {TRANSMISSION_ERROR: transmission_error_m(named[APPROACH], self._specimen)})
+        self._keep(first, {self._angle: angle, **named})
+        if self._approach in named:
+            self._keep(first, {TRANSMISSION_ERROR: transmission_error_m(named[self._approach], self._specimen)})
 
     def _keep(self, first: int, named: Mapping[str, FloatArray]) -> None:
         """Keep what belongs to the record of values (k,) at the samples from `first` on."""

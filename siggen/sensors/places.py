@@ -1,18 +1,17 @@
-"""Where a sensor may stand in a gearbox: words of the casing, bearings, shafts and couplings that the model has.
+"""Where a sensor may stand in a gearbox: words of the casing, bearings, gears and couplings that the model has.
 
-The words of a further stage NAME are those of damage and labels: NAME.pinion and NAME.gear turn, and the shaft whose
-speed is NAME_shaft_hz runs in NAME_bearing.
+A shaft SHAFT runs in SHAFT_bearing; gears bear their own names.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
+from siggen.names import PAIR, Names
 
 PLATES = "casing, housing.kind: plates"
 """The model whose housing gives way."""
@@ -20,37 +19,36 @@ MODAL = "casing, housing.kind: modal"
 """The model whose housing gives way as given modes say."""
 PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
 """Place -> plate of the housing."""
-GEARS = ("pinion", "gear")
-BEARINGS = tuple(f"{gear}_bearing" for gear in GEARS)
 ON_CASING = {"casing": ("casing",), PLATES: tuple(PLATE_OF), MODAL: ("casing", *PLATE_OF)}
 """Places on the housing of a model."""
 OF_SET = ("ring", "sun_bearing", "carrier_bearing")
 """Places of a planetary set."""
-STAGE = "[a-z][a-z0-9_]{0,39}"
-"""Names of further stages."""
+NAME = "[a-z][a-z0-9_]{0,39}"
+"""Names of shafts and gears."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlaceText:
-    """Words of `place` for readers of a file, and those with the NAME of a further stage; a gearbox has some."""
+    """Words of `place` for readers of a file, and the form of those with a name of its own; a gearbox has some."""
 
     words: tuple[str, ...]
-    of_stages: tuple[str, ...]
+    named: str
 
     @property
     def allowed_text(self) -> str:
         """All words."""
-        return f"one of {', '.join(self.words)}, of a further stage {', '.join(self.of_stages)}"
+        return f"one of {', '.join(self.words)}, with a machine {self.named}"
 
     def __get_pydantic_json_schema__(self, _: Any, __: Any) -> dict[str, Any]:
-        """Return the words, or a pattern for those of stages."""
-        endings = "|".join(re.escape(word.removeprefix("NAME")) for word in self.of_stages)
-        return {"anyOf": [{"enum": list(self.words)}, {"type": "string", "pattern": f"^{STAGE}({endings})$"}]}
+        """Return the words, or a pattern for those with a name."""
+        ending = "_bearing" if self.named.endswith("_bearing") else ""
+        return {"anyOf": [{"enum": list(self.words)}, {"type": "string", "pattern": f"^{NAME}{ending}$"}]}
 
 
-AT_BEARINGS = PlaceText(BEARINGS, ("NAME_bearing",))
-IN_MOTION = PlaceText((*BEARINGS, *PLATE_OF, "casing", *OF_SET), ("NAME_bearing",))
-TURNING = PlaceText(("motor", *GEARS, "load"), tuple(f"NAME.{gear}" for gear in GEARS))
+BEARINGS = tuple(shaft.bearing for shaft in PAIR.shafts)
+AT_BEARINGS = PlaceText(BEARINGS, "SHAFT_bearing")
+IN_MOTION = PlaceText((*BEARINGS, *PLATE_OF, "casing", *OF_SET), "SHAFT_bearing")
+TURNING = PlaceText(("motor", *(gear.word for gear in PAIR.gears), "load"), "the name of a gear")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,25 +58,25 @@ class Places:
     Attributes
     ----------
     model : `dynamics.model`, with its housing where that gives way
-    stages : names of the further stages, in the order of power
+    names : of gears and shafts
     helical : whether teeth push along the shafts
     planetary : whether it is a planetary set
     """
 
     model: str
-    stages: tuple[str, ...] = ()
+    names: Names = PAIR
     helical: bool = False
     planetary: bool = False
 
     @property
     def gears(self) -> tuple[str, ...]:
-        """Every gear, as damage names it."""
-        return (*GEARS, *(f"{stage}.{gear}" for stage in self.stages for gear in GEARS))
+        """Every gear; an idler is one."""
+        return tuple(dict.fromkeys(gear.body for gear in self.names.gears))
 
     @property
     def bearings(self) -> tuple[str, ...]:
         """The bearings of every shaft."""
-        return () if self.planetary else (*BEARINGS, *(f"{stage}_bearing" for stage in self.stages))
+        return () if self.planetary else tuple(shaft.bearing for shaft in self.names.shafts)
 
     @property
     def pressed_along(self) -> tuple[str, ...]:
@@ -112,11 +110,9 @@ class Places:
     @property
     def ends_of_meshes(self) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]:
         """What turns as the driving and as the driven gear of each mesh do, but for a coupling in between."""
-        driving, driven = self.gears[::2], self.gears[1::2]
-        return tuple(
-            ((a, "motor") if a == driving[0] else (a,), (b, "load") if b == driven[-1] else (b,))
-            for a, b in zip(driving, driven, strict=True)
-        )
+        ends = [(mesh.driver.body, mesh.driven.body) for mesh in self.names.meshes]
+        first, last = ends[0][0], ends[-1][1]
+        return tuple(((a, "motor") if a == first else (a,), (b, "load") if b == last else (b,)) for a, b in ends)
 
     @property
     def couplings(self) -> tuple[str, ...]:
@@ -131,5 +127,4 @@ class Places:
 
     @property
     def _where(self) -> str:
-        stages = f", stages: {', '.join(self.stages)}" if self.stages else ""
-        return f"dynamics.model: {self.model}{stages}{', planetary' if self.planetary else ''}"
+        return f"dynamics.model: {self.model}{', planetary' if self.planetary else ''}"

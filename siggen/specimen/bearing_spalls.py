@@ -59,9 +59,9 @@ def spall_sources(
         own = bearings.get(drawn.shaft)
         spall = drawn if own is None else replace(drawn, bearing=own.bearing)
         order = 1.0 if spall.shaft == "pinion" else specimen.gears.pinion.teeth / specimen.gears.gear.teeth
-        place = spall.place
+        place = specimen.names.bearings[spall.place]
         force_n = mean_force_n(specimen, structure, point, place) / BEARINGS if own is None else own.force_n
-        shares = _transmitted(specimen, structure, spall.shaft)
+        shares = _transmitted(specimen, structure, spall.shaft, place)
         rows = np.array([bearing_direction(structure, place, axis) for axis in AXES])
         source = SpalledBearing(
             spall=spall,
@@ -82,7 +82,7 @@ def mean_force_n(specimen: Specimen, structure: Structure, point: OperatingPoint
     return np.asarray(-shaft_directions(structure, place) @ along)
 
 
-def _transmitted(specimen: Specimen, structure: Structure, shaft: str) -> FloatArray:
+def _transmitted(specimen: Specimen, structure: Structure, shaft: str, place: str) -> FloatArray:
     """Return the share (2, 2) of a bearing's lost load that shaft and seat feel: along both axes, by loss along both.
 
     What moves in series with a bearing's spring is felt through all that is in series with it: the shaft's bending, the
@@ -90,7 +90,7 @@ def _transmitted(specimen: Specimen, structure: Structure, shaft: str) -> FloatA
     the bearing does so too.
     """
     own = getattr(supported_stage(specimen), shaft).bearing
-    names = [f"{shaft}_bearing/{axis}" for axis in AXES]
+    names = [f"{place}/{axis}" for axis in AXES]
     whole = [float(structure.bearing_forces[name][0] @ shaft_direction(structure, name)) for name in names]
     if own.stiffness_xy_n_per_m == 0.0:
         return np.diag([whole[0] / own.stiffness_x_n_per_m, whole[1] / own.stiffness_y_n_per_m])

@@ -16,7 +16,6 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
 from siggen.dynamics.structure.structure import Structure
 from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input
-from siggen.specimen.measured_path import INPUTS
 
 BLOCK = 8192
 """Frequencies at a time: the responses of all motions and forces are ten times those of a channel."""
@@ -38,7 +37,7 @@ class ChannelWay:
     shown: Mapping[Input, float]
     accelerance: ComplexArray | None
     entries: ComplexArray | None
-    forces: tuple[str, ...] = INPUTS
+    forces: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

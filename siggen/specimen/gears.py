@@ -28,5 +28,6 @@ def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
 def model_notes(config: Config) -> tuple[str, ...]:
     """Return what to know about the stiffness model of a set, at the bounds of its gears, each sentence once."""
     options = stiffness_options(config.stiffness)
-    notes = (note for corner in corners(config.gears) for note in stiffness_notes(gear_pair(corner), options))
+    gears = [gear.word for gear in config.names.first.gears]
+    notes = (note for corner in corners(config.gears) for note in stiffness_notes(gear_pair(corner), options, gears))
     return tuple(dict.fromkeys(notes))

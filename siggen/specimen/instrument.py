@@ -30,7 +30,7 @@ from siggen.specimen.background import (
 )
 from siggen.specimen.forced_ways import ChannelWay
 from siggen.specimen.housing import housing_settle_s, specimen_housing
-from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
+from siggen.specimen.measured_path import MEMORY_S, decoded_response
 from siggen.specimen.set_on_housing import forces_through_housing
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import moved_along
@@ -94,7 +94,7 @@ class ChannelInstrument:
     path_number: int = 0
     high_pass_hz: float | None = None
     transducer: Transducer | None = None
-    forces: tuple[str, ...] = INPUTS
+    forces: tuple[str, ...] = ()
 
     @property
     def is_plain(self) -> bool:
@@ -143,9 +143,8 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     named = partial(_named, config.seed, specimen.specimen_id)
     grid = frequencies(blocks.memory, config.fs_hz)
     along = moved_along(specimen)
-    in_file = {force: config.names.force(force) for force in config.places.pressed}
     channels, ways = [], {}
-    paths = _Paths(housing, grid, along, in_file)
+    paths = _Paths(housing, grid, along, config.places.pressed)
     for sensor in specimen.sensors:
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
@@ -197,15 +196,12 @@ def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
 
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing, a grid of frequencies (k,), motions along the shafts.
-
-    `in_file`: bearing forces -> their names in files of measured responses.
-    """
+    """A housing, a grid of frequencies (k,), motions along the shafts, and bearing forces."""
 
     housing: SpecimenHousing | None
     grid: FloatArray
     along: tuple[str, ...]
-    in_file: Mapping[str, str]
+    pressed: tuple[str, ...]
 
 
 def _channel(
@@ -215,7 +211,7 @@ def _channel(
     housing, grid, shown = paths.housing, paths.grid, sensor.shows(axis, draw)
     motions = {one.name: weight for one, weight in shown.items() if one.kind == MOTION}
     accelerance, beyond, entries = None, None, None
-    forces = INPUTS if housing is None else housing.forces
+    forces = () if housing is None else housing.forces
     if isinstance(sensor.through, MeasuredPath):
         weights = sensor.weights(axis, draw)
         forces, accelerance = _measured(sensor, weights, draw, paths)
@@ -270,9 +266,9 @@ def _measured(
     assert isinstance(sensor.through, MeasuredPath)
     response = decoded_response(sensor.through.family[path_number(sensor, draw.uniform)])
     known = {force for _, force in response.curves}
-    forces = {force: own for force, own in paths.in_file.items() if own in known}
-    rows = (weight * response.accelerance(d, (*forces.values(),), paths.grid) for d, weight in weights.items())
-    return tuple(forces), reduce(np.add, rows)
+    forces = tuple(force for force in paths.pressed if force in known)
+    rows = (weight * response.accelerance(d, forces, paths.grid) for d, weight in weights.items())
+    return forces, reduce(np.add, rows)
 
 
 def _band_rms(accelerance: ComplexArray, grid: FloatArray) -> float:

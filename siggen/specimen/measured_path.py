@@ -25,7 +25,6 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.config.consistency import places_of
 from siggen.config.data_file import data_file_bytes, shortened_path
-from siggen.config.names import Names
 from siggen.errors import Problem
 from siggen.keys.problems import received_text
 from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
@@ -39,8 +38,6 @@ COLUMN = re.compile(
     r"_(real|imag|magnitude|phase)_?(.*)$"
 )
 FREQUENCY = "frequency_hz"
-INPUTS = tuple(f"{place}/{axis}" for place in ("pinion_bearing", "gear_bearing") for axis in ("vertical", "horizontal"))
-"""Bearing forces of every model that has bearings: those of the first two shafts."""
 MOST_NUMBERS = 400_000
 """Numbers that a response may have: they become part of the configuration, 11 bytes each."""
 
@@ -103,15 +100,14 @@ def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, lis
     return {"file": [one["file"] for one in found], "response": short}
 
 
-def response_problems(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
+def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield what makes the measured responses of valid sections unusable for their records."""
     fs_hz, places = sections.get("fs_hz"), places_of(sections)
     if fs_hz is None or places is None:
         return
-    forces = tuple(map(names.force, places.pressed))
     for index, sensor in sections.get("sensors", {}).items():
         if isinstance(sensor.through, MeasuredPath):
-            wanted = _Wanted(sensor.axes, forces, fs_hz)
+            wanted = _Wanted(sensor.axes, places.pressed, fs_hz)
             for number, text in enumerate(sensor.through.family):
                 keys = (f"file.{number}", f"response.{number}") if sensor.through.is_family else ("file", "response")
                 file, numbers = (f"sensors.{index}.path.{key}" for key in keys)
@@ -120,7 +116,7 @@ def response_problems(sections: Mapping[str, Any], names: Names) -> Iterator[Pro
 
 @dataclass(frozen=True, slots=True)
 class _Wanted:
-    """What a response must hold: axes of its sensor, forces in the user's words, band by the sampling rate [Hz]."""
+    """What a response must hold: axes of its sensor, forces, band by the sampling rate [Hz]."""
 
     axes: tuple[str, ...]
     forces: tuple[str, ...]

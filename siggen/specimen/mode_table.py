@@ -13,7 +13,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -24,10 +24,10 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.housing.modes import VIBRATING_HZ
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.keys.problems import nearest
+from siggen.names import PAIR, Names
 
 FREQUENCY, DAMPING = "frequency_hz", "damping_ratio"
 SHAPE = re.compile(r"^([a-z][a-z0-9_]*)_(?:(horizontal|vertical|axial)_per_sqrt_kg|(turning)_per_sqrt_kg_m)$")
-SEATS = tuple(f"{shaft}_bearing/{axis}" for shaft in ("pinion", "gear") for axis in ("vertical", "horizontal"))
 DRIVE = ("auxiliary_drive/horizontal", "auxiliary_drive/vertical")
 BASE = ("base_horizontal_sqrt_kg", "base_vertical_sqrt_kg", "base_rocking_sqrt_kg_m")
 COLUMNS_TEXT = f"{FREQUENCY}, {DAMPING}, <place>_<horizontal, vertical or axial>_per_sqrt_kg, {', '.join(BASE)}"
@@ -75,13 +75,14 @@ class ModeTable:
     @property
     def seat_masses_kg(self) -> list[float]:
         """Mass that each seat feels of the six lowest modes, which are those of a body on its feet."""
-        seats = [seat for seat in (*SEATS, *SEATS_OF_SET[:-1]) if seat in self.shapes]
+        central = SEATS_OF_SET[:-1]
+        seats = [seat for seat in self.shapes if seat.partition("/")[0].endswith("_bearing") or seat in central]
         return [1.0 / max(float((self.shapes[seat][:6] ** 2).sum()), 1e-12) for seat in seats]
 
 
-def seats_of(stages: Iterable[str]) -> tuple[str, ...]:
-    """Return place/axis of the bearings of all shafts, those behind further stages included."""
-    return (*SEATS, *(f"{stage}_bearing/{axis}" for stage in stages for axis in ("vertical", "horizontal")))
+def seats_of(names: Names) -> tuple[str, ...]:
+    """Return place/axis of the bearings of all shafts."""
+    return tuple(f"{shaft.bearing}/{axis}" for shaft in names.shafts for axis in ("vertical", "horizontal"))
 
 
 def shape_column(place: str) -> str:
@@ -132,7 +133,7 @@ def _names(line: int, names: list[str]) -> list[str]:
     for name in names:
         known = name in {FREQUENCY, DAMPING, *BASE} or SHAPE.match(name)
         if not known:
-            close = nearest(name, (FREQUENCY, DAMPING, *BASE, *map(shape_column, (*SEATS, *DRIVE))))
+            close = nearest(name, (FREQUENCY, DAMPING, *BASE, *map(shape_column, (*seats_of(PAIR), *DRIVE))))
             raise ModesRefusal(f"line {line}: the column '{name[:100]}'", f"allowed: {COLUMNS_TEXT}{close}")
         if names.count(name) > 1:
             raise ModesRefusal(f"line {line}: {names.count(name)} columns {name}", "allowed: one")

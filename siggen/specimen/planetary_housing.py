@@ -44,7 +44,7 @@ def rigid_housing_of_set(specimen: Specimen) -> Housing:
     assert isinstance(specimen.housing, RigidHousing)
     extent_m = ring_outer_radius_m(specimen) / CASING_GYRATION
     casing = replace(casing_numbers(specimen.housing, extent_m, specimen.sensors), pinion_place_m=AXIS)
-    return rigid_housing(casing, dict.fromkeys(CENTRAL, AXIS), "h")
+    return rigid_housing(casing, dict.fromkeys(CENTRAL, AXIS))
 
 
 def slowest_decay_per_s(housing: Housing) -> float:

@@ -27,8 +27,8 @@ from siggen.dynamics.housing.layout import Contents, Proportions, layout
 from siggen.dynamics.housing.loose_foot import loosened, springs
 from siggen.dynamics.housing.motion import Motion, PlatePlace, motion_at, seat_motions
 from siggen.dynamics.structure.gear_stage import Point
-from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import at, constant
+from siggen.names import ROLES
 from siggen.planning.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms
@@ -47,14 +47,18 @@ def plate_housing(config: Config, specimen: Specimen, numbers: PlateNumbers) -> 
     box, modes, ratio = damped_modes(config, specimen, numbers)
     pair, shafts = gear_pair(specimen.gears), specimen.dynamics.shafts
     pushed = pair.helix_rad != 0.0
-    seats = _seats(box, modes, shafts, located=pushed)
+    bearings = {role: shaft.bearing for role, shaft in zip(ROLES, specimen.names.shafts, strict=True)}
+    seats = _seats(box, modes, shafts, bearings, located=pushed)
     uniform = named_uniforms(config.seed, Stage.PATH, specimen.specimen_id)
     return SpecimenHousing(
         modes=modes,
         damping_ratio=ratio,
         seats={name: motion for name, motion in seats.items() if pushed or not name.endswith("axial")},
         motions={**seats, **_sensors(box, modes, specimen.sensors, uniform)},
-        entries=_entries(box, modes, seats, pair, uniform),
+        entries={
+            "second_stage": second_stage(seats, tuple(bearings.values()), pair.working_pressure_angle_rad),
+            **_drive(box, modes, uniform),
+        },
         bolts=partial(_bolts, box, modes, constant(numbers.loose_foot_share)),
         box=box,
     )
@@ -100,22 +104,24 @@ def _made(
     return box, modes
 
 
-def _seats(box: Box, modes: BoxModes, shafts: Shafts | None, *, located: bool) -> dict[str, Motion]:
+def _seats(
+    box: Box, modes: BoxModes, shafts: Shafts | None, bearings: Mapping[str, str], *, located: bool
+) -> dict[str, Motion]:
     """Return the motion of both seats of every shaft, weighted with what each of them bears of a force on the gear.
 
     Along the axis one bearing of a `located` shaft bears all of it, that in the front wall.
     """
     found = {}
-    for shaft in ("pinion", "gear"):
+    for shaft, bearing in bearings.items():
         front = 0.5 if shafts is None else 1.0 - constant(getattr(shafts, shaft).gear_position)
         of_walls = [seat_motions(modes.halves, box.seats[shaft], wall) for wall in ("front", "back")]
         for axis, number in (("vertical", "y"), ("horizontal", "x"), ("axial", "z")):
             first, second = (motions[number] for motions in of_walls)
             if located and axis == "axial":
-                found[f"{shaft}_bearing/{axis}"] = first
+                found[f"{bearing}/{axis}"] = first
                 continue
             none = Motion(0.0 * first.even, 0.0 * first.odd)
-            found[f"{shaft}_bearing/{axis}"] = none.plus(first, front).plus(second, 1.0 - front)
+            found[f"{bearing}/{axis}"] = none.plus(first, front).plus(second, 1.0 - front)
     return found
 
 
@@ -155,22 +161,16 @@ SCATTER_MM = 15.0
 """Largest distance of a sensor from the middle of its plate along either axis, where no place is given (assumed)."""
 
 
-def _entries(
-    box: Box, modes: BoxModes, seats: Mapping[str, Motion], pair: GearPair, uniform: Callable[[str], float]
-) -> dict[str, Motion]:
-    """Return where other machines press: a second mesh on the seats, another drive in the front wall.
-
-    The other drive has bearings of its own, whose radial forces act in the plane of the wall.
-    """
+def _drive(box: Box, modes: BoxModes, uniform: Callable[[str], float]) -> dict[str, Motion]:
+    """Return where another drive presses: by the radial forces of its own bearings, in the plane of the front wall."""
     length, height, _ = box.size_m
     shares = [0.2 + 0.6 * uniform(f"housing.auxiliary_drive.{i}") for i in range(2)]
-    drive = {
+    return {
         f"auxiliary_drive/{axis}": motion_at(
             modes.halves, PlatePlace("front", shares[0] * length, shares[1] * height, AXES[axis])
         )
         for axis in ("horizontal", "vertical")
     }
-    return {"second_stage": second_stage(seats, pair.working_pressure_angle_rad), **drive}
 
 
 def _from_middle(box: Box, x_m: float) -> Point:

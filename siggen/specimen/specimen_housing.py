@@ -5,7 +5,7 @@ x runs from gear to pinion and is horizontal, y is vertical, z runs along the sh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
 
@@ -102,7 +102,7 @@ def moving_with_gears(housing: SpecimenHousing) -> Housing:
     places = {**housing.seats, **housing.motions, **housing.entries}
     shapes = modes.shapes(list(places.values()))[:, :n]
     lowest = LowestModes(
-        name="h",
+        name="housing",
         frequency_hz=modes.frequency_hz[:n],
         damping_ratio=housing.damping_ratio[:n],
         shapes=dict(zip(places, shapes, strict=True)),
@@ -128,15 +128,16 @@ def participation(housing: SpecimenHousing) -> FloatArray:
     return taken
 
 
-def second_stage(seats: Mapping[str, Motion], pressure_angle_rad: float) -> Motion:
+def second_stage(seats: Mapping[str, Motion], bearings: Sequence[str], pressure_angle_rad: float) -> Motion:
     """Return where a second mesh presses: opposed forces on the seats of both shafts.
 
-    They lie along the line of action of the mesh that is simulated, which stands for its own.
+    They lie along the line of action of the mesh that is simulated, which stands for its own. `bearings` are those of
+    its driver and its driven gear.
     """
-    pinion, gear = (
-        Motion(0.0 * seats[f"{s}_bearing/vertical"].even, 0.0 * seats[f"{s}_bearing/vertical"].odd)
-        .plus(seats[f"{s}_bearing/vertical"], cos(pressure_angle_rad))
-        .plus(seats[f"{s}_bearing/horizontal"], sin(pressure_angle_rad))
-        for s in ("pinion", "gear")
+    driver, driven = (
+        Motion(0.0 * seats[f"{bearing}/vertical"].even, 0.0 * seats[f"{bearing}/vertical"].odd)
+        .plus(seats[f"{bearing}/vertical"], cos(pressure_angle_rad))
+        .plus(seats[f"{bearing}/horizontal"], sin(pressure_angle_rad))
+        for bearing in bearings
     )
-    return pinion.plus(gear, -1.0)
+    return driver.plus(driven, -1.0)

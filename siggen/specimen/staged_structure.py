@@ -39,12 +39,12 @@ def axis_places_m(specimen: Specimen) -> dict[str, Point]:
 
     Horizontal runs from the first gear to its pinion; the height is that of the first pinion.
     """
-    place, found = (0.0, 0.0), {"pinion_bearing": (0.0, 0.0)}
-    names, directions = ["gear", *(one.name for one in specimen.stages)], [0.0, *_directions(specimen)]
-    for name, direction, pair in zip(names, directions, _pairs(specimen), strict=True):
+    first, *behind = (shaft.bearing for shaft in specimen.names.shafts)
+    place, found = (0.0, 0.0), {first: (0.0, 0.0)}
+    for bearing, direction, pair in zip(behind, [0.0, *_directions(specimen)], _pairs(specimen), strict=True):
         centre_m = pair.working_centre_distance_m
         place = place[0] - centre_m * cos(direction), place[1] + centre_m * sin(direction)
-        found[f"{name}_bearing"] = place
+        found[bearing] = place
     across = [x for x, _ in found.values()]
     middle = 0.5 * (max(across) + min(across))
     return {name: (x - middle, y) for name, (x, y) in found.items()}
@@ -63,7 +63,6 @@ def next_stages(specimen: Specimen) -> list[NextStage]:
     pairs = pairwise(_pairs(specimen))
     return [
         NextStage(
-            name=stage.name,
             working_pressure_angle_rad=pair.working_pressure_angle_rad,
             pinion=rotor_numbers(seat, pair.pinion, before.face_width_m if stage.idler else pair.face_width_m),
             gear=rotor_numbers(stage.gear, pair.gear, pair.face_width_m),

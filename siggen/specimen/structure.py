@@ -48,14 +48,14 @@ def specimen_train(specimen: Specimen, housing: Housing | None) -> Drivetrain:
     """Return a drawn train of pairs in a housing, or on the ground."""
     stage = supported_stage(specimen)
     bending = _shafts(specimen.dynamics, stage, gear_pair(specimen.gears)) if housing and not specimen.stages else None
-    return train(stage, next_stages(specimen), housing, bending)
+    return train(stage, next_stages(specimen), housing, bending, specimen.names)
 
 
 def moved_along(specimen: Specimen) -> tuple[str, ...]:
     """Return the motions along the shafts that sensors on them see: of helical teeth on bearings on the ground."""
     grounded = specimen.dynamics.model == "8dof" and not specimen.stages and specimen.planetary is None
     helical = gear_pair(specimen.gears).base_helix_rad != 0.0
-    return ("pinion_bearing/axial", "gear_bearing/axial") if grounded and helical else ()
+    return tuple(f"{shaft.bearing}/axial" for shaft in specimen.names.shafts) if grounded and helical else ()
 
 
 def linear_train(config: Config, specimen: Specimen) -> Drivetrain:

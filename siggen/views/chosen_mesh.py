@@ -16,7 +16,7 @@ def chosen_mesh(config: Config, specimen_id: int, mesh: str | None, argument: st
     UsageError
         If the gearbox has no mesh of that name.
     """
-    names = [config.names.mesh(""), *(one.name for one in config.stages)]  # in the short form the first is ""
+    names = [mesh.word for mesh in config.names.meshes[: 1 + len(config.stages)]]  # that of a pair is ""
     if mesh is not None and (not mesh or mesh not in names):
         raise UsageError(f"{argument}: received {mesh!r}; allowed: {_allowed(config, [one for one in names if one])}")
     number = 0 if mesh is None else names.index(mesh)

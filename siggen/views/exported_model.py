@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from siggen.config import Config
-from siggen.config.names import Names
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -79,7 +78,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         "configuration": json.dumps(whole.canonical(), sort_keys=True),
         "record_id": record_id,
         "state": config.states[record.state_id].name,
-        **_structure(motion.structure, config.names),
+        **_structure(motion.structure),
         "static_deflection": motion.equations.static_deflection,
         "torque_nm": point.torque_nm,
         "integrator": specimen.dynamics.method,
@@ -89,7 +88,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         **_inputs(driven, grid, motion.structure),
         "start_state": start,
         "law": specimen.dynamics.mesh.law,
-        **_meshes(motion, config.names),
+        **_meshes(motion),
     }
 
 
@@ -125,7 +124,7 @@ def check_model_file(path: Path) -> None:
         raise UsageError(f"{path} is a folder; name a file in it, such as {path / 'model.npz'}")
 
 
-def _structure(structure: Structure, names: Names) -> dict[str, Any]:
+def _structure(structure: Structure) -> dict[str, Any]:
     """Return matrices and vectors; a structure without bearings has no rows of bearing forces."""
     empty = np.empty((0, len(structure.coordinates)))
     forces = list(structure.bearing_forces.values())
@@ -137,22 +136,22 @@ def _structure(structure: Structure, names: Names) -> dict[str, Any]:
         "damping": structure.damping,
         "stiffness": structure.stiffness,
         "torque_vector": structure.torque_vector,
-        "motion_names": np.array(list(map(names.column, structure.motions)), dtype=np.str_),
+        "motion_names": np.array(list(structure.motions), dtype=np.str_),
         "motion_rows": np.array(list(structure.motions.values())) if structure.motions else empty,
-        "bearing_force_names": np.array(list(map(names.column, structure.bearing_forces)), dtype=np.str_),
+        "bearing_force_names": np.array(list(structure.bearing_forces), dtype=np.str_),
         "bearing_force_stiffness_rows": np.array([k for k, _ in forces]) if forces else empty,
         "bearing_force_damping_rows": np.array([c for _, c in forces]) if forces else empty,
     }
 
 
-def _meshes(motion: Motion, names: Names) -> dict[str, Any]:
+def _meshes(motion: Motion) -> dict[str, Any]:
     """Return how many meshes there are, and what belongs to each."""
     found: dict[str, Any] = {"meshes": len(motion.structure.meshes)}
     per_radian = _pitches_per_rad(motion)
     for number, (mesh, law) in enumerate(zip(motion.structure.meshes, motion.laws, strict=True)):
         rate, begins = motion.places[number]
         own = {
-            "name": names.mesh(mesh.name),
+            "name": mesh.name,
             "vector": mesh.vector,
             "sliding_vectors": mesh.sliding,
             "friction_vectors": without_drift(motion.structure, mesh.sliding),

@@ -20,6 +20,7 @@ from siggen.gears.contact.table_columns import TableSolver, row_faces, table_sol
 from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
 from siggen.keys.problems import nearest
+from siggen.names import ROLES, MeshName
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.planning.stages import stage_config, stage_specimen
@@ -125,9 +126,12 @@ def pressure_table(pressure: FacePressure) -> pa.Table:
 
 @dataclass(frozen=True, slots=True)
 class _Mesh:
-    """One mesh of a record, as if it were its only one; `words`: what its pinion and its gear are called."""
+    """One mesh of a record, as if it were its only one.
 
-    name: str
+    `prefix`: what quantities of its pairs begin with; `words`: what its pinion and its gear are called.
+    """
+
+    prefix: str
     config: Config
     specimen: Specimen
     state: SpecimenState
@@ -135,32 +139,28 @@ class _Mesh:
     angle_rad: FloatArray
     words: Mapping[str, str]
 
-    @property
-    def prefix(self) -> str:
-        """What quantities of its pairs begin with."""
-        return f"{self.name}_{PAIR_PREFIX}" if self.name else PAIR_PREFIX
-
 
 def _meshes(
     config: Config, specimen: Specimen, state: SpecimenState, point: OperatingPoint, angle_rad: FloatArray
 ) -> list[_Mesh]:
     """Return every mesh of a record, each with the angle of its own pinion."""
-    found = [_Mesh("", config, specimen, state, point, angle_rad, _words(config, ""))]
+    first, *others = ((config.names.quantity(mesh, PAIR_PREFIX), _words(mesh)) for mesh in config.names.meshes)
+    found = [_Mesh(first[0], config, specimen, state, point, angle_rad, first[1])]
     for index, (own, behind) in enumerate(zip(state.behind, state.mesh.behind, strict=True)):
-        alone, name = stage_config(config, specimen, index), specimen.stages[index].name
+        alone, (prefix, words) = stage_config(config, specimen, index), others[index]
         turned = angle_rad * behind.turning + behind.turned_pitches * 2.0 * pi / own.pair.pinion.teeth
         of_mesh = stage_specimen(specimen, index)
-        found.append(_Mesh(name, alone, of_mesh, own, behind.at(point), turned, _words(config, name)))
+        found.append(_Mesh(prefix, alone, of_mesh, own, behind.at(point), turned, words))
     return found
 
 
-def _words(config: Config, mesh: str) -> Mapping[str, str]:
-    return {which: config.names.gear(f"{mesh}.{which}" if mesh else which) for which in ("pinion", "gear")}
+def _words(mesh: MeshName) -> Mapping[str, str]:
+    return dict(zip(ROLES, (gear.word for gear in mesh.gears), strict=True))
 
 
 def _gear_called(config: Config, gear: str) -> str:
     """Return what a user calls a gear if there is one of that name."""
-    called = [word for mesh in ("", *(one.name for one in config.stages)) for word in _words(config, mesh).values()]
+    called = [one.word for one in config.names.gears]
     if gear not in called:
         raise UsageError(f"--gear {gear}; allowed: {', '.join(called)}{nearest(gear, called)}")
     return gear
@@ -178,8 +178,7 @@ def _looked_at(meshes: Sequence[_Mesh], called: str | None, tooth: int | None) -
         tooth = next((index for one, gear, index in teeth if one is mesh and gear == which), 0)
     count = mesh.state.pair.member(which).teeth
     if not 0 <= tooth < count:
-        article = "" if mesh.config.names.gears else "the "
-        raise UsageError(f"--tooth {tooth}: {article}{mesh.words[which]} has {count} teeth; allowed: 0 to {count - 1}")
+        raise UsageError(f"--tooth {tooth}: {mesh.words[which]} has {count} teeth; allowed: 0 to {count - 1}")
     return mesh, which, tooth
 
 

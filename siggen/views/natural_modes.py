@@ -48,10 +48,8 @@ def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
     specimen = draw_specimen(config, specimen_id)
     stiffness = _mean_stiffness(specimen)
     assembled = structure(config, specimen)
-    coordinates = tuple(map(config.names.column, assembled.coordinates))
-    meshes = (config.names.mesh(mesh.name) or FIRST for mesh in assembled.meshes)
-    of_mesh = dict(zip(meshes, stiffness, strict=True))
-    return SpecimenModes(coordinates, of_mesh, assembled.mass, natural_modes(assembled, stiffness))
+    of_mesh = dict(zip((mesh.name or FIRST for mesh in assembled.meshes), stiffness, strict=True))
+    return SpecimenModes(assembled.coordinates, of_mesh, assembled.mass, natural_modes(assembled, stiffness))
 
 
 def _mean_stiffness(specimen: Specimen) -> list[float]:

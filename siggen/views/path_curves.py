@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
-from siggen.config.names import NO_NAMES, Names
 from siggen.config.planetary import pitches_per_turn
 from siggen.config.stages import turned_teeth
 from siggen.dynamics.structure.makers import RING_TURNING
@@ -39,7 +38,6 @@ class PathCurves:
     mesh_hz: tuple[tuple[float, ...], ...]
     mesh_harmonics: int
     memory_s: float = 0.0
-    names: Names = NO_NAMES
 
     @property
     def table(self) -> pa.Table:
@@ -48,7 +46,7 @@ class PathCurves:
         columns = {"frequency_hz": self.frequency_hz[::step]}
         for channel in self.channels:
             for name, curve in zip(channel.forces, _rows(channel), strict=True):
-                stem = f"{channel.name}_from_{self.names.force(name).replace('/', '_')}"
+                stem = f"{channel.name}_from_{name.replace('/', '_')}"
                 unit = "m_s2_per_nm" if name == RING_TURNING else "m_s2_per_n"
                 columns |= {f"{stem}_real_{unit}": curve.real[::step], f"{stem}_imag_{unit}": curve.imag[::step]}
         return pa.table(columns)
@@ -98,7 +96,6 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
         mesh_hz=tuple(tuple(point.speed_hz * teeth for teeth in meshing) for point in points),
         mesh_harmonics=config.mesh_harmonics,
         memory_s=settle_s(config, specimen),
-        names=config.names,
     )
 
 

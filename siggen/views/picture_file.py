@@ -7,7 +7,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from siggen.config.names import NO_NAMES, Names
 from siggen.errors import UsageError, how_to_install
 from siggen.file_writing import write_file
 from siggen.views.figure_style import figure_style
@@ -31,8 +30,8 @@ def check_picture_file(path: Path) -> Path:
     return path
 
 
-def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150, names: Names = NO_NAMES) -> None:
-    """Draw a figure into a file, in the one look of all pictures and with the user's `names` of gears.
+def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150) -> None:
+    """Draw a figure into a file, in the one look of all pictures.
 
     Raises
     ------
@@ -45,10 +44,6 @@ def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150, names: N
 
         with mpl.rc_context(figure_style()):
             figure = draw()
-            from matplotlib.text import Text
-
-            for text in figure.findobj(Text) if names.gears else ():
-                text.set_text(names.text(text.get_text()))
     except ImportError:
         raise UsageError(f"drawing needs matplotlib: {how_to_install('diagnostics')}") from None
     drawn = BytesIO()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
 
@@ -17,6 +17,7 @@ from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import ROLES
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
@@ -175,11 +176,18 @@ def _curve(
     offset = engagement * 2 * pi / pair.pinion.teeth
     open_face = solves_across_the_face(specimen.dynamics)
     stiffness = mesh_stiffness(pair, angle + offset, options, damage, through_face=open_face)
-    return StiffnessCurve(state, angle, stiffness, _parts(pair, options, damage, angle, engagement, open_face))
+    gears = [gear.column for gear in specimen.names.first.gears]
+    return StiffnessCurve(state, angle, stiffness, _parts(pair, gears, options, damage, angle, engagement, open_face))
 
 
 def _parts(
-    pair: GearPair, options: StiffnessOptions, damage: Damage, angle: FloatArray, engagement: int, open_face: bool
+    pair: GearPair,
+    gears: Sequence[str],
+    options: StiffnessOptions,
+    damage: Damage,
+    angle: FloatArray,
+    engagement: int,
+    open_face: bool,
 ) -> dict[str, FloatArray]:
     """Return the compliances of one engagement's pair over the angle since it entered contact, (k,) each [m/N].
 
@@ -191,7 +199,9 @@ def _parts(
     on_gear = pits_of(damage, "gear", engagement % pair.gear.teeth)
     found = pair_compliance(pair, position[inside], options, on_pinion, on_gear, through_face=open_face)
     parts = {
-        f"{name}_{part}": getattr(getattr(found, name), part) for name in ("pinion", "gear") for part in TOOTH_PARTS
+        f"{name}_{part}": getattr(getattr(found, role), part)
+        for role, name in zip(ROLES, gears, strict=True)
+        for part in TOOTH_PARTS
     }
     return {name: _spread(inside, values) for name, values in {**parts, "contact": found.contact}.items()}
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from siggen.config.names import NO_NAMES, Names
 from siggen.views.picture_file import check_picture_file, save_figure
 from siggen.views.stiffness_curves import StiffnessCurve
 
@@ -21,7 +20,8 @@ __all__ = ["check_picture_file", "save_stiffness_figure", "stiffness_figure"]
 COLOURS, DASHES = 10, ("-", "--", ":")
 """Each ten states have a dash of their own, so that no two of thirty look alike."""
 NOT_USED = "by potential energy,\nnot used by this set"
-SHADES = {"pinion": "Blues", "gear": "Greens"}
+SHADES = ("Blues", "Greens")
+"""Of the driver and of the driven gear."""
 
 
 def stiffness_figure(
@@ -63,7 +63,7 @@ def stiffness_figure(
         axes["land"].set_ylabel("land of the\ndamaged pair [% of face]")
     if parts:
         _stack(axes["parts"], curves[-1])
-    list(axes.values())[-1].set_xlabel("pinion angle since the first damaged tooth entered contact [°]")
+    list(axes.values())[-1].set_xlabel("angle of the driving gear since the first damaged tooth entered contact [°]")
     return figure
 
 
@@ -95,13 +95,9 @@ def _stack(axis: Axes, curve: StiffnessCurve) -> None:
     from matplotlib import colormaps
 
     inside = ~np.isnan(curve.parts_m_per_n["contact"])
-    names = list(curve.parts_m_per_n)
+    names = list(curve.parts_m_per_n)  # those of both teeth, and the contact
     shades = [0.75, 0.55, 0.4, 0.25]
-    colours = []
-    for name in names:
-        side, _, _ = name.partition("_")
-        place = [n for n in names if n.startswith(side)].index(name)
-        colours.append(colormaps[SHADES[side]](shades[place % 4]) if side in SHADES else "C6")
+    colours = [*(colormaps[colour](shade) for colour in SHADES for shade in shades), "C6"]
     layers = [1e9 * curve.parts_m_per_n[name][inside] for name in names]
     axis.stackplot(
         np.degrees(curve.angle_rad[inside]), layers, labels=[n.replace("_", " ") for n in names], colors=colours
@@ -111,9 +107,7 @@ def _stack(axis: Axes, curve: StiffnessCurve) -> None:
     axis.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
 
 
-def save_stiffness_figure(
-    curves: Sequence[StiffnessCurve], path: Path, names: Names = NO_NAMES, **options: Any
-) -> None:
+def save_stiffness_figure(curves: Sequence[StiffnessCurve], path: Path, **options: Any) -> None:
     """Draw the curves into a file; options as those of `stiffness_figure`.
 
     Raises
@@ -121,4 +115,4 @@ def save_stiffness_figure(
     UsageError
         If matplotlib is missing or the ending is none that it draws.
     """
-    save_figure(lambda: stiffness_figure(curves, **options), path, names=names)
+    save_figure(lambda: stiffness_figure(curves, **options), path)

@@ -37,7 +37,7 @@ def with_shafts(model: str = "casing", **pinion: float) -> dict[str, object]:
         ({"bearing_span_mm": 15.0}, "bearing_span_mm", "bearings beside the gear"),
         ({"gear_position": 1.0}, "gear_position", "below 1"),
         ({"gear_position": 0.01}, "bearing_span_mm", "bearings beside the gear"),
-        ({"diameter_mm": 200.0}, "diameter_mm", "root diameter of the pinion"),
+        ({"diameter_mm": 200.0}, "diameter_mm", "root diameter of its gear"),
     ],
 )
 def test_impossible_shafts_are_refused_by_key(pinion: dict[str, float], key: str, words: str) -> None:

@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import pyarrow as pa
 
-from siggen.columns.common_columns import INTEGRATION_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, VARIATION_COLUMNS
+from siggen.columns.common_columns import INTEGRATION_COLUMNS, operating_columns, target_columns, variation_columns
 from siggen.columns.record import ID_COLUMNS
 from siggen.columns.state_columns import SHAM_COLUMN
 from siggen.keys.column import Column, Role, in_role
+from siggen.names import PAIR
 
 OF_CHANNELS = (
     Column("snr_lid_x_db", pa.float64(), "dB", "", Role.CONSEQUENCE, "sensors"),
     Column("noise_floor_lid_x_m_s2", pa.float64(), "", "", Role.PROVENANCE, "sensors"),
     Column("pitch_error_um", pa.float64(), "um", "", Role.PROVENANCE, "manufacture"),
 )
-COLUMNS = (*ID_COLUMNS, *LABEL_COLUMNS, *OPERATING_COLUMNS, *VARIATION_COLUMNS, *INTEGRATION_COLUMNS, *OF_CHANNELS)
+COLUMNS = (
+    *ID_COLUMNS,
+    *target_columns(PAIR),
+    *operating_columns(PAIR),
+    *variation_columns(PAIR),
+    *INTEGRATION_COLUMNS,
+    *OF_CHANNELS,
+)
 LISTED = {column.name: column for column in (*COLUMNS, *in_role(Role.TARGET, SHAM_COLUMN))}
 
 

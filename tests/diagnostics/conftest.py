@@ -14,8 +14,8 @@ import pyarrow.compute as pc
 import pytest
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS
-from siggen.config.names import NO_NAMES, Names
 from siggen.dataset.reading import RowGroup
+from siggen.names import PAIR, Names
 from tests.diagnostics.column_roles import ListedRoles
 from tests.shared import shared
 
@@ -59,7 +59,7 @@ class MemoryDataset(ListedRoles):
     duration_s: float = 1.0
 
     def names(self) -> tuple[Names, dict[str, str]]:
-        return NO_NAMES, {}
+        return PAIR, {}
 
     @property
     def channels(self) -> tuple[SimpleNamespace, ...]:

@@ -77,7 +77,7 @@ def torsional(stage: GearStage) -> Structure:
         meshes=(replace(mesh, vector=mesh.vector[turning], sliding=np.ascontiguousarray(mesh.sliding[:, turning])),),
         lines=np.ascontiguousarray(whole.lines[:, turning]),
         torque_vector=whole.torque_vector[turning],
-        motions={"pinion_rim/tangential": vector(coordinates, {"theta_1": BASE_RADIUS_1})},
+        motions={"pinion_rim/tangential": vector(coordinates, {"theta_pinion": BASE_RADIUS_1})},
         bearing_forces={},
         bearing_directions={},
     )

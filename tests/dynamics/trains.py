@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from siggen.dynamics.structure.gear_stage import Casing, GearStage, NextStage, PlanetaryStage, Shaft
 from siggen.dynamics.structure.makers import Housing, planetary_train, rigid_housing, shaft_places_m, train
 from siggen.dynamics.structure.structure import Structure, assembled
+from siggen.names import of_stages
 
 
 def eight_dof(stage: GearStage) -> Structure:
@@ -15,8 +16,9 @@ def eight_dof(stage: GearStage) -> Structure:
 
 
 def stages(first: GearStage, behind: Sequence[NextStage]) -> Structure:
-    """Return meshes in a row on bearings on the ground."""
-    return assembled(train(first, behind))
+    """Return meshes in a row on bearings on the ground; the only one behind the first is called slow."""
+    names = ["slow"] if len(behind) == 1 else [f"mesh_{number}" for number in range(len(behind))]
+    return assembled(train(first, behind, names=of_stages(*names)))
 
 
 def casing_of(stage: GearStage, casing: Casing) -> Housing:

@@ -107,10 +107,10 @@ def test_shaft_and_housing_feel_equal_and_opposite_forces(model: str, bearing: s
     (source,) = sources_of(made, 1)
     names = structure(made, draw_specimen(made, 0)).coordinates
     for axis in "xy":
-        on_shafts = source.vectors[:, [names.index(f"{axis}_1"), names.index(f"{axis}_2")]].sum(axis=1)
+        on_shafts = source.vectors[:, [names.index(f"{axis}_{gear}") for gear in ("pinion", "gear")]].sum(axis=1)
         on_seats = -np.array([source.seat_forces[f"{bearing}/{one}"] for one in ("horizontal", "vertical")]).sum(axis=1)
         if model == "casing":
-            on_housing = source.vectors[:, names.index(f"{axis}_c")]
+            on_housing = source.vectors[:, names.index(f"{axis}_casing")]
             np.testing.assert_allclose(on_shafts, -on_housing, atol=1e-12)
         assert np.abs(on_shafts).max() > 0.1
         np.testing.assert_allclose(on_seats, 1.0, atol=1e-12)  # stiff shafts and seats pass all of it on
@@ -149,7 +149,7 @@ def test_an_exported_model_has_what_a_spall_pushes_and_what_of_it_the_housing_fe
     felt = model["input_bearing_force_rows"]
     assert np.abs(model["inputs"]).max() > 100.0
     # 8dof: a seat is the ground, so that a shaft's coordinate gets what its seat gets, with the other sign
-    for axis, name in (("x_1", "pinion_bearing/horizontal"), ("y_1", "pinion_bearing/vertical")):
+    for axis, name in (("x_pinion", "pinion_bearing/horizontal"), ("y_pinion", "pinion_bearing/vertical")):
         on_shaft = model["input_vectors"][:, list(model["coordinates"]).index(axis)]
         np.testing.assert_allclose(felt[names.index(name)], -on_shaft, atol=1e-12)
     assert not felt[[names.index(name) for name in names if name.startswith("gear")]].any()

@@ -64,7 +64,7 @@ def test_worn_gears_that_are_perfect_otherwise_stay_on_mesh_lines() -> None:
     assert isinstance(healthy, SimulatedRecord)
     assert isinstance(worn, SimulatedRecord)
     assert (healthy.labels["fault"], worn.labels["fault"]) == ("healthy", "wear")
-    assert (worn.labels["faulty_gear"], worn.labels["faulty_teeth_pinion"]) == ("both", [])
+    assert (worn.labels["faulty_gear"], worn.labels["faulty_teeth_pinion"]) == ("several", [])
     lines = []
     for record in (healthy, worn):
         found = np.abs(np.fft.rfft(record.channels["bearing_vertical"].astype(float)))

@@ -14,8 +14,8 @@ import pytest
 from tests.house.source_tree import ROOT, imports, modules
 
 SIGGEN_ROOMS = (
-    "uncollected", "errors", "live_process", "file_writing", "printable", "sources", "seeding", "child_environment",
-    "arrays", "compiled", "uniform_spline", "lanes", "keys",
+    "uncollected", "errors", "names", "live_process", "file_writing", "printable", "sources", "seeding",
+    "child_environment", "arrays", "compiled", "uniform_spline", "lanes", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.bearings", "dynamics.friction",
     "dynamics.mesh", "dynamics.time",
@@ -36,7 +36,7 @@ DOOR = {
     "siggen.errors",
     "siggen.printable",
     "siggen.columns.record",
-    "siggen.config.names",
+    "siggen.names",
     "siggen.dataset.reading",
 } | {"siggen.keys.column"}
 SHARED = {"siggen.child_environment", "siggen.file_writing"} | {

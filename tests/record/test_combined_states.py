@@ -76,7 +76,7 @@ def test_labels_say_each_kind() -> None:
         {"name": "slight", "damage": PITS}, state(SPALL, {**PITS, "pits": [{**PITS["pits"][0], "tooth": 5}]})
     )
     labels = record(chosen, 2).labels
-    assert (labels["fault"], labels["faulty_gear"]) == ("combined", "both")
+    assert (labels["fault"], labels["faulty_gear"]) == ("combined", "several")
     assert (labels["has_pitting"], labels["has_spalling"]) == (True, True)
     assert labels["faulty_teeth_pinion"] == [3, 5]  # the milder state's too
     slight = record(chosen, 1).labels

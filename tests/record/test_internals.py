@@ -62,14 +62,14 @@ def test_units_follow_from_the_names() -> None:
     units = {column.name: column.unit for column in stored_quantities(config)}
     expected = {
         "mesh_force_n": "N", "mesh_stiffness_n_per_m": "N/m", "mesh_damping_n_s_per_m": "N s/m", "approach_m": "m",
-        "approach_rate_m_s": "m/s", "pair_0_load_share": "", "phi_c_rad": "rad", "friction_moment_gear_nm": "N m",
+        "approach_rate_m_s": "m/s", "pair_0_load_share": "", "phi_casing_rad": "rad", "friction_moment_gear_nm": "N m",
         "clean_accel_casing_lid_vertical_m_s2": "m/s^2",
     }  # fmt: skip
     assert {name: units[name] for name in expected} == expected
 
 
 def test_quantities_that_the_model_lacks_are_refused_at_load_beside_the_nearest_names() -> None:
-    asked = "internals.quantities=[mesh_force_n, mesh_stifness, all, x_c_m]"
+    asked = "internals.quantities=[mesh_force_n, mesh_stifness, all, x_casing_m]"
     with pytest.raises(ConfigError) as caught:
         load_config("tests/configs/linear_pits.yaml", [*SHORT, asked])
     first, second = caught.value.problems
@@ -81,9 +81,9 @@ def test_quantities_that_the_model_lacks_are_refused_at_load_beside_the_nearest_
 
 def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_stored() -> None:
     parsed = parse(
-        parse_yaml(Path("tests/configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_c_m]}\n")
+        parse_yaml(Path("tests/configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_casing_m]}\n")
     )
-    with pytest.raises(ConfigError, match=r"internals\.quantities\.0: received 'x_c_m'"):
+    with pytest.raises(ConfigError, match=r"internals\.quantities\.0: received 'x_casing_m'"):
         stored_quantities(parsed.config)
 
 
@@ -107,14 +107,14 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
     pair = gear_pair(specimen.gears)
     assembled = structure(config, specimen)
     lengths = dict(zip(assembled.coordinates, assembled.mesh.vector, strict=True))
-    assert lengths["theta_1"] == pytest.approx(pair.pinion.base_radius_m)
-    assert lengths["theta_2"] == pytest.approx(-pair.gear.base_radius_m)
+    assert lengths["theta_pinion"] == pytest.approx(pair.pinion.base_radius_m)
+    assert lengths["theta_gear"] == pytest.approx(-pair.gear.base_radius_m)
     columns = {name: next(c for c in table.column_names if c.startswith(f"{name}_")) for name in lengths}
     moved = sum(length * table[columns[name]].to_numpy() for name, length in lengths.items())
     # Micrometres as the difference of rotations whose rounding is that of their size.
     np.testing.assert_allclose(table["transmission_error_m"].to_numpy(), moved, atol=1e-12)
     np.testing.assert_array_equal(table["transmission_error_m"].to_numpy(), table["approach_m"].to_numpy())
-    turned = sum(lengths[name] * table[columns[name]].to_numpy() for name in ("theta_1", "theta_2"))
+    turned = sum(lengths[name] * table[columns[name]].to_numpy() for name in ("theta_pinion", "theta_gear"))
     assert np.abs(turned - moved).max() > 1e-7  # bearings give way
 
 

@@ -11,14 +11,17 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing
-from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.mode_table import seats_of
 from tests.config.minimal import minimal
 from tests.simulated import simulate
+
+INPUTS = seats_of(PAIR)
 
 LID = {"name": "lid", "place": "lid", "axes": ["vertical", "axial"], "bits": None, "range_m_s2": 1e6}
 UP = {**LID, "axes": ["vertical"]}

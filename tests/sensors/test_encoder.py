@@ -28,7 +28,9 @@ def test_perfect_encoders_of_both_gears_hold_the_approach_of_their_flanks(variat
     # the speed holds over the interval about a sample, so its sum is half an interval ahead
     turned = np.cumsum(rate)[1:-2] / config.fs_hz
     vectors = dict(zip(state.mesh.structure.coordinates, state.mesh.structure.mesh.vector, strict=True))
-    translations = sum(vectors[name] * response.internals[f"{name}_m"] for name in ("x_1", "y_1", "x_2", "y_2"))
+    translations = sum(
+        vectors[name] * response.internals[f"{name}_m"] for name in ("x_pinion", "y_pinion", "x_gear", "y_gear")
+    )
     approach = response.internals["approach_m"] - translations
     between = (9.0 * (approach[2:-1] + approach[1:-2]) - approach[3:] - approach[:-3]) / 16.0
     hz, true = _spectrum(between, config.fs_hz)

@@ -31,7 +31,7 @@ def test_its_teeth_rub_as_lubricated_ones_do() -> None:
     ).mean()
     # Loss factor 0.171 μ of 11.3 kW with equal sharing, μ from 0.02 (film) to 0.11 (boundary).
     assert 0.171 * 0.02 * 11310.0 * 0.5 < power < 0.171 * 0.11 * 11310.0
-    assert "y_2_m" in table.column_names
+    assert "y_gear_m" in table.column_names
     assert not [name for name in table.column_names if name.startswith("eta")]  # gearboxes differ in them
 
 
@@ -43,7 +43,10 @@ def test_all_supports_swing_and_the_lowest_modes_of_the_housing() -> None:
     inertia = dict(zip(found.coordinates, np.diag(found.mass), strict=True))
     radius_1, radius_2 = (0.5 * 3e-3 * teeth * np.cos(np.radians(20.0)) for teeth in (18, 47))
     moving = (
-        radius_1**2 / inertia["theta_1"] + radius_2**2 / inertia["theta_2"] + 1 / inertia["y_1"] + 1 / inertia["y_2"]
+        radius_1**2 / inertia["theta_pinion"]
+        + radius_2**2 / inertia["theta_gear"]
+        + 1 / inertia["y_pinion"]
+        + 1 / inertia["y_gear"]
     )
     free = np.sqrt(next(iter(found.mesh_stiffness_n_per_m.values())) * moving) / (2.0 * np.pi)
     # Gears on the mesh alone; bearings, shafts and casing are softer and stiffen it by a few per cent: by 4.1 % against

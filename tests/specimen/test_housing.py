@@ -13,14 +13,17 @@ from siggen.dynamics.structure.gear_stage import Base
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.makers import on_base
 from siggen.dynamics.structure.structure import Structure
+from siggen.names import PAIR
 from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import MOTION
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import specimen_instrument
-from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.mode_table import seats_of
 from siggen.specimen.specimen_housing import SpecimenHousing, modes_settle_s
 from siggen.specimen.structure import linear_structure, linear_train, structure
 from tests.specimen.rigid_twin import rigid_twin
+
+INPUTS = seats_of(PAIR)
 
 CONFIG = load_config("quickstart")
 MESH = MeanMesh(3e8, 800.0)
@@ -57,17 +60,17 @@ def test_a_base_that_moves_slowly_takes_the_box_along_without_force(share: float
     stage = linear_structure(on_base(linear_train(config, specimen), base))
     p, names = stage.mesh.vector, stage.coordinates
     stiffness = stage.stiffness + MESH.stiffness_n_per_m * np.outer(p, p)
-    moving = [i for i, name in enumerate(names) if not name.endswith("_b")]
+    moving = [i for i, name in enumerate(names) if not name.endswith("_base")]
     # rocking is about the middle between both shafts, and the pinion stands at positive x
     turned = 0.04875 * np.array([0.0, 1.0])
-    goes = {"x_b": ((1.0, 0.0), (1.0, 0.0)), "y_b": ((0.0, 1.0), (0.0, 1.0)), "phi_b": (turned, -turned)}
+    goes = {"x_base": ((1.0, 0.0), (1.0, 0.0)), "y_base": ((0.0, 1.0), (0.0, 1.0)), "phi_base": (turned, -turned)}
     for base, expected in goes.items():
         q = np.eye(len(names))[names.index(base)]
         against = -(stiffness @ q)[moving]
         q[moving] = np.linalg.lstsq(stiffness[np.ix_(moving, moving)], against, rcond=1e-12)[0]
         for name, (row, _) in stage.bearing_forces.items():
             assert abs(row @ q) < 1e-12 * np.abs(row).max(), (base, name)
-        found = np.array([q[names.index(name)] for name in ("x_1", "y_1", "x_2", "y_2")]).reshape(2, 2)
+        found = np.array([q[names.index(name)] for name in ("x_pinion", "y_pinion", "x_gear", "y_gear")]).reshape(2, 2)
         # modes beyond those that move with the gears stand still: 1 to 4 % of the motion of the seats
         np.testing.assert_allclose(found, np.array(expected), atol=0.05 * np.abs(expected).max())
 

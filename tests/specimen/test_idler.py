@@ -59,15 +59,15 @@ def test_no_mesh_notices_that_the_whole_machine_is_moved_and_turned_as_one_body(
     found = structure(config, specimen)
     names, place = found.coordinates, np.radians(direction_deg)
     to_a, to_c = (-0.045, 0.0), (0.062 * np.cos(place), 0.062 * np.sin(place))
-    body = {"theta_1": 1.0, "theta_2": -1.0, "theta_3": 1.0}
-    body |= {"x_1": -to_a[1], "y_1": to_a[0], "x_3": -to_c[1], "y_3": to_c[0]}
-    shift = {f"{axis}_{gear}": value for gear in "123" for axis, value in (("x", 0.7), ("y", -0.4))}
+    body = {"theta_a": 1.0, "theta_b": -1.0, "theta_c": 1.0}
+    body |= {"x_a": -to_a[1], "y_a": to_a[0], "x_c": -to_c[1], "y_c": to_c[0]}
+    shift = {f"{axis}_{gear}": value for gear in "abc" for axis, value in (("x", 0.7), ("y", -0.4))}
     for mesh in found.meshes:
         for motion in (body, shift):
             whole = sum(mesh.vector[names.index(name)] * value for name, value in motion.items())
             assert whole == pytest.approx(0.0, abs=1e-12)
     turning = [name for name in names if name.startswith("theta")]
-    assert turning == ["theta_m", "theta_1", "theta_2", "theta_3", "theta_l"]
+    assert turning == ["theta_motor", "theta_a", "theta_b", "theta_c", "theta_load"]
 
 
 def test_torques_on_the_idler_cancel_and_its_bearing_holds_the_sum_of_both_tooth_forces() -> None:
@@ -77,11 +77,11 @@ def test_torques_on_the_idler_cancel_and_its_bearing_holds_the_sum_of_both_tooth
     radius = mesh.pair.pinion.base_radius_m
     assert equations.static_force == pytest.approx([point.torque_nm / radius] * 2, rel=1e-9)
     found, names = mesh.structure, list(mesh.structure.coordinates)
-    turned = [names.index("theta_2")]
+    turned = [names.index("theta_b")]
     work = sum(force * one.vector[turned] for force, one in zip(equations.static_force, found.meshes, strict=True))
     assert work == pytest.approx(0.0, abs=1e-9 * point.torque_nm)
     axes = ("horizontal", "vertical")
-    held = [found.bearing_forces[f"gear_bearing/{axis}"][0] @ equations.static_deflection for axis in axes]
+    held = [found.bearing_forces[f"middle_bearing/{axis}"][0] @ equations.static_deflection for axis in axes]
     # pushed at 90° - 20° from the first line of centres, and back at -90° + 20° from the second one, at 60°
     first, second = np.radians(0.0 + 90.0 - 20.0), np.radians(60.0 - 90.0 + 20.0)
     expected = point.torque_nm / radius * (np.exp(1j * first) - np.exp(1j * second))
@@ -92,9 +92,9 @@ def test_an_idler_too_heavy_to_move_parts_both_meshes() -> None:
     """Then neither sees the other: with other phases of the second mesh the first one moves as it did."""
     _, _, mesh, _ = machine()
     built = mesh.structure
-    factor = np.array([1e6 if name.endswith("_2") else 1.0 for name in built.coordinates])
+    factor = np.array([1e6 if name.endswith("_b") else 1.0 for name in built.coordinates])
     heavy = replace(mesh, structure=replace(built, mass=built.mass * factor))
-    at = len(built.coordinates) + built.coordinates.index("theta_1")
+    at = len(built.coordinates) + built.coordinates.index("theta_a")
     found = []
     for own in (heavy, mesh):
         (behind,) = own.behind
@@ -133,7 +133,7 @@ def test_an_eccentric_idler_stands_back_from_both_gears_as_the_structure_says_of
     specimen = draw_specimen(config, 0)
     made, found = MadeGears(config, specimen), structure(config, specimen)
     mesh = specimen_state(config, specimen, 0, made).mesh
-    rows = [found.coordinates.index(f"{axis}_2") for axis in "xy"]
+    rows = [found.coordinates.index(f"{axis}_b") for axis in "xy"]
     ahead, behind = (one.vector[rows] for one in found.meshes)
     turned = 30.0 + np.linspace(0.0, 27.0, 53)  # pitches
     angle = -2.0 * np.pi * turned / 27  # the idler turns back

@@ -9,12 +9,15 @@ import pytest
 
 import siggen
 from siggen.checks.loading import load_config
+from siggen.names import PAIR
 from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.accelerometer import Accelerometer
 from siggen.specimen.instrument import ChannelInstrument, channel_ways, settle_s
-from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.mode_table import seats_of
 from tests.config.minimal import minimal
+
+INPUTS = seats_of(PAIR)
 
 
 def test_a_force_that_also_comes_through_a_path_counts_twice() -> None:
@@ -22,7 +25,7 @@ def test_a_force_that_also_comes_through_a_path_counts_twice() -> None:
     channel = ChannelInstrument(
         name="a_vertical", sensor=Accelerometer(name="a"), gain=1.0, seen={shown: 3.0},
         accelerance=np.full((len(INPUTS), bins), 2.0 + 0.0j), sensor_response=None,
-        path_modes=0, path_rms_m_s2_per_n=0.0, path_number=0,
+        path_modes=0, path_rms_m_s2_per_n=0.0, path_number=0, forces=INPUTS,
     )  # fmt: skip
     found = channel_ways(channel, None, bins)
     assert {one: row[0] for one, row in found.items()} == {Input(FORCE, n): 2.0 for n in INPUTS} | {shown: 5.0}

@@ -63,7 +63,7 @@ def test_a_shaft_moves_by_a_little_more_load_as_its_balls_do() -> None:
     before, after = (specimen_bearings(specimen.under(one))["pinion"] for one in (point, more))
     moved = after.moved_m * after.direction - before.moved_m * before.direction
     names = structure(chosen, specimen).coordinates
-    rows = [names.index("x_1"), names.index("y_1")]
+    rows = [names.index("x_pinion"), names.index("y_pinion")]
     tangent = structure(chosen, specimen).stiffness[np.ix_(rows, rows)]
     by_structure = np.linalg.solve(tangent, BEARINGS * (after.force_n - before.force_n))
     # the spring has the mean stiffness over the cage's angles, the way is a mean of ways: 9 balls differ by 1 %

@@ -97,7 +97,7 @@ def test_missing_teeth_push_away_from_each_other_when_they_would_meet_at_the_pit
     for which, teeth, side in (("pinion", 18, -1.0), ("gear", 47, 1.0)):
         place = f"{which}_bearing"
         sense = turning_sense(found, place)
-        rows = [found.coordinates.index(f"{axis}_{1 if which == 'pinion' else 2}") for axis in "xy"]
+        rows = [found.coordinates.index(f"{axis}_{which}") for axis in "xy"]
         shown = np.array([found.bearing_directions[f"{place}/{axis}"][rows] for axis in ("horizontal", "vertical")])
         # Flanks move along the line of action: 90° in front of the way to the mate, less α (driving) or more (driven).
         along = shown @ (found.mesh.vector[rows] * (1.0 if which == "pinion" else -1.0))

@@ -17,15 +17,18 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, parse, parse_yaml, yaml_text
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
+from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.mode_table import seats_of
 from tests.config.mill import mill
 from tests.config.minimal import minimal
 from tests.sensing.resonances import accelerance
 from tests.simulated import simulate
+
+INPUTS = seats_of(PAIR)
 
 SENSOR = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 
@@ -106,10 +109,8 @@ def test_forces_of_all_bearings_pass_a_response_from_a_file(tmp_path: Path) -> N
 
 
 def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path: Path) -> None:
-    places = {"pinion_bearing": "input_bearing", "gear_bearing": "middle_bearing", "slow_bearing": "output_bearing"}
-    forces = {
-        f"{short}/{axis}": f"{own}_{axis}" for short, own in places.items() for axis in ("vertical", "horizontal")
-    }
+    places = ("input_bearing", "middle_bearing", "output_bearing")
+    forces = {f"{own}/{axis}": f"{own}_{axis}" for own in places for axis in ("vertical", "horizontal")}
     residues = {name: (0.01 * (k + 1), 0.02 - 0.01 * k) for k, name in enumerate(forces)}
     found = {"frequency_hz": GRID}
     for name, own in forces.items():

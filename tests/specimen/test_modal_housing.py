@@ -17,13 +17,16 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, parse_yaml, yaml_text
 from siggen.dataset.card_making import making
 from siggen.errors import ConfigError
+from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.mode_table import seats_of
 from tests.config.minimal import minimal
 from tests.simulated import simulate
+
+INPUTS = seats_of(PAIR)
 
 LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 SHAPES = {"pinion_bearing/vertical": (0.2, 0.10), "pinion_bearing/horizontal": (0.05, -0.15),

@@ -56,7 +56,7 @@ def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_mad
     assert labels["runout_each_planet_um"][0] == labels["runout_gear_um"]
     assert len(set(runouts[:COUNT])) == COUNT
     assert len(labels["ghost_orders_ring"]) == len(labels["ghost_amplitudes_ring_um"]) > 0
-    assert {column.name for column, _ in manufacture_of_others(config)} <= set(label_names(config)) & set(labels)
+    assert {column.name for column in manufacture_of_others(config)} <= set(label_names(config)) & set(labels)
 
 
 def missing_m(made: MadeGears, which: str, pitches: FloatArray) -> FloatArray:
@@ -78,7 +78,7 @@ def test_an_eccentric_planet_stands_back_from_sun_and_ring_as_the_structure_says
     specimen = meshes[0].specimen
     teeth, (pair, inner) = planetary_teeth(specimen), planets_in_ring(specimen)
     structure = planetary_structure(planetary_numbers(specimen))
-    place = [structure.coordinates.index(f"{axis}_p{planet + 1}") for axis in ("x", "y")]
+    place = [structure.coordinates.index(f"{axis}_planet_{planet + 1}") for axis in ("x", "y")]
     to_sun, to_ring = (structure.meshes[i].vector[place] for i in (planet, COUNT + planet))
     turned = 30.0 + np.linspace(0.0, 26.0, 53)  # pitches of the first mesh
     at_sun, lag = turned + float(teeth.sun_begins[planet]), ring_begins_pitches(pair, inner)

@@ -24,6 +24,7 @@ from siggen.dynamics.drive.external_forces import Unbalance, shaft_mass
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.planning.stages import first_mesh, stage_config, stage_point, stage_specimen, turns
@@ -36,6 +37,7 @@ from siggen.specimen.structure import structure
 
 ROOT = Path(__file__).resolve().parents[2]
 
+GEARS = ("pinion", "gear", "slow_pinion", "slow_gear")
 TEETH = (18, 47, 17, 52)
 SLOW = {
     "name": "slow",
@@ -98,7 +100,7 @@ def test_teeth_and_bearings_carry_the_torque_of_their_shaft_at_rest() -> None:
     names = list(mesh.structure.coordinates)
     pushed = sum(
         force * vectors.vector[[names.index(f"x_{gear}"), names.index(f"y_{gear}")]]
-        for force, vectors, gear in zip(motion.equations.static_force, mesh.structure.meshes, (2, 3), strict=True)
+        for force, vectors, gear in zip(motion.equations.static_force, mesh.structure.meshes, GEARS[1:3], strict=True)
     )
     axes = ("horizontal", "vertical")
     held = [mesh.structure.bearing_forces[f"gear_bearing/{axis}"][0] @ moved for axis in axes]
@@ -123,7 +125,7 @@ def test_torques_of_teeth_and_friction_balance_on_every_shaft_on_the_mean() -> N
     # Friction moments of mixed sign; the record's ends leave 1e-4 of the torque.
     assert r_1 * mean["mesh_force_n"] + mean["friction_moment_pinion_nm"] == pytest.approx(torque, rel=3e-4)
     driven = r_2 * mean["mesh_force_n"] + mean["friction_moment_gear_nm"]
-    driving = r_3 * mean["slow_mesh_force_n"] + mean["slow_friction_moment_pinion_nm"]
+    driving = r_3 * mean["slow_mesh_force_n"] + mean["slow_friction_moment_slow_pinion_nm"]
     assert driven == pytest.approx(driving, rel=3e-4)
     assert abs(mean["friction_moment_gear_nm"]) > 1e-3 * driven
 
@@ -132,7 +134,7 @@ def test_power_in_is_power_out_and_what_friction_of_both_meshes_takes() -> None:
     mean, (_, _, mesh, _) = rubbing_record(), machine()
     *_, r_4 = base_radii_m(mesh, mesh.behind[0].mesh)
     speed = 2.0 * pi * mean["speed_hz"]
-    out_nm = r_4 * mean["slow_mesh_force_n"] + mean["slow_friction_moment_gear_nm"]
+    out_nm = r_4 * mean["slow_mesh_force_n"] + mean["slow_friction_moment_slow_gear_nm"]
     given = mean["torque_nm"] * speed
     taken = given - out_nm * speed * 18 / 47 * 17 / 52
     columns = mean["columns"]
@@ -155,14 +157,14 @@ def with_heavy(found: Structure, names: Sequence[str]) -> Structure:
 def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
     """Then the first stage is one whose gear stands still, and the second one whose pinion does."""
     found, specimen, mesh, point = machine(*WITHOUT_FRICTION)
-    middle = [f"{kind}_{gear}" for kind in ("x", "y", "theta") for gear in (2, 3)]
+    middle = [f"{kind}_{gear}" for kind in ("x", "y", "theta") for gear in GEARS[1:3]]
     pitches = 18 * point.speed_hz * STEP_S * np.arange(8001) + 0.3
     both = specimen_motion(specimen.dynamics, mesh.on(with_heavy(mesh.structure, middle)), point, STEP_S)
     velocities = dict(zip(both.structure.coordinates, run(both, pitches).T, strict=True))
 
-    alone, single = first_mesh(found), replace(specimen, stages=())
+    alone, single = first_mesh(found), replace(specimen, stages=(), names=PAIR)
     made = structure(alone, single)
-    first = replace(mesh, structure=with_heavy(made, ["x_2", "y_2", "theta_2"]), behind=())
+    first = replace(mesh, structure=with_heavy(made, ["x_gear", "y_gear", "theta_gear"]), behind=())
     wanted = run(specimen_motion(single.dynamics, first, point, STEP_S), pitches).T
     for name, expected in zip(made.coordinates[:4], wanted[:4], strict=True):
         # What is left is the motion of the shaft, 1e-8 times a few ratios of stiffness and inertia.
@@ -170,12 +172,12 @@ def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
 
     own, behind = stage_specimen(specimen, 0), mesh.behind[0]
     made = structure(stage_config(found, specimen, 0), own)
-    second = replace(behind.mesh, structure=with_heavy(made, ["x_1", "y_1", "theta_1"]))
+    second = replace(behind.mesh, structure=with_heavy(made, ["x_pinion", "y_pinion", "theta_pinion"]))
     turned = pitches * turns(specimen)[0] * 17 / 18 + behind.turned_pitches
     slow = specimen_motion(own.dynamics, second, stage_point(point, turns(specimen)[0]), STEP_S)
     # Its line of centres is turned by 70°, and its pinion runs backwards: a mirror and a turn, on equal bearings.
     wanted = run(slow, turned).T
-    for name, expected in zip(("theta_4", "theta_l"), wanted[[6, 7]], strict=True):
+    for name, expected in zip(("theta_slow_gear", "theta_load"), wanted[[6, 7]], strict=True):
         assert rms(velocities[name] - expected) < 1e-6 * rms(expected)
 
 
@@ -195,7 +197,7 @@ def smooth(mesh: SpecimenMesh) -> SpecimenMesh:
 def lines(motion: PairMotion, point: OperatingPoint, orders: Sequence[float]) -> FloatArray:
     """Return what the velocity of the first pinion's bearing has at orders of the first mesh, of its own line."""
     pitches = 18 * point.speed_hz * STEP_S * np.arange(200_001) + 0.3
-    velocity = run(motion, pitches)[40_000:, motion.structure.coordinates.index("y_1")]
+    velocity = run(motion, pitches)[40_000:, motion.structure.coordinates.index("y_pinion")]
     window = np.blackman(velocity.size) ** 2
     phases = np.exp(-2j * pi * np.outer((1.0, *orders), pitches[40_000:]))
     found = np.abs(phases @ (window * (velocity - velocity.mean())))
@@ -230,12 +232,12 @@ def test_every_shaft_is_out_of_balance_by_the_mass_of_its_gears_and_turns_agains
     built = mesh.structure
     orders, moments = balance(force_sources(found, specimen, built))
     assert orders == pytest.approx([1.0, -18 / 47, 18 / 47 * 17 / 52])
-    masses = [built.mass[(built.coordinates.index(f"x_{gear}"),) * 2] for gear in (1, 2, 3, 4)]
+    masses = [built.mass[(built.coordinates.index(f"x_{gear}"),) * 2] for gear in GEARS]
     of_shafts = np.array([masses[0], masses[1] + masses[2], masses[3]])
     assert np.array(moments) * np.abs(orders) * 100.0 * pi == pytest.approx(6.3e-3 * of_shafts)
     # On the middle shaft each gear is pulled by its own mass, and both together as one mass is.
     _, pulled = shaft_mass(built, "gear_bearing")
-    rows = [built.coordinates.index(name) for name in ("x_2", "x_3")]
+    rows = [built.coordinates.index(name) for name in ("x_gear", "x_slow_pinion")]
     assert pulled[0, rows] == pytest.approx(np.array(masses[1:3]) / sum(masses[1:3]), rel=1e-12)
 
 
@@ -250,8 +252,8 @@ def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -
     driven = record_drive(found, specimen, built, point, record, 0.0, state.parts, state.parts_behind)
     assert driven.excitation is not None
     assert driven.excitation.vectors.shape[0] == 2
-    number = {"gear": 2, "slow.pinion": 3, "slow.gear": 4}[gear]
-    names = [built.coordinates.index(f"{axis}_{number}") for axis in "xy"]
+    body = {"gear": "gear", "slow.pinion": "slow_pinion", "slow.gear": "slow_gear"}[gear]
+    names = [built.coordinates.index(f"{axis}_{body}") for axis in "xy"]
     assert np.abs(driven.excitation.vectors[:, names]) == pytest.approx(np.eye(2), abs=1e-12)
     assert np.count_nonzero(driven.excitation.vectors) == 2
     times = np.arange(4) * 0.25 / (abs(order) * point.speed_hz)

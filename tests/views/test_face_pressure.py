@@ -116,7 +116,7 @@ def test_the_command_writes_table_and_picture_and_says_the_largest_pressures(tmp
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--tooth", 99), r"--tooth 99: the pinion has \d+ teeth"),
+        (("--tooth", 99), r"--tooth 99: pinion has \d+ teeth"),
         (("--gear", "gear", "--tooth", 40, "--set", "duration_s=0.02"), "goes through mesh nowhere within the record"),
         (LINEAR, "dynamics.mesh.law: received linear"),
     ],

@@ -65,7 +65,7 @@ def knocked(torque_nm: float, knock_m_s: float, steps: int, samples: int = SAMPL
 def after(model: dict, knock_m_s: float) -> FloatArray:
     """Return the start state with motor and pinion turning as one, so that flanks approach at a speed."""
     names = list(model["coordinates"])
-    turning = np.isin(names, ["theta_m", "theta_1"]).astype(float)
+    turning = np.isin(names, ["theta_motor", "theta_pinion"]).astype(float)
     return model["start_state"] + np.concatenate(
         [np.zeros(len(names)), knock_m_s / (model["mesh.0.vector"] @ turning) * turning]
     )

@@ -105,7 +105,7 @@ def test_plan_set_card_and_records_say_the_users_names_alone(made: Path) -> None
 
 
 def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: Path) -> None:
-    sensors = [{"name": SENSOR, "place": "slow_bearing"}, {"kind": "encoder", "name": "out", "place": "slow.gear"}]
+    sensors = [{"name": SENSOR, "place": "slow_bearing"}, {"kind": "encoder", "name": "out", "place": "slow_gear"}]
     stage = {**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}
     short = siggen.load_config(staged(**COMMON, stages=[stage], sensors=sensors, states=states("slow.pinion")))
     (other,) = simulate(short, [1])

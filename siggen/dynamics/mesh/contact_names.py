@@ -10,4 +10,4 @@ OF_CONTACT_ALONE = ("friction_coefficient", *PER_CONTACT, *PER_FILM)
 
 def is_of_contact_alone(name: str) -> bool:
     """Return whether a quantity such as pair_0_film_ratio is not defined while its pair does not touch."""
-    return name.startswith(PAIR_PREFIX) and name.endswith(OF_CONTACT_ALONE)
+    return name.endswith(OF_CONTACT_ALONE)

@@ -9,7 +9,7 @@ NaN; a back flank that touches has force and friction, but neither film nor pres
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,13 +34,14 @@ from siggen.dynamics.mesh.pair_columns import (
     STIFFNESS,
 )
 
+MOMENTS = ("friction_moment_{0}_nm", "friction_moment_{1}_nm")
+"""Of the driver and the driven gear."""
 SUMS = (
     "mesh_force_n",
     "mesh_stiffness_n_per_m",
     "mesh_damping_n_s_per_m",
     "friction_force_n",
-    "friction_moment_pinion_nm",
-    "friction_moment_gear_nm",
+    *MOMENTS,
 )
 PER_PAIR = (
     "force_n",
@@ -48,8 +49,7 @@ PER_PAIR = (
     "friction_n",
     "sliding_m_s",
     "position_m",
-    "friction_moment_pinion_nm",
-    "friction_moment_gear_nm",
+    *MOMENTS,
     "friction_coefficient",
     "damping_n_s_per_m",
 )
@@ -68,10 +68,13 @@ class PairContact:
     roughness_m: tuple[float, float] = (0.0, 0.0)
 
 
-def pair_internal_names(slots: int, contact: PairContact | None) -> tuple[str, ...]:
+def pair_internal_names(
+    slots: int, contact: PairContact | None, gears: Sequence[str] = ("pinion", "gear")
+) -> tuple[str, ...]:
     """Return the names of `pair_internals`; pair n of an engagement has the number n mod slots."""
     single = (*PER_PAIR, *_of_contact(contact))
-    return (*SUMS, *(f"{PAIR_PREFIX}{slot}_{name}" for slot in range(slots) for name in single))
+    names = (*SUMS, *(f"{PAIR_PREFIX}{slot}_{name}" for slot in range(slots) for name in single))
+    return tuple(name.format(*gears) for name in names)
 
 
 def pair_internals(pairs: FloatArray, line_m: float, contact: PairContact | None) -> FloatArray:

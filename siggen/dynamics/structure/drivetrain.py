@@ -34,7 +34,7 @@ ROUND, ROCKING = "theta", "phi"
 """Names of rotations: of a body that goes round, and of one that stands."""
 MODE = "eta_"
 """How the names of coordinates begin that are modes of a housing."""
-BASE = "b"
+BASE = "base"
 """What housings stand on: a body that does not move until it is given moves."""
 SMALL = 1e-9
 """Share of its largest entry below which an equation between rotations says nothing: rounding leaves 1e-15."""

@@ -158,7 +158,6 @@ class NextStage:
     Without a shaft its pinion is the gear in front itself, an idler.
     """
 
-    name: str
     working_pressure_angle_rad: float
     pinion: Rotor
     gear: Rotor

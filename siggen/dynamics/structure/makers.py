@@ -60,13 +60,14 @@ from siggen.dynamics.structure.gear_stage import (
     Shaft,
     cantilever_compliance_m_per_n,
 )
+from siggen.names import PAIR, Names
 
 TORSIONAL_DAMPING = 0.005
 """Of a steel shaft between two gears, as a share of the critical one (assumed)."""
 GROUND = Body(BASE, moves=())
 RING_TURNING = "ring/turning"
 """What keeps the ring from turning: a moment [N m] among the forces on a housing."""
-CENTRAL = {"sun_bearing": "s", "carrier_bearing": "c", "ring": "r"}
+CENTRAL = {"sun_bearing": "sun", "carrier_bearing": "carrier", "ring": "ring"}
 """Place of a sensor or of a bearing of a planetary set -> body there."""
 SEATS_OF_SET = (*(f"{place}/{along}" for place in CENTRAL for along in PLANE), RING_TURNING)
 """Place/direction of what presses on a housing: sun, carrier and ring along both, and the ring's moment."""
@@ -98,7 +99,7 @@ class Housing:
         return place if known else None
 
 
-def rigid_housing(casing: Casing, places_m: Mapping[str, Point], name: str = "c") -> Housing:
+def rigid_housing(casing: Casing, places_m: Mapping[str, Point], name: str = "casing") -> Housing:
     """Return a rigid casing on bolts, c = 2 ζ √(k m_c/bolts) each; a force beside its bearings acts in its middle.
 
     Parameters
@@ -181,34 +182,36 @@ def train(
     behind: Sequence[NextStage] = (),
     housing: Housing | None = None,
     bending: tuple[Shaft, Shaft] | None = None,
+    names: Names = PAIR,
 ) -> Drivetrain:
     """Return motor, shafts with their gears, load, and what carries the bearings.
 
     Parameters
     ----------
     first : GearStage
-    behind : further meshes; their bearings are called by them, those of the first `pinion_bearing` and `gear_bearing`
+    behind : further meshes
     housing : Housing, None for bearings on the ground
     bending : shafts of a single stage in a housing, which bend and let their gears tilt
+    names : of gears, shafts and meshes
     """
     hand = 1.0 if housing is None else -1.0
     tilts, along = ("phi_x", "phi_y") if bending else (), ("z",) if first.base_helix_rad else ()
     moves = ("x", "y", ROUND, *tilts, *along)
     inertias = [one.tilt_inertia_kg_m2 for one in bending] if bending else []
-    shafts, sense, count = _shafts(first, behind), hand, 0
-    places = shaft_places_m([first, *behind], hand, _start(housing))
+    shafts, sense, count = _shafts(first, behind, names), hand, 0
+    places = shaft_places_m([first, *behind], hand, _start(shafts[0].name, housing))
     standing: list[list[Body]] = []
     for shaft, (h, v) in zip(shafts, places, strict=True):
         own = []
-        for rotor in shaft.rotors:
+        for name, rotor in shaft.rotors.items():
             tilting = inertias[count] if inertias else 0.0
             count += 1
-            own.append(Body(str(count), rotor.mass_kg, rotor.inertia_kg_m2, tilting, (h, v, 0.0), moves, sense))
+            own.append(Body(name, rotor.mass_kg, rotor.inertia_kg_m2, tilting, (h, v, 0.0), moves, sense))
         standing.append(own)
         sense = -sense
     ends = standing[0][0], standing[-1][0]
-    motor = Body("m", inertia_kg_m2=first.motor_inertia_kg_m2, moves=(ROUND,), sense=ends[0].sense)
-    load = Body("l", inertia_kg_m2=first.load_inertia_kg_m2, moves=(ROUND,), sense=ends[1].sense)
+    motor = Body("motor", inertia_kg_m2=first.motor_inertia_kg_m2, moves=(ROUND,), sense=ends[0].sense)
+    load = Body("load", inertia_kg_m2=first.load_inertia_kg_m2, moves=(ROUND,), sense=ends[1].sense)
     elements = [
         _coupled("input_coupling", motor, ends[0], first.input_coupling),
         _coupled("output_coupling", ends[1], load, first.output_coupling),
@@ -217,36 +220,35 @@ def train(
         elements += _held(shaft, own, housing, bent)
     meshes = []
     stages: list[GearStage | NextStage] = [first, *behind]
-    for stage, (driving, driven) in zip(stages, pairwise(standing), strict=True):
-        name, helix = (stage.name, 0.0) if isinstance(stage, NextStage) else ("", stage.base_helix_rad)
+    for mesh, stage, (driving, driven) in zip(names.meshes, stages, pairwise(standing), strict=True):
+        helix = 0.0 if isinstance(stage, NextStage) else stage.base_helix_rad
         driver, radius_m = MeshGear(driving[-1].name, stage.pinion.base_radius_m, helix), stage.gear.base_radius_m
         angle, sense = stage.working_pressure_angle_rad, driving[-1].sense
-        meshes.append(Mesh(name, driver, MeshGear(driven[0].name, radius_m), angle, sense))
+        meshes.append(Mesh(mesh.word, driver, MeshGear(driven[0].name, radius_m), angle, sense))
     bodies = motor, *(body for own in standing for body in own), load
     return _drivetrain(bodies, elements, meshes, housing, hand=hand)
 
 
 @dataclass(slots=True)
 class _HeldShaft:
-    """What its bearings are called and their numbers, its gears, and the shaft itself between two of them."""
+    """What its bearings are called and their numbers, its gears by name, and the shaft itself between two of them."""
 
     name: str
     bearing: Bearing
-    rotors: list[Rotor]
+    rotors: dict[str, Rotor]
     common: CommonShaft | None = None
 
 
-def _shafts(first: GearStage, behind: Sequence[NextStage]) -> list[_HeldShaft]:
+def _shafts(first: GearStage, behind: Sequence[NextStage], names: Names) -> list[_HeldShaft]:
     """Return the shafts in the order of power."""
-    shafts = [
-        _HeldShaft("pinion_bearing", first.pinion.bearing, [first.pinion]),
-        _HeldShaft("gear_bearing", first.gear.bearing, [first.gear]),
-    ]
-    for stage in behind:
-        if stage.shaft is not None:
-            shafts[-1].rotors.append(stage.pinion)
+    meshes, bearings = names.meshes, [shaft.bearing for shaft in names.shafts]
+    shafts = [_HeldShaft(bearings[0], first.pinion.bearing, {meshes[0].driver.body: first.pinion})]
+    stages: tuple[GearStage | NextStage, ...] = (first, *behind)
+    for mesh, bearing, stage in zip(meshes, bearings[1:], stages, strict=True):
+        if isinstance(stage, NextStage) and stage.shaft is not None:
+            shafts[-1].rotors[mesh.driver.body] = stage.pinion
             shafts[-1].common = stage.shaft
-        shafts.append(_HeldShaft(f"{stage.name}_bearing", stage.gear.bearing, [stage.gear]))
+        shafts.append(_HeldShaft(bearing, stage.gear.bearing, {mesh.driven.body: stage.gear}))
     return shafts
 
 
@@ -261,8 +263,8 @@ def shaft_places_m(stages: Sequence[GearStage | NextStage], hand: float, start_m
     return places
 
 
-def _start(housing: Housing | None) -> Point:
-    place = None if housing is None else housing.seats["pinion_bearing"].at
+def _start(bearing: str, housing: Housing | None) -> Point:
+    place = None if housing is None else housing.seats[bearing].at
     return (0.0, 0.0) if place is None or isinstance(place, str) else place[:2]
 
 
@@ -332,14 +334,14 @@ def planetary_train(stage: PlanetaryStage, housing: Housing | None = None) -> Dr
     on the ground, whatever the frame's angle. All rotations count from x to y, as the sun drives.
     """
     a, angles = stage.centre_distance_m, [2.0 * pi * place for place in stage.places_turns]
-    motor = Body("m", inertia_kg_m2=stage.motor_inertia_kg_m2, moves=(ROUND,))
-    load = Body("l", inertia_kg_m2=stage.load_inertia_kg_m2, moves=(ROUND,))
-    central = {"s": stage.sun, "c": stage.carrier, "r": stage.ring}
+    motor = Body("motor", inertia_kg_m2=stage.motor_inertia_kg_m2, moves=(ROUND,))
+    load = Body("load", inertia_kg_m2=stage.load_inertia_kg_m2, moves=(ROUND,))
+    central = {"sun": stage.sun, "carrier": stage.carrier, "ring": stage.ring}
     sun, carrier, ring = (Body(name, one.mass_kg, one.inertia_kg_m2) for name, one in central.items())
     planet = stage.planet
     places = [(a * cos(angle), a * sin(angle), 0.0) for angle in angles]
     planets = [
-        Body(f"p{i}", planet.mass_kg, planet.inertia_kg_m2, at_m=place, axes_rad=angle, on="c")
+        Body(f"planet_{i}", planet.mass_kg, planet.inertia_kg_m2, at_m=place, axes_rad=angle, on="carrier")
         for i, (place, angle) in enumerate(zip(places, angles, strict=True), start=1)
     ]
     elements = [
@@ -348,25 +350,26 @@ def planetary_train(stage: PlanetaryStage, housing: Housing | None = None) -> Dr
         *supports_of_set(stage, housing),
     ]
     for one in planets:
-        pin = (1.0, Place(one.name)), (-1.0, Place("c", one.at_m))
+        pin = (1.0, Place(one.name)), (-1.0, Place("carrier", one.at_m))
         elements.append(Element("pin", pin, PLANE, *_alike(planet)))
-    sun_gear, ring_gear = MeshGear("s", stage.sun.base_radius_m), MeshGear("r", stage.ring.base_radius_m, internal=True)
-    gears = [(one.name[1:], MeshGear(one.name, planet.base_radius_m)) for one in planets]
+    sun_gear = MeshGear("sun", stage.sun.base_radius_m)
+    ring_gear = MeshGear("ring", stage.ring.base_radius_m, internal=True)
+    gears = [(i, MeshGear(one.name, planet.base_radius_m)) for i, one in enumerate(planets, start=1)]
     meshes = [Mesh(f"sun_{i}", sun_gear, gear, stage.sun_angle_rad) for i, gear in gears]
     meshes += [Mesh(f"ring_{i}", gear, ring_gear, stage.ring_angle_rad, -1.0) for i, gear in gears]
     bodies = motor, sun, carrier, *planets, ring, load
-    return _drivetrain(bodies, elements, meshes, housing, frame="c")
+    return _drivetrain(bodies, elements, meshes, housing, frame="carrier")
 
 
 def supports_of_set(stage: PlanetaryStage, housing: Housing | None) -> Iterator[Element]:
     """Yield what holds sun, carrier and ring, in the order of `SEATS_OF_SET`."""
-    bodies = {"s": stage.sun, "c": stage.carrier, "r": stage.ring}
+    bodies = {"sun": stage.sun, "carrier": stage.carrier, "ring": stage.ring}
     for place, name in CENTRAL.items():
         seat = () if housing is None else ((-1.0, housing.seats[place]),)
         yield Element(place, ((1.0, Place(name)), *seat), PLANE, *_alike(bodies[name]), bearing=True)
     held = stage.ring.turning_stiffness_nm_per_rad, stage.ring.turning_damping_nm_s_per_rad
     seated = None if housing is None else housing.seats["ring"]
-    yield spring("ring", Place("r"), seated, TURNING, *held, bearing=True)
+    yield spring("ring", Place("ring"), seated, TURNING, *held, bearing=True)
 
 
 def _alike(body: PlanetaryBody) -> tuple[FloatArray, FloatArray]:

@@ -140,14 +140,8 @@ class Structure:
         machine, still = self.drivetrain, np.zeros(len(self.coordinates))
         # planets are no shafts that a sensor reaches
         gears = () if machine.frame else machine.meshes
-        turning = {"motor": machine.driver, "load": machine.load} | {
-            f"{mesh.name}.{which}" if mesh.name else which: gear.body
-            for mesh in gears
-            for which, gear in (("pinion", mesh.driver), ("gear", mesh.driven))
-        }
-        readings = {
-            f"angle/{shaft}": (machine.vector({f"{ROUND}_{name}": 1.0}), still) for shaft, name in turning.items()
-        }
+        turning = (machine.driver, machine.load, *(gear.body for mesh in gears for gear in (mesh.driver, mesh.driven)))
+        readings = {f"angle/{name}": (machine.vector({f"{ROUND}_{name}": 1.0}), still) for name in turning}
         for element in machine.elements if gears else ():
             if element.name in COUPLINGS:
                 twist = machine.rigid(element.ends[0][1].body).sense * machine.stretch(element)[0]

@@ -142,10 +142,11 @@ class PairMotion:
 
     def _mesh_names(self) -> Iterator[str]:
         """Yield the names of what happens in the meshes; those of several begin with the name of the mesh."""
-        for mesh, vectors in zip(self.meshes, self.structure.meshes, strict=True):
-            across = ACROSS if self.tilts else ()
-            first = f"{vectors.name}_" if vectors.name else ""
-            for name in (*pair_internal_names(mesh.law.slots, mesh.contact), *MOTION, *across):
+        across = ACROSS if self.tilts else ()
+        for mesh, own in zip(self.meshes, self.structure.drivetrain.meshes, strict=True):
+            first = f"{own.name}_" if own.name and len(self.meshes) > 1 else ""
+            gears = own.driver.body, own.driven.body
+            for name in (*pair_internal_names(mesh.law.slots, mesh.contact, gears), *MOTION, *across):
                 yield first + name
 
     def start(self, pitches: float) -> FloatArray:

@@ -6,7 +6,7 @@ out or invents; contact width against tooth thickness).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import tan
 
 import numpy as np
@@ -26,7 +26,9 @@ WIDE_CONTACT = 0.25
 """Half width over depth to the centre line at which the Weber-Banaschek contact is 1 % off (measured)."""
 
 
-def stiffness_notes(pair: GearPair, options: StiffnessOptions) -> tuple[str, ...]:
+def stiffness_notes(
+    pair: GearPair, options: StiffnessOptions, gears: Sequence[str] = ("pinion", "gear")
+) -> tuple[str, ...]:
     """Return what to know about a pair's stiffness model, one sentence each; empty where the models hold.
 
     Parameters
@@ -34,6 +36,7 @@ def stiffness_notes(pair: GearPair, options: StiffnessOptions) -> tuple[str, ...
     pair : GearPair
         A pair without geometry problems.
     options : StiffnessOptions
+    gears : names of both gears
 
     Returns
     -------
@@ -43,15 +46,15 @@ def stiffness_notes(pair: GearPair, options: StiffnessOptions) -> tuple[str, ...
     Source: derived; limits of the sources named in this module's docstring.
     """
     return (
-        *_gear_notes("pinion", normal_gear(pair, "pinion"), options),
-        *_gear_notes("gear", normal_gear(pair, "gear"), options),
+        *_gear_notes(gears[0], normal_gear(pair, "pinion"), options),
+        *_gear_notes(gears[1], normal_gear(pair, "gear"), options),
         *_pair(pair, options),
         *_helix(pair),
     )
 
 
-def _gear_notes(which: str, gear: SpurGear, options: StiffnessOptions) -> Iterator[str]:
-    name = f"{which} ({gear.teeth:.4g} teeth)"
+def _gear_notes(called: str, gear: SpurGear, options: StiffnessOptions) -> Iterator[str]:
+    name = f"{called} ({gear.teeth:.4g} teeth)"
     if options.beam == "calibrated":
         # The factor was made against the extrapolated foundation, so the fit range is no limit of the product.
         for sentence in outside_calibration(gear):

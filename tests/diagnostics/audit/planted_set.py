@@ -13,7 +13,7 @@ import pyarrow as pa
 import pytest
 
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
-from siggen.config.names import NO_NAMES, Names
+from siggen.names import PAIR, Names
 from tests.diagnostics.column_roles import ListedRoles
 from tests.shared import shared
 
@@ -37,7 +37,7 @@ class PlantedSet(ListedRoles):
     splits: tuple[str, ...] = ("all",)
 
     def names(self) -> tuple[Names, dict[str, str]]:
-        return NO_NAMES, {}
+        return PAIR, {}
 
     @property
     def channels(self) -> tuple[SimpleNamespace, ...]:

@@ -16,10 +16,11 @@ import diagnostics.cli.app
 import siggen.cli.app
 from diagnostics.cli.app import COMMANDS, main
 from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
-from siggen.columns.common_columns import LABEL_COLUMNS, OPERATING_COLUMNS
+from siggen.columns.common_columns import operating_columns, target_columns
 from siggen.columns.record import ID_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
 from siggen.errors import UsageError, how_to_install
+from siggen.names import PAIR
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -142,5 +143,5 @@ def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(
 
 
 def test_columns_that_are_read_exist_in_every_set() -> None:
-    columns = {column.name for column in (*ID_COLUMNS, *LABEL_COLUMNS, *OPERATING_COLUMNS, TACHO_COLUMN)}
+    columns = {column.name for column in (*ID_COLUMNS, *target_columns(PAIR), *operating_columns(PAIR), TACHO_COLUMN)}
     assert {*LABEL_NAMES, TACHO_NAME} <= columns

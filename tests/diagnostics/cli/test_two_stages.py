@@ -28,7 +28,7 @@ STATES = [
 THIRD_SHAFT = [
     {"name": "end", "place": "slow_bearing"},
     {"kind": "bearing_force", "name": "washer", "place": "slow_bearing", "range_n": 1e5},
-    {"kind": "encoder", "name": "out", "place": "slow.gear"},
+    {"kind": "encoder", "name": "out", "place": "slow_gear"},
 ]
 
 

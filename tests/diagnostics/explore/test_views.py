@@ -11,6 +11,7 @@ from diagnostics.explore.detail import Detail
 from diagnostics.explore.flanks import flank_size, outlines
 from diagnostics.explore.record_views import OrderAxis, PageAxes, record_views
 from diagnostics.records.named_set import Words
+from diagnostics.records.own_words import own_words
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectrum import envelope_spectrum
 from siggen.config import parse
@@ -101,7 +102,7 @@ def test_an_elliptic_pit_keeps_its_axes() -> None:
 def test_indicators_of_a_machine_are_called_after_the_gears_of_their_mesh() -> None:
     parsed = parse(mill()).config
     assert parsed is not None
-    words = Words(parsed.names)
+    words = Words(own_words(parsed.names))
     title = "Sideband power, pinion, mesh harmonics 1 to 5"
     assert words.about("sideband_power_pinion", title) == title.replace("pinion", "ida")
     assert (
@@ -116,7 +117,7 @@ def test_flanks_of_a_machine_are_those_of_the_short_form() -> None:
     parsed = parse(own).config
     assert parsed is not None
     for gear, teeth in (("pinion", 18), ("gear", 47), ("slow.pinion", 17), ("slow.gear", 52)):
-        found = flank_size(own, gear, teeth, parsed.names)
+        found = flank_size(own, gear, teeth, own_words(parsed.names))
         assert found is not None
         assert found == flank_size(short, gear, teeth)
         assert found["face_mm"] == (30.0 if "slow" in gear else 20.0)

@@ -32,7 +32,7 @@ def single_mass(stage: GearStage) -> Structure:
     """Return a stage whose pinion shakes on soft bearings by itself: the mesh couples the rotations alone."""
     soft = replace(stage.pinion, bearing=Bearing(STIFFNESS, STIFFNESS, DAMPING, DAMPING))
     structure = eight_dof(replace(stage, pinion=soft))
-    rotations = vector(structure.coordinates, {"theta_1": BASE_RADIUS_1, "theta_2": -BASE_RADIUS_2})
+    rotations = vector(structure.coordinates, {"theta_pinion": BASE_RADIUS_1, "theta_gear": -BASE_RADIUS_2})
     return replace(structure, meshes=(replace(structure.mesh, vector=rotations),))
 
 
@@ -97,9 +97,9 @@ def test_shafts_turn_against_each_other_and_as_the_pitch_lines_move() -> None:
 def test_a_bearing_pushes_shaft_and_casing_apart_with_equal_forces(place: str, axis: str) -> None:
     structure = casing()
     direction = dict(zip(structure.coordinates, bearing_direction(structure, place, axis), strict=True))
-    index = "1" if place.startswith("pinion") else "2"
-    assert np.hypot(direction[f"x_{index}"], direction[f"y_{index}"]) == pytest.approx(1.0)
+    gear = place.removesuffix("_bearing")
+    assert np.hypot(direction[f"x_{gear}"], direction[f"y_{gear}"]) == pytest.approx(1.0)
     for way in "xy":
-        assert direction[f"{way}_{index}"] + direction[f"{way}_c"] == pytest.approx(0.0, abs=1e-12)
+        assert direction[f"{way}_{gear}"] + direction[f"{way}_casing"] == pytest.approx(0.0, abs=1e-12)
     along = shaft_directions(structure, place)
     np.testing.assert_allclose(along @ along.T, np.eye(2), atol=1e-12)

@@ -192,7 +192,7 @@ def test_work_of_a_run_up_with_friction_becomes_kinetic_energy_and_losses() -> N
     whole, rate = states[:, n:] + omega[:, None] * rotation, states[:, n:]
     q = states[:, :n] + motion.equations.static_deflection
     # Forces that act on the bodies, as opposed to the equations' inputs, which contain inertia: M r dΩ/dt is no force.
-    load, relief = structure.coordinates.index("theta_l"), motion.load_relief_nm
+    load, relief = structure.coordinates.index("theta_load"), motion.load_relief_nm
     forces = structure.torque_vector * TORQUE + inputs @ motion_vectors(structure, excitation)
     forces[:, load] += relief
     forces += (structure.mass @ rotation) * rigid_push(structure, source, inputs, drive, time)[:, None]
@@ -220,8 +220,8 @@ def motion_vectors(structure: Structure, excitation: Excitation) -> np.ndarray:
     torque, coordinates = structure.torque_vector, structure.coordinates
     own = np.zeros_like(excitation.vectors)
     own[1] = torque
-    own[2, coordinates.index("theta_l")] = 1.0
-    own[3, coordinates.index("theta_m")] = 1.0
+    own[2, coordinates.index("theta_load")] = 1.0
+    own[3, coordinates.index("theta_motor")] = 1.0
     return own
 
 
@@ -229,7 +229,7 @@ def rigid_push(
     structure: Structure, source: TorqueVariation, inputs: np.ndarray, drive: Rotation, time: np.ndarray
 ) -> np.ndarray:
     """Return the acceleration [rad/s²] that load ripple and motor ripple would give the train; held by the drive."""
-    gear = rigid_rotation(structure)[structure.coordinates.index("theta_l")]
+    gear = rigid_rotation(structure)[structure.coordinates.index("theta_load")]
     accelerating = source.reduced_inertia_kg_m2 * drive.acceleration_rad_s2(time)
     return -(inputs[:, 2] * gear + inputs[:, 3] - accelerating) / source.reduced_inertia_kg_m2
 

@@ -47,7 +47,7 @@ def test_spur_teeth_have_no_axial_motion_and_a_small_helix_nearly_none() -> None
         assert not any(name.startswith("z_") for name in spur.coordinates)
         one, other = static(spur), static(near)
         assert max(abs(other[name] - one[name]) for name in one) < 1e-15
-        assert abs(other["z_1"]) < 1e-15
+        assert abs(other["z_pinion"]) < 1e-15
 
 
 @pytest.mark.parametrize("number", range(3))
@@ -55,7 +55,7 @@ def test_mean_axial_displacement_is_the_axial_force_over_the_stiffness(number: i
     structure, stage = kinds()[number], helical_stage()
     q = static(structure)
     axial_n = FORCE_N * SLOPE
-    for name, z, rotor, sign in (("pinion", "z_1", stage.pinion, 1.0), ("gear", "z_2", stage.gear, -1.0)):
+    for name, z, rotor, sign in (("pinion", "z_pinion", stage.pinion, 1.0), ("gear", "z_gear", stage.gear, -1.0)):
         stiffness, _ = rotor.bearing.along_axis
         assert stiffness == pytest.approx(1e8)
         assert q[z] == pytest.approx(sign * axial_n / stiffness, rel=1e-9)
@@ -67,14 +67,14 @@ def test_double_helical_teeth_push_no_shaft() -> None:
     stage = helical_stage()
     right, left = eight_dof(stage), eight_dof(helical_stage(-BASE_HELIX))
     held = np.zeros_like(right.stiffness)
-    load = right.coordinates.index("theta_l")
+    load = right.coordinates.index("theta_load")
     held[load, load] = 1e3
     halves = sum(0.5 * MEAN_STIFFNESS * np.outer(one.mesh.vector, one.mesh.vector) for one in (right, left))
     q = np.linalg.solve(right.stiffness + held + halves, TORQUE_NM * right.torque_vector)
     named = dict(zip(right.coordinates, q, strict=True))
-    assert abs(named["z_1"]) < 1e-9 * abs(named["y_1"])
+    assert abs(named["z_pinion"]) < 1e-9 * abs(named["y_pinion"])
     # Along the line of action both halves are one spur mesh.
-    assert named["y_1"] == pytest.approx(static(eight_dof(make_stage()))["y_1"], rel=1e-6)
+    assert named["y_pinion"] == pytest.approx(static(eight_dof(make_stage()))["y_pinion"], rel=1e-6)
 
 
 def test_turning_or_shifting_both_gears_as_one_body_brings_no_flanks_nearer() -> None:
@@ -84,11 +84,11 @@ def test_turning_or_shifting_both_gears_as_one_body_brings_no_flanks_nearer() ->
     apart_m = (make_stage().pinion.base_radius_m + make_stage().gear.base_radius_m) / np.cos(angle)
     to_gear = np.array([-apart_m, 0.0])
     for turn in (np.array([1e-4, 0.0]), np.array([0.0, 1e-4]), np.array([0.7e-4, -0.4e-4])):
-        tilts = {f"phi_{axis}_{i}": float(turn[k]) for i in "12" for k, axis in enumerate("xy")}
-        q = vector(structure.coordinates, {**tilts, "z_1": 0.0, "z_2": float(-turn @ to_gear)})
+        tilts = {f"phi_{axis}_{i}": float(turn[k]) for i in ("pinion", "gear") for k, axis in enumerate("xy")}
+        q = vector(structure.coordinates, {**tilts, "z_pinion": 0.0, "z_gear": float(-turn @ to_gear)})
         assert abs(structure.mesh.vector @ q) < 1e-16
         assert abs(structure.mesh.tilt @ q) < 1e-16
-    moved = vector(structure.coordinates, {"z_1": 1.0, "z_2": 1.0})
+    moved = vector(structure.coordinates, {"z_pinion": 1.0, "z_gear": 1.0})
     assert abs(structure.mesh.vector @ moved) < 1e-15
 
 
@@ -98,12 +98,12 @@ def test_moments_of_bearings_and_axial_force_balance_on_each_shaft() -> None:
     q = static(structure)
     machine, moving = structure.drivetrain, np.array(list(q.values()))
     seats = casing_of(stage, make_casing()).seats
-    gears = (("1", "pinion", stage.pinion, SHAFTS[0]), ("2", "gear", stage.gear, SHAFTS[1]))
-    for index, which, rotor, shaft in gears:
+    gears = (("pinion", stage.pinion, SHAFTS[0]), ("gear", stage.gear, SHAFTS[1]))
+    for which, rotor, shaft in gears:
         moment = 0.0
         for lever in shaft.levers_m.values():
             seat = machine.row(seats[f"{which}_bearing"], "horizontal") @ moving
-            across = q[f"x_{index}"] + lever * q[f"phi_x_{index}"]
+            across = q[f"x_{which}"] + lever * q[f"phi_x_{which}"]
             moment += lever * end_stiffness(shaft, lever) * (across - seat)
         pitch_radius_m = rotor.base_radius_m / np.cos(PRESSURE_ANGLE)
         assert moment == pytest.approx(SLOPE * FORCE_N * pitch_radius_m, rel=1e-9)
@@ -122,7 +122,7 @@ def test_seats_of_a_body_take_the_axial_force_and_give_way_along_it() -> None:
     own = casing_of(helical_stage(), make_casing())
     carried = replace(own, body=replace(own.body, moves=(*own.body.moves, "z")))
     structure = assembled(train(helical_stage(), housing=carried))
-    place = {name: structure.coordinates.index(name) for name in ("z_1", "z_2", "z_c")}
+    place = {name: structure.coordinates.index(name) for name in ("z_pinion", "z_gear", "z_casing")}
     chosen = list(place.values())
     expected = 1e8 * np.array([[1.0, 0.0, -1.0], [0.0, 1.0, -1.0], [-1.0, -1.0, 2.0]])
     np.testing.assert_allclose(structure.stiffness[np.ix_(chosen, chosen)], expected, rtol=1e-12)
@@ -135,7 +135,7 @@ def test_back_flanks_push_the_other_way_along_the_shafts() -> None:
     row = dict(zip(back.coordinates, back.mesh.vector, strict=True))
     one = dict(zip(drive.coordinates, drive.mesh.vector, strict=True))
     h = np.array([1.0, 0.0])
-    for i in "12":
+    for i in ("pinion", "gear"):
         for kind, turned in (("", 1.0), ("phi_", -1.0)):
             own = np.array([one[f"{kind}{axis}_{i}"] for axis in "xy"])
             expected = turned * (2.0 * h * (h @ own) - own)

@@ -75,10 +75,10 @@ def test_bearings_carry_the_mesh_force() -> None:
 
 def test_a_sensor_sees_translation_and_rocking_of_its_place() -> None:
     structure = make_structure()
-    q = vector(structure.coordinates, {"phi_c": 1e-3})
+    q = vector(structure.coordinates, {"phi_casing": 1e-3})
     assert structure.motions["casing_lid/vertical"] @ q == pytest.approx(0.06e-3)
     assert structure.motions["casing_lid/horizontal"] @ q == pytest.approx(-0.05e-3)
-    moved = vector(structure.coordinates, {"x_c": 1.0})
+    moved = vector(structure.coordinates, {"x_casing": 1.0})
     assert structure.motions["casing_lid/horizontal"] @ moved == pytest.approx(1.0)
     assert structure.motions["casing_lid/vertical"] @ moved == pytest.approx(0.0, abs=1e-15)
 

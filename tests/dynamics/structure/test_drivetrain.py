@@ -18,6 +18,7 @@ from siggen.dynamics.time.modes import natural_modes
 from tests.dynamics.casing_stage import bearing, make_stage
 from tests.dynamics.trains import eight_dof, stages
 
+GEARS = ("pinion", "gear", "slow_pinion", "slow_gear")
 ANGLES = np.radians([20.0, 22.5])
 RADII = (0.5 * 3e-3 * 18 * cos(ANGLES[0]), 0.5 * 3e-3 * 47 * cos(ANGLES[0]), 0.021, 0.066)
 SHAFT = CommonShaft(0.1, 0.03, 206e9, 0.3)
@@ -27,7 +28,7 @@ DIRECTIONS = [0.0, 90.0, -35.0, 180.0, 127.0]
 
 def behind(direction_deg: float = 0.0, shaft: CommonShaft = SHAFT, last: float = 2e8) -> NextStage:
     rotors = Rotor(RADII[2], 0.7, 2e-4, bearing(1.0, 1.0)), Rotor(RADII[3], 5.0, 2e-2, bearing(last, 5.0))
-    return NextStage("slow", float(ANGLES[1]), *rotors, shaft, np.radians(direction_deg))
+    return NextStage(float(ANGLES[1]), *rotors, shaft, np.radians(direction_deg))
 
 
 def machine(direction_deg: float = 0.0, shaft: CommonShaft = SHAFT) -> Structure:
@@ -55,7 +56,7 @@ def beam_elements(shaft: CommonShaft, bearing_n_per_m: float) -> FloatArray:
 
 
 def middle_shaft(structure: Structure, axis: str, matrix: str = "stiffness") -> FloatArray:
-    rows = [structure.coordinates.index(f"{axis}_{gear}") for gear in (2, 3)]
+    rows = [structure.coordinates.index(f"{axis}_{gear}") for gear in GEARS[1:3]]
     return np.asarray(getattr(structure, matrix)[np.ix_(rows, rows)])
 
 
@@ -137,7 +138,7 @@ def test_flanks_approach_and_slide_as_points_of_drawn_gears_do(direction_deg: fl
             place = gears.begins + s * gears.push
             flanks = []
             for gear, centre, sense in ((0, gears.driving, gears.sense), (1, gears.driven, -gears.sense)):
-                at = 2 * number + 1 + gear
+                at = GEARS[2 * number + gear]
                 vx, vy, turning = (moving[names.index(f"{kind}_{at}")] for kind in ("x", "y", "theta"))
                 arm = place - centre
                 flanks.append(np.array([vx, vy]) + sense * turning * np.array([-arm[1], arm[0]]))
@@ -154,7 +155,7 @@ def test_the_lines_of_action_are_those_of_the_balance_of_torques(direction_deg: 
     """The push has the base radius as its arm about both centres, against the turning of the driven gear's load."""
     structure = machine(direction_deg)
     for number, (mesh, gears) in enumerate(zip(structure.meshes, drawn(direction_deg), strict=True)):
-        rows = [structure.coordinates.index(f"{axis}_{2 * number + 1}") for axis in "xy"]
+        rows = [structure.coordinates.index(f"{axis}_{GEARS[2 * number]}") for axis in "xy"]
         push = mesh.vector[rows]
         assert push == pytest.approx(gears.push, abs=1e-5)
         assert np.linalg.norm(push) == pytest.approx(1.0, abs=1e-15)
@@ -177,7 +178,7 @@ def test_bearings_of_every_shaft_carry_the_forces_of_its_teeth_at_rest(direction
         [TORQUE_NM / RADII[0], TORQUE_NM * RADII[1] / (RADII[0] * RADII[2])],
         rel=1e-9,
     )
-    driving = ([structure.coordinates.index(f"{axis}_{gear}") for axis in "xy"] for gear in (1, 3))
+    driving = ([structure.coordinates.index(f"{axis}_{gear}") for axis in "xy"] for gear in GEARS[::2])
     parts = zip(forces, structure.meshes, driving, strict=True)
     first, second = (force * mesh.vector[rows] for force, mesh, rows in parts)
     expected = {"pinion": -first, "gear": first - second, "slow": second}
@@ -191,7 +192,7 @@ def test_no_force_turns_or_moves_a_whole_machine_that_only_turns(direction_deg: 
     structure = machine(direction_deg)
     turning = rigid_rotation(structure)
     ratio = RADII[0] * RADII[2] / (RADII[1] * RADII[3])
-    assert turning[structure.coordinates.index("theta_l")] == pytest.approx(ratio, rel=1e-14)
+    assert turning[structure.coordinates.index("theta_load")] == pytest.approx(ratio, rel=1e-14)
     assert structure.torque_vector @ turning == pytest.approx(0.0, abs=1e-14)
     for mesh in structure.meshes:
         assert mesh.vector @ turning == pytest.approx(0.0, abs=1e-15)
@@ -229,13 +230,17 @@ def test_a_stiff_second_mesh_adds_its_inertia_behind_the_first_stage() -> None:
 
 
 def test_a_third_stage_continues_the_ratio_and_the_sense_of_the_second() -> None:
-    third = replace(behind(40.0), name="last")
-    structure = stages(make_stage(), [behind(-35.0), third])
-    assert structure.drivetrain.lines == (("m", "1"), ("2", "3"), ("4", "5"), ("6", "l"))
+    structure = stages(make_stage(), [behind(-35.0), behind(40.0)])
+    assert structure.drivetrain.lines == (
+        ("motor", "pinion"),
+        ("gear", "mesh_0_pinion"),
+        ("mesh_0_gear", "mesh_1_pinion"),
+        ("mesh_1_gear", "load"),
+    )
     turning = rigid_rotation(structure)
     assert turning[-1] == pytest.approx(RADII[0] / RADII[1] * (RADII[2] / RADII[3]) ** 2, rel=1e-14)
     # Its pinion turns as the first one does, so at direction 0 it pushes as that one.
-    like_first = stages(make_stage(), [behind(), replace(behind(), name="last")]).meshes[2]
+    like_first = stages(make_stage(), [behind(), behind()]).meshes[2]
     push = [like_first.vector[like_first_row] for like_first_row in (13, 14)]
     assert push == pytest.approx([sin(ANGLES[1]), cos(ANGLES[1])])
 

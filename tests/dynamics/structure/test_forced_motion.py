@@ -55,7 +55,7 @@ def test_responses_solve_the_equations_of_motion() -> None:
 
 def test_readings_of_shafts_take_what_the_rotors_do_not() -> None:
     structure, hz = locked_load(make_structure()), np.array([3.0, 120.0, 900.0, 4000.0])
-    omega, place = 2.0 * np.pi * hz, structure.coordinates.index("theta_m")
+    omega, place = 2.0 * np.pi * hz, structure.coordinates.index("theta_motor")
     readings = ("angle/motor", "torque/input_coupling")
     pushed = np.array([structure.mesh.vector, structure.bearing_directions["pinion_bearing/vertical"]])
     angle, torque = forced_motion(structure, MeanMesh(3e8, 800.0), pushed, (), hz, readings).shaft.values()

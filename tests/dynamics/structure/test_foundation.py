@@ -37,7 +37,7 @@ def test_a_heavy_base_on_stiff_mounts_is_the_ground() -> None:
 def test_above_its_mounts_and_below_the_bolts_everything_moves_as_one_mass() -> None:
     base = standing_on(Base(100.0, 9.0, (2.0, 2.0, 2.0), 0.02))
     push = np.zeros((1, len(base.coordinates)))
-    push[0, base.coordinates.index("y_b")] = 1.0
+    push[0, base.coordinates.index("y_base")] = 1.0
     found = forced_motion(base, MESH, push, ("pinion_bearing/vertical", "gear_bearing/vertical"), np.array([20.0]))
     at_centre = sum(
         row[0, 0] * share
@@ -49,9 +49,12 @@ def test_above_its_mounts_and_below_the_bolts_everything_moves_as_one_mass() -> 
 
 def test_a_rigid_motion_of_gearbox_and_base_stretches_the_mounts_alone() -> None:
     base = standing_on(Base(100.0, 9.0, (10.0, 20.0, 30.0), 0.1))
-    for first, together in ((("x_1", "x_2", "x_c"), "x_b"), (("y_1", "y_2", "y_c"), "y_b")):
+    for first, together in (
+        (("x_pinion", "x_gear", "x_casing"), "x_base"),
+        (("y_pinion", "y_gear", "y_casing"), "y_base"),
+    ):
         moved = np.array([1.0 if name in (*first, together) else 0.0 for name in base.coordinates])
-        mount = 100.0 * (2.0 * np.pi * (10.0 if together == "x_b" else 20.0)) ** 2
+        mount = 100.0 * (2.0 * np.pi * (10.0 if together == "x_base" else 20.0)) ** 2
         assert moved @ base.stiffness @ moved == pytest.approx(mount, rel=1e-6)
 
 
@@ -76,7 +79,7 @@ def test_a_bearing_that_ties_its_axes_pushes_across_and_takes_no_energy_by_it() 
     for made in (eight_dof, lambda stage: casing_structure(stage, make_casing())):
         one, other = (made(stage) for stage in (plain, tied))
         np.testing.assert_array_equal(one.damping, other.damping)
-        rows = [one.coordinates.index(name) for name in ("x_1", "y_1")]
+        rows = [one.coordinates.index(name) for name in ("x_pinion", "y_pinion")]
         assert other.damping[*rows] == pytest.approx(0.0, abs=1e-9 * other.damping[rows[0], rows[0]])
         added = (other.stiffness - one.stiffness)[np.ix_(rows, rows)]
         # whatever way the coordinates lie: softer along one diagonal by what it is stiffer along the other

@@ -35,8 +35,10 @@ def test_one_rotation_is_free_two_without_a_mesh_none_with_a_held_load(name: str
     structure = STRUCTURES[name]
     free = free_rotations(structure, loaded(structure))
     assert free.shape[1] == 1
-    turned = dict(zip(structure.coordinates, free[:, 0] / free[structure.coordinates.index("theta_1"), 0], strict=True))
-    assert turned["theta_2"] == pytest.approx(18.0 / 47.0, rel=1e-14)
+    turned = dict(
+        zip(structure.coordinates, free[:, 0] / free[structure.coordinates.index("theta_pinion"), 0], strict=True)
+    )
+    assert turned["theta_gear"] == pytest.approx(18.0 / 47.0, rel=1e-14)
     assert {turned[name] for name in structure.coordinates if name[0] in "xyp"} <= {0.0}
     assert free_rotations(structure, structure.stiffness).shape[1] == 2
     locked = locked_load(structure)
@@ -93,7 +95,7 @@ def test_rigid_supports_leave_the_torsional_model(stiffness: float, name: str) -
 def test_a_force_on_the_free_rotation_has_no_equilibrium() -> None:
     structure = STRUCTURES["8dof"]
     force = np.zeros(8)
-    force[structure.coordinates.index("theta_m")] = 1.0
+    force[structure.coordinates.index("theta_motor")] = 1.0
     with pytest.raises(ValueError, match="unbalanced force"):
         static_solution(structure, loaded(structure), force)
     # With a held load the lock carries it.

@@ -27,7 +27,7 @@ from siggen.dynamics.structure.shaft_lines import rigid_rotation
 from siggen.dynamics.structure.structure import Structure, assembled, on_back_flanks
 from tests.dynamics.casing_stage import bearing, make_casing, make_stage
 from tests.dynamics.planetary_set import planetary_stage
-from tests.dynamics.trains import casing_of
+from tests.dynamics.trains import casing_of, stages
 
 ANGLE = np.radians(20.0)
 
@@ -43,15 +43,13 @@ def free_body_moves_nothing(structure: Structure) -> None:
 
 def test_a_hundred_meshes_in_a_row_turn_in_the_product_of_their_ratios() -> None:
     rotor = Rotor(0.03, 1.0, 1e-3, bearing(2e8, 1.0))
-    idlers = [
-        NextStage(f"mesh_{i}", ANGLE, rotor, replace(rotor, base_radius_m=0.04), None, 0.3 * i) for i in range(99)
-    ]
+    idlers = [NextStage(ANGLE, rotor, replace(rotor, base_radius_m=0.04), None, 0.3 * i) for i in range(99)]
     gears = [replace(stage, pinion=replace(rotor, base_radius_m=0.04)) for stage in idlers]
-    structure = assembled(train(replace(make_stage(), gear=replace(rotor, base_radius_m=0.04)), gears))
+    structure = stages(replace(make_stage(), gear=replace(rotor, base_radius_m=0.04)), gears)
     free_body_moves_nothing(structure)
     # idlers drop out: the last gear turns as if it met the first pinion
     first = make_stage().pinion.base_radius_m
-    load = rigid_rotation(structure)[structure.coordinates.index("theta_l")]
+    load = rigid_rotation(structure)[structure.coordinates.index("theta_load")]
     assert load == pytest.approx(first / 0.04, rel=1e-11)
 
 
@@ -110,7 +108,7 @@ def test_opposed_helices_on_one_shaft_cancel_their_axial_forces() -> None:
 def test_planets_that_are_unevenly_spread_leave_one_free_motion_and_the_ratio() -> None:
     structure = assembled(planetary_train(replace(planetary_stage(), places_turns=(0.0, 0.31, 0.7))))
     free_body_moves_nothing(structure)
-    assert rigid_rotation(structure)[structure.coordinates.index("theta_c")] == pytest.approx(1 / 4.25, rel=1e-12)
+    assert rigid_rotation(structure)[structure.coordinates.index("theta_carrier")] == pytest.approx(1 / 4.25, rel=1e-12)
 
 
 def test_compound_planets_turn_the_carrier_by_both_of_their_radii() -> None:
@@ -134,8 +132,9 @@ def test_back_flanks_of_a_mesh_are_the_drive_flanks_of_one_that_turns_the_other_
     structure = assembled(train(make_stage()))
     back = on_back_flanks(structure, 0.0).mesh
     p, q = (dict(zip(structure.coordinates, one.vector, strict=True)) for one in (structure.mesh, back))
-    assert (q["x_1"], q["y_1"]) == pytest.approx((p["x_1"], -p["y_1"]), abs=1e-15)  # apart under either torque
-    assert q["theta_1"] == pytest.approx(-p["theta_1"], rel=1e-12)
+    apart = q["x_pinion"], q["y_pinion"]
+    assert apart == pytest.approx((p["x_pinion"], -p["y_pinion"]), abs=1e-15)  # apart under either torque
+    assert q["theta_pinion"] == pytest.approx(-p["theta_pinion"], rel=1e-12)
 
 
 PLANTED: dict[str, Callable[[PlanetaryStage], PlanetaryStage]] = {
@@ -184,30 +183,30 @@ def written_out(names: tuple[str, ...], stage: PlanetaryStage) -> tuple[np.ndarr
     def add(matrix: np.ndarray, factor: float, own: np.ndarray) -> None:
         matrix += factor * np.outer(own, own)
 
-    for name, inertia in (("m", stage.motor_inertia_kg_m2), ("l", stage.load_inertia_kg_m2)):
+    for name, inertia in (("motor", stage.motor_inertia_kg_m2), ("load", stage.load_inertia_kg_m2)):
         add(mass, inertia, row(**{f"theta_{name}": 1.0}))
-    add(stiffness, stage.input_coupling.stiffness_nm_per_rad, row(theta_m=1.0, theta_s=-1.0))
-    add(stiffness, stage.output_coupling.stiffness_nm_per_rad, row(theta_c=1.0, theta_l=-1.0))
-    for name, body in (("s", stage.sun), ("c", stage.carrier), ("r", stage.ring)):
+    add(stiffness, stage.input_coupling.stiffness_nm_per_rad, row(theta_motor=1.0, theta_sun=-1.0))
+    add(stiffness, stage.output_coupling.stiffness_nm_per_rad, row(theta_carrier=1.0, theta_load=-1.0))
+    for name, body in (("sun", stage.sun), ("carrier", stage.carrier), ("ring", stage.ring)):
         add(mass, body.inertia_kg_m2, row(**{f"theta_{name}": 1.0}))
         for axis in "xy":
             add(mass, body.mass_kg, row(**{f"{axis}_{name}": 1.0}))
             add(stiffness, body.stiffness_n_per_m, row(**{f"{axis}_{name}": 1.0}))
-    add(stiffness, stage.ring.turning_stiffness_nm_per_rad, row(theta_r=1.0))
+    add(stiffness, stage.ring.turning_stiffness_nm_per_rad, row(theta_ring=1.0))
     suns, rings = [], []
     for i, place in enumerate(stage.places_turns, start=1):
         psi = 2.0 * pi * place
-        radial = row(x_c=cos(psi), y_c=sin(psi), **{f"x_p{i}": 1.0})
-        along = row(x_c=-sin(psi), y_c=cos(psi), theta_c=a, **{f"y_p{i}": 1.0})
-        turning = row(**{f"theta_p{i}": 1.0})
+        radial = row(x_carrier=cos(psi), y_carrier=sin(psi), **{f"x_planet_{i}": 1.0})
+        along = row(x_carrier=-sin(psi), y_carrier=cos(psi), theta_carrier=a, **{f"y_planet_{i}": 1.0})
+        turning = row(**{f"theta_planet_{i}": 1.0})
         add(mass, stage.planet.mass_kg, radial)
         add(mass, stage.planet.mass_kg, along)
         add(mass, stage.planet.inertia_kg_m2, turning)
         for axis in "xy":
-            add(stiffness, stage.planet.stiffness_n_per_m, row(**{f"{axis}_p{i}": 1.0}))
+            add(stiffness, stage.planet.stiffness_n_per_m, row(**{f"{axis}_planet_{i}": 1.0}))
         s, r = stage.sun_angle_rad, stage.ring_angle_rad
-        sun = row(x_s=-sin(psi - s), y_s=cos(psi - s), theta_s=stage.sun.base_radius_m)
-        ring = row(x_r=-sin(psi + r), y_r=cos(psi + r), theta_r=stage.ring.base_radius_m)
+        sun = row(x_sun=-sin(psi - s), y_sun=cos(psi - s), theta_sun=stage.sun.base_radius_m)
+        ring = row(x_ring=-sin(psi + r), y_ring=cos(psi + r), theta_ring=stage.ring.base_radius_m)
         suns.append(sun - sin(s) * radial - cos(s) * along + stage.planet.base_radius_m * turning)
         rings.append(ring + sin(r) * radial - cos(r) * along - stage.planet.base_radius_m * turning)
     return mass, stiffness, [*suns, *rings]
@@ -215,7 +214,7 @@ def written_out(names: tuple[str, ...], stage: PlanetaryStage) -> tuple[np.ndarr
 
 # ---- a helical pair on bending shafts in a rigid casing on a base, written out by hand ----
 
-HELIX, NAMES = 0.2, ("1", "2")
+HELIX, NAMES = 0.2, ("pinion", "gear")
 
 
 class Numbers(NamedTuple):
@@ -250,12 +249,12 @@ def pair_written_out(names: tuple[str, ...], n: Numbers) -> tuple[np.ndarray, np
 
     stage, casing, base = n.stage, n.casing, n.base
     mass, damping, stiffness = (np.zeros((len(names),) * 2) for _ in range(3))
-    inertias = {"theta_m": stage.motor_inertia_kg_m2, "theta_l": stage.load_inertia_kg_m2}
-    inertias |= {"x_c": casing.mass_kg, "y_c": casing.mass_kg, "phi_c": casing.inertia_kg_m2}
-    inertias |= {"x_b": base.mass_kg, "y_b": base.mass_kg, "phi_b": base.inertia_kg_m2}
+    inertias = {"theta_motor": stage.motor_inertia_kg_m2, "theta_load": stage.load_inertia_kg_m2}
+    inertias |= {"x_casing": casing.mass_kg, "y_casing": casing.mass_kg, "phi_casing": casing.inertia_kg_m2}
+    inertias |= {"x_base": base.mass_kg, "y_base": base.mass_kg, "phi_base": base.inertia_kg_m2}
     for coupling, ends in (
-        (stage.input_coupling, row(theta_m=1.0, theta_1=-1.0)),
-        (stage.output_coupling, row(theta_2=1.0, theta_l=-1.0)),
+        (stage.input_coupling, row(theta_motor=1.0, theta_pinion=-1.0)),
+        (stage.output_coupling, row(theta_gear=1.0, theta_load=-1.0)),
     ):
         stiffness += coupling.stiffness_nm_per_rad * np.outer(ends, ends)
         damping += coupling.damping_nm_s_per_rad * np.outer(ends, ends)
@@ -275,8 +274,8 @@ def pair_written_out(names: tuple[str, ...], n: Numbers) -> tuple[np.ndarray, np
             share = end @ np.linalg.inv(0.5 * whole)
             stretch = np.array(
                 [
-                    row(**{f"x_{i}": 1.0, f"phi_x_{i}": lever}, x_c=-1.0, phi_c=v),
-                    row(**{f"y_{i}": 1.0, f"phi_y_{i}": lever}, y_c=-1.0, phi_c=-at),
+                    row(**{f"x_{i}": 1.0, f"phi_x_{i}": lever}, x_casing=-1.0, phi_casing=v),
+                    row(**{f"y_{i}": 1.0, f"phi_y_{i}": lever}, y_casing=-1.0, phi_casing=-at),
                 ]
             )
             stiffness += stretch.T @ end @ stretch
@@ -288,21 +287,21 @@ def pair_written_out(names: tuple[str, ...], n: Numbers) -> tuple[np.ndarray, np
     for number, (at, up) in enumerate(bolts.places_m):
         part = bolts.loose_share if number == 0 else 1.0
         for k, way in (
-            (bolts.shear_stiffness_n_per_m, row(x_c=1.0, phi_c=-up, x_b=-1.0, phi_b=up)),
-            (bolts.axial_stiffness_n_per_m, row(y_c=1.0, phi_c=at, y_b=-1.0, phi_b=-at)),
+            (bolts.shear_stiffness_n_per_m, row(x_casing=1.0, phi_casing=-up, x_base=-1.0, phi_base=up)),
+            (bolts.axial_stiffness_n_per_m, row(y_casing=1.0, phi_casing=at, y_base=-1.0, phi_base=-at)),
         ):
             stiffness += part * k * np.outer(way, way)
             share_kg = casing.mass_kg / len(bolts.places_m)
             damping += 2.0 * bolts.damping_ratio * np.sqrt(part * k * share_kg) * np.outer(way, way)
-    for name, natural_hz in zip(("x_b", "y_b", "phi_b"), base.natural_hz, strict=True):
+    for name, natural_hz in zip(("x_base", "y_base", "phi_base"), base.natural_hz, strict=True):
         omega, way = 2.0 * pi * natural_hz, row(**{name: 1.0})
         stiffness += inertias[name] * omega**2 * np.outer(way, way)
         damping += 2.0 * base.damping_ratio * inertias[name] * omega * np.outer(way, way)
     slope = np.tan(stage.base_helix_rad)
-    approach = row(x_1=-sin(ANGLE), y_1=cos(ANGLE), theta_1=radii[0], z_1=-slope)
-    approach -= row(x_2=-sin(ANGLE), y_2=cos(ANGLE), theta_2=radii[1], z_2=-slope)
+    approach = row(x_pinion=-sin(ANGLE), y_pinion=cos(ANGLE), theta_pinion=radii[0], z_pinion=-slope)
+    approach -= row(x_gear=-sin(ANGLE), y_gear=cos(ANGLE), theta_gear=radii[1], z_gear=-slope)
     # a gear that tilts about its axis moves its pitch point along the shaft
-    approach -= slope / cos(ANGLE) * row(phi_x_1=radii[0], phi_x_2=radii[1])
+    approach -= slope / cos(ANGLE) * row(phi_x_pinion=radii[0], phi_x_gear=radii[1])
     mass += np.diag([inertias[name] for name in names])
     return mass, damping, stiffness, approach
 

@@ -28,8 +28,8 @@ def test_rigid_rotation_deforms_nothing_and_is_the_only_free_motion(planets):
     structure = planetary_structure(planetary_stage(planets))
     turning = rigid_rotation(structure)
     names = dict(zip(structure.coordinates, turning, strict=True))
-    assert names["theta_c"] == pytest.approx(1 / 4.25, rel=1e-12)
-    assert names["theta_p1"] == pytest.approx((1 - 78 / 27) / 4.25, rel=1e-12)
+    assert names["theta_carrier"] == pytest.approx(1 / 4.25, rel=1e-12)
+    assert names["theta_planet_1"] == pytest.approx((1 - 78 / 27) / 4.25, rel=1e-12)
     for mesh in structure.meshes:
         assert abs(mesh.vector @ turning) < 1e-15
     assert free_rotations(structure, loaded(structure)).shape[1] == 1
@@ -41,19 +41,19 @@ def test_rigid_rotation_deforms_nothing_and_is_the_only_free_motion(planets):
 def test_gears_turn_against_the_carrier_in_the_ratio_of_their_teeth():
     structure = planetary_structure(planetary_stage())
     names = dict(zip(structure.coordinates, rolling(structure), strict=True))
-    assert names["theta_s"] == 1.0
-    assert names["theta_p2"] == pytest.approx(-24 / 27, rel=1e-12)
-    assert names["theta_r"] == pytest.approx(-24 / 78, rel=1e-12)
-    assert names["theta_c"] == pytest.approx(0.0, abs=1e-15)
+    assert names["theta_sun"] == 1.0
+    assert names["theta_planet_2"] == pytest.approx(-24 / 27, rel=1e-12)
+    assert names["theta_ring"] == pytest.approx(-24 / 78, rel=1e-12)
+    assert names["theta_carrier"] == pytest.approx(0.0, abs=1e-15)
 
 
 def test_a_motion_of_the_whole_set_brings_no_flanks_together():
     """Shift and turn of all bodies with the ring: in space every mesh keeps its approach."""
     structure = planetary_structure(planetary_stage())
     for moved in ("x", "y", "theta"):
-        q = np.array([float(n in {f"{moved}_s", f"{moved}_c", f"{moved}_r"}) for n in structure.coordinates])
+        q = np.array([float(n in {f"{moved}_sun", f"{moved}_carrier", f"{moved}_ring"}) for n in structure.coordinates])
         if moved == "theta":
-            q = q + [float(n.startswith("theta_p")) for n in structure.coordinates]
+            q = q + [float(n.startswith("theta_planet")) for n in structure.coordinates]
         for mesh in structure.meshes:
             assert abs(mesh.vector @ q) < 1e-15
 
@@ -64,7 +64,7 @@ def test_the_torque_splits_evenly_and_the_ring_holds_what_motor_and_load_leave()
     found = equations_about(structure, 100.0, np.full(6, K), np.zeros((6, 2)))
     each = 100.0 / 3 / stage.sun.base_radius_m
     assert found.static_force == pytest.approx(np.full(6, each), rel=1e-9)
-    held = stage.ring.turning_stiffness_nm_per_rad * found.static_deflection[structure.coordinates.index("theta_r")]
+    held = stage.ring.turning_stiffness_nm_per_rad * found.static_deflection[structure.coordinates.index("theta_ring")]
     assert -held == pytest.approx(100.0 * (stage.ratio - 1.0), rel=1e-9)
 
 
@@ -84,10 +84,14 @@ def test_modes_fall_into_rotation_translation_in_pairs_and_planets_alone(planets
     structure = planetary_structure(replace(stage, places_turns=tuple(i / planets for i in range(planets))))
     assert len(structure.coordinates) == 11 + 3 * planets
     values, vectors = eigh(loaded(structure), structure.mass)
-    central = [i for i, n in enumerate(structure.coordinates) if n[-2:] in {"_s", "_c", "_r", "_m", "_l"}]
+    central = [i for i, n in enumerate(structure.coordinates) if "planet" not in n]
     resting = np.abs(vectors[central]).max(axis=0) < 1e-6 * np.abs(vectors).max(axis=0)
     assert resting.sum() == 3 * (planets - 3)
-    across = [i for i, n in enumerate(structure.coordinates) if n in {"x_s", "y_s", "x_c", "y_c", "x_r", "y_r"}]
+    across = [
+        i
+        for i, n in enumerate(structure.coordinates)
+        if n in {"x_sun", "y_sun", "x_carrier", "y_carrier", "x_ring", "y_ring"}
+    ]
     shifting = np.abs(vectors[across]).max(axis=0) > 1e-6 * np.abs(vectors).max(axis=0)
     found = np.sort(values[shifting])
     assert found.size == 12
@@ -103,16 +107,18 @@ def test_flanks_slide_as_the_points_of_both_bodies_move_that_touch(mesh):
     place, with_ring = 2.0 * np.pi * stage.places_turns[mesh % 3], mesh >= 3
     number, slant = mesh % 3 + 1, stage.ring_angle_rad if with_ring else stage.sun_angle_rad
     out, ahead = np.array([np.cos(place), np.sin(place)]), np.array([-np.sin(place), np.cos(place)])
-    carrier = np.array([speed["x_c"], speed["y_c"]]) + stage.centre_distance_m * speed["theta_c"] * ahead
-    planet = carrier + speed[f"x_p{number}"] * out + speed[f"y_p{number}"] * ahead
+    carrier = (
+        np.array([speed["x_carrier"], speed["y_carrier"]]) + stage.centre_distance_m * speed["theta_carrier"] * ahead
+    )
+    planet = carrier + speed[f"x_planet_{number}"] * out + speed[f"y_planet_{number}"] * ahead
     axis = stage.centre_distance_m * out
     sign = -1.0 if with_ring else 1.0
     push = np.sin(slant) * out + sign * np.cos(slant) * ahead
     tangent = stage.planet.base_radius_m * np.array([push[1], -push[0]])  # a quarter turn before the push
     position, contact = 0.007, None
-    bodies = {"planet": (axis, planet, speed[f"theta_p{number}"])}
-    bodies["s"] = (np.zeros(2), np.array([speed["x_s"], speed["y_s"]]), speed["theta_s"])
-    bodies["r"] = (np.zeros(2), np.array([speed["x_r"], speed["y_r"]]), speed["theta_r"])
+    bodies = {"planet": (axis, planet, speed[f"theta_planet_{number}"])}
+    bodies["s"] = (np.zeros(2), np.array([speed["x_sun"], speed["y_sun"]]), speed["theta_sun"])
+    bodies["r"] = (np.zeros(2), np.array([speed["x_ring"], speed["y_ring"]]), speed["theta_ring"])
     if with_ring:
         contact, driving, driven = axis - tangent + position * push, "planet", "r"
     else:
@@ -148,14 +154,14 @@ def test_a_circling_point_stands_still_in_space():
     structure = planetary_structure(planetary_stage())
     names, n = structure.coordinates, len(structure.coordinates)
     angle, static = np.linspace(0.0, 20.0, 7), np.zeros(len(structure.coordinates))
-    x, y = names.index("x_r"), names.index("y_r")
+    x, y = names.index("x_ring"), names.index("y_ring")
     static[[x, y]] = 3e-6, -1e-6
     states = np.zeros((angle.size, 2 * n))
     states[:, x], states[:, y] = np.cos(angle) - static[x], -np.sin(angle) - static[y]  # (1, 0) seen from the frame
     seen = in_space(structure.drivetrain, states, static, angle)
     assert seen[:, x] == pytest.approx(np.ones(7), abs=1e-15)
     assert seen[:, y] == pytest.approx(np.zeros(7), abs=1e-15)
-    others = [i for i in range(2 * n) if names[i % n][-2:] not in {"_s", "_c", "_r"}]
+    others = [i for i in range(2 * n) if names[i % n].rpartition("_")[2] not in {"sun", "carrier", "ring"}]
     assert np.array_equal(seen[:, others], states[:, others])
 
 
@@ -195,7 +201,7 @@ def test_natural_frequencies_are_those_that_lin_and_parker_published(planets):
     structure = planetary_structure(stage)
     rows = [mesh.vector for mesh in structure.meshes]
     stiffness = structure.stiffness + 5e8 * np.sum([np.outer(row, row) for row in rows], axis=0)
-    kept = [i for i, name in enumerate(structure.coordinates) if name not in {"theta_m", "theta_l"}]
+    kept = [i for i, name in enumerate(structure.coordinates) if name not in {"theta_motor", "theta_load"}]
     values = eigh(stiffness[np.ix_(kept, kept)], structure.mass[np.ix_(kept, kept)], eigvals_only=True)
     found = np.sqrt(np.abs(values)) / (2.0 * np.pi)
     expected = np.array(PUBLISHED_HZ[planets].split(), dtype=float)

@@ -29,7 +29,7 @@ def machine(give: np.ndarray) -> Drivetrain:
     shapes = {"a/vertical": np.array([0.3]), "b/horizontal": np.array([0.8])}
     still = np.array([1e-6])
     housing = Modes("c", still, still, shapes, SEATS, give, np.zeros((1, 3)))
-    return Drivetrain((MOTOR, GEAR, housing, Body("b", moves=())), tuple(elements()), driver="m", load="m")
+    return Drivetrain((MOTOR, GEAR, housing, Body("base", moves=())), tuple(elements()), driver="m", load="m")
 
 
 def found(give: np.ndarray = FLEXIBILITY) -> Structure:

@@ -11,10 +11,10 @@ from tests.dynamics.trains import eight_dof
 def rigid_rotation(structure: Structure) -> np.ndarray:
     """Return the motion of both shafts turning together without any deformation."""
     ratio = (
-        -structure.mesh.vector[structure.coordinates.index("theta_1")]
-        / structure.mesh.vector[structure.coordinates.index("theta_2")]
+        -structure.mesh.vector[structure.coordinates.index("theta_pinion")]
+        / structure.mesh.vector[structure.coordinates.index("theta_gear")]
     )
-    turns = {"theta_m": 1.0, "theta_1": 1.0, "theta_2": ratio, "theta_l": ratio}
+    turns = {"theta_motor": 1.0, "theta_pinion": 1.0, "theta_gear": ratio, "theta_load": ratio}
     return np.array([turns.get(name, 0.0) for name in structure.coordinates])
 
 
@@ -31,10 +31,10 @@ def test_rigid_rotation_deforms_nothing_and_torques_balance_on_it(stage: GearSta
 def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: GearStage) -> None:
     structure = eight_dof(stage)
     p = dict(zip(structure.coordinates, structure.mesh.vector, strict=True))
-    assert p["x_1"] == -p["x_2"] == pytest.approx(np.sin(stage.working_pressure_angle_rad))
-    assert p["y_1"] == -p["y_2"] == pytest.approx(np.cos(stage.working_pressure_angle_rad))
+    assert p["x_pinion"] == -p["x_gear"] == pytest.approx(np.sin(stage.working_pressure_angle_rad))
+    assert p["y_pinion"] == -p["y_gear"] == pytest.approx(np.cos(stage.working_pressure_angle_rad))
     radii = stage.pinion.base_radius_m, -stage.gear.base_radius_m
-    assert (p["theta_1"], p["theta_2"]) == pytest.approx(radii, rel=1e-14)
+    assert (p["theta_pinion"], p["theta_gear"]) == pytest.approx(radii, rel=1e-14)
 
 
 def test_unknown_coordinates_are_named() -> None:

@@ -56,7 +56,7 @@ def beam_stiffness(shaft: Shaft, bearing: float, elements: int) -> np.ndarray:
 def test_the_closed_form_is_a_timoshenko_beam_of_finite_elements(share: float) -> None:
     shaft = replace(SHAFT, gear_share=share)
     structure = casing_structure(make_stage(), make_casing(), (shaft, shaft))
-    rows = [structure.coordinates.index(name) for name in ("y_1", "phi_y_1")]
+    rows = [structure.coordinates.index(name) for name in ("y_pinion", "phi_y_pinion")]
     found = structure.stiffness[np.ix_(rows, rows)]
     # Timoshenko elements are exact at their nodes, so that one and four per side differ by rounding only.
     for elements in (1, 4):
@@ -111,7 +111,7 @@ def test_the_tilt_vector_takes_the_pinion_against_the_gear_in_the_plane_of_actio
     assert structure.mesh.tilt is not None
     tilts = dict(zip(structure.coordinates, structure.mesh.tilt, strict=True))
     sine, cosine = np.sin(PRESSURE_ANGLE), np.cos(PRESSURE_ANGLE)
-    push = {"phi_x_1": -sine, "phi_y_1": cosine, "phi_x_2": sine, "phi_y_2": -cosine}
+    push = {"phi_x_pinion": -sine, "phi_y_pinion": cosine, "phi_x_gear": sine, "phi_y_gear": -cosine}
     assert {name: value for name, value in tilts.items() if value} == pytest.approx(push)
     assert make_structure().mesh.tilt is None
 

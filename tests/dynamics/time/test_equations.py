@@ -22,7 +22,7 @@ def test_static_force_and_approach_follow_from_the_torque(
     # The softest mode (38 Hz) and the mesh mode (7.8 kHz) differ by 4e4 in stiffness: 1e-16 becomes 1e-11.
     assert equations.static_force == pytest.approx(force, rel=1e-10)
     assert equations.static_approach == pytest.approx(force / 3.2e8 + np.sign(torque) * 40e-6, rel=1e-10)
-    vertical = structure.coordinates.index("y_1")
+    vertical = structure.coordinates.index("y_pinion")
     expected = -force * structure.mesh.vector[vertical] / structure.stiffness[vertical, vertical]
     assert equations.static_deflection[vertical] == pytest.approx(expected, rel=1e-9)
 

@@ -37,7 +37,7 @@ def inner(
     pitches, states = settled(run, SPEED, STEP_S, meshes * STEPS, settle_s)
     found = columns(run, states[:-1], pitches[:-1])
     # The pinion's velocity: its lines are those of the acceleration.
-    found["velocity_m_s"] = states[:-1, len(run.structure.coordinates) + run.structure.coordinates.index("y_1")]
+    found["velocity_m_s"] = states[:-1, len(run.structure.coordinates) + run.structure.coordinates.index("y_pinion")]
     return found
 
 

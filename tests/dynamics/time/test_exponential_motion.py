@@ -64,7 +64,7 @@ def test_a_linear_mesh_is_propagated_exactly() -> None:
     found = np.empty((201, 2 * n))
     found[0] = run.start(pitches[0])
     rest = found[0].copy()
-    across = {"x_1": np.cos(PRESSURE_ANGLE), "y_1": np.sin(PRESSURE_ANGLE)}
+    across = {"x_pinion": np.cos(PRESSURE_ANGLE), "y_pinion": np.sin(PRESSURE_ANGLE)}
     found[0, :n] += 1e-7 * vector(run.structure.coordinates, across)
     run.advance(pitches, no_inputs(pitches), found)
     damping = chosen.damping_root_kg * np.sqrt(3.14e8)
@@ -169,7 +169,7 @@ def thrown_back(kind: type[PairMotion], substeps: int) -> np.ndarray:
     pitches = 18 * 30.0 * step * np.arange(400 * substeps + 1) + 0.3
     path = np.empty((pitches.size, 2 * len(run.structure.coordinates)))
     path[0] = run.start(pitches[0])
-    path[0, len(run.structure.coordinates) + run.structure.coordinates.index("theta_1")] = -30.0
+    path[0, len(run.structure.coordinates) + run.structure.coordinates.index("theta_pinion")] = -30.0
     run.advance(pitches, no_inputs(pitches), path)
     if substeps == 1:
         assert run.steps_apart(path, pitches) > 10

@@ -101,8 +101,8 @@ def test_power_is_balanced(coefficient: float) -> None:
     inner = columns(run, states, pitches)
     velocity = dict(zip(names, states[:, n:].T, strict=True))
     omega = 2.0 * np.pi * 30.0
-    p_in = (TORQUE * (omega + velocity["theta_m"])).mean()
-    p_out = ((TORQUE * 47.0 / 18.0 - run.load_relief_nm) * (omega * 18.0 / 47.0 + velocity["theta_l"])).mean()
+    p_in = (TORQUE * (omega + velocity["theta_motor"])).mean()
+    p_out = ((TORQUE * 47.0 / 18.0 - run.load_relief_nm) * (omega * 18.0 / 47.0 + velocity["theta_load"])).mean()
     pairs = run.pairs(states, pitches)[0]
     # what the load is not relieved of, which keeps the train turning as a whole, on bodies by their inertia
     arms = structure.mesh.sliding @ rigid_rotation(structure)
@@ -121,7 +121,7 @@ def test_power_is_balanced(coefficient: float) -> None:
     if coefficient:
         # Loss factor of the textbook with equal sharing, 0.171 μ P; relief keeps the load near the pitch point.
         assert p_friction == pytest.approx(0.171 * 0.05 * 5655.0, rel=0.25)
-        assert abs(velocity["theta_1"].mean()) < 1e-6
+        assert abs(velocity["theta_pinion"].mean()) < 1e-6
     else:
         assert p_friction == 0.0
 
@@ -133,7 +133,7 @@ def test_a_perfect_pair_of_gears_makes_only_mesh_harmonics() -> None:
         settle_s=4.0,
     )
     n = len(run.structure.coordinates)
-    for name in ("y_c", "phi_c", "x_1"):
+    for name in ("y_casing", "phi_casing", "x_pinion"):
         line = np.abs(np.fft.rfft(states[:, n + run.structure.coordinates.index(name)]))[: 18 * 12]
         others = np.ones(len(line), dtype=bool)
         others[::18] = False
@@ -199,7 +199,7 @@ def test_bearing_forces_and_internals_are_those_of_the_mesh() -> None:
     inner = response.internals
     total = sum(inner[f"pair_{slot}_force_n"] for slot in range(2))
     np.testing.assert_allclose(total, inner["mesh_force_n"], rtol=1e-12)
-    assert {"x_c_m", "y_c_m", "phi_c_rad", "friction_moment_pinion_nm"} <= inner.keys()
+    assert {"x_casing_m", "y_casing_m", "phi_casing_rad", "friction_moment_pinion_nm"} <= inner.keys()
 
 
 def test_lost_contact_leaves_the_mean_force() -> None:
@@ -226,7 +226,7 @@ def test_errors_of_teeth_repeat_after_the_hunting_period() -> None:
     run, _, states = whole_meshes(
         lambda step: motion(make_structure(), law(missing), speed_hz=60.0, step_s=step), 2 * 846, 60.0, settle_s=2.0
     )
-    y = states[:, 11 + run.structure.coordinates.index("y_c")]
+    y = states[:, 11 + run.structure.coordinates.index("y_casing")]
     period = 846 * STEPS_PER_MESH // 2  # 60 Hz
     # What is left of the transient, e^-34, and rounding.
     assert np.abs(y[:period] - y[period:]).max() < 1e-6 * y.std()

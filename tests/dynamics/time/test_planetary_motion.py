@@ -42,8 +42,8 @@ def power(motion, pitches, states, turns=1):
     last = slice((pitches.size - 1) // (turns + 1), pitches.size - 1)
     n, turned = len(names), 2.0 * np.pi * pitches[last] / TEETH.ring
     static, omega = motion.equations.static_deflection, 2.0 * np.pi * CARRIER_HZ
-    x, y = (states[last, i] + static[i] for i in (names.index("x_r"), names.index("y_r")))
-    u, v = (states[last, n + i] for i in (names.index("x_r"), names.index("y_r")))
+    x, y = (states[last, i] + static[i] for i in (names.index("x_ring"), names.index("y_ring")))
+    u, v = (states[last, n + i] for i in (names.index("x_ring"), names.index("y_ring")))
     speed = np.cos(turned) * (u - omega * y) - np.sin(turned) * (v + omega * x)
     lines = np.fft.rfft(speed)
     return np.abs(lines * np.arange(lines.size))[: turns * ORDERS] ** 2

@@ -61,7 +61,7 @@ def powers(run: PairMotion, states: np.ndarray, pitches: np.ndarray) -> dict[str
     names, n = structure.coordinates, len(structure.coordinates)
     inner = columns(run, states, pitches)
     rate = states[:, n:]
-    load, motor = names.index("theta_l"), names.index("theta_m")
+    load, motor = names.index("theta_load"), names.index("theta_motor")
     pairs = run.pairs(states, pitches)[0]
     friction, arms = pairs[:, :, FRICTION], structure.mesh.sliding @ rigid_rotation(structure)
     return {

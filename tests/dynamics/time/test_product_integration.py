@@ -11,7 +11,7 @@ from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.conftest import arched_row, make_tables
 from tests.dynamics.integration_runs import FIRST_PITCHES, MESH_HZ, model, reference, relative_error, trajectory
 
-PINION_RATE = 8 + 2  # velocity of y_1 in the state of the 8-DOF model
+PINION_RATE = 8 + 2  # velocity of y_pinion in the state of the 8-DOF model
 STEP = 1.0 / (51200 * 4)
 STEPS = 2048  # 10 ms: five engagements with ten stiffness jumps
 

@@ -174,11 +174,11 @@ def test_power_is_balanced_with_tilt_coupling_and_friction(
     held = run.structure
     names, n = held.coordinates, len(held.coordinates)
     inner, rate, pairs = columns(run, states, pitches), states[:, n:], run.pairs(states, pitches)[0]
-    omega, load, motor = 2.0 * np.pi * 30.0, names.index("theta_l"), names.index("theta_m")
+    omega, load, motor = 2.0 * np.pi * 30.0, names.index("theta_load"), names.index("theta_motor")
     lock, damper = (
         getattr(held, what)[load, load] - getattr(bare, what)[load, load] for what in ("stiffness", "damping")
     )
-    torque = TORQUE * 47.0 / 18.0 + lock * inner["theta_l_rad"] + damper * rate[:, load]
+    torque = TORQUE * 47.0 / 18.0 + lock * inner["theta_load_rad"] + damper * rate[:, load]
     power_in = (TORQUE * (omega + rate[:, motor])).mean()
     power_out = (torque * (omega * 18.0 / 47.0 + rate[:, load])).mean()
     friction = (pairs[:, :, FRICTION] * pairs[:, :, SLIDING]).sum(axis=1).mean()

@@ -1,0 +1,229 @@
+"""Names: what gears, shafts and meshes of a gearbox are called, in the order of power.
+
+Files that have a `machine` name them; a pair has pinion and gear, a planetary set sun, planet, ring and carrier.
+Sections of a configuration count each mesh as a pair: its driver is the pinion, SLOW.pinion behind the first mesh. What
+leaves the program, such as columns, places and messages, is composed of these names; no text is rewritten.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any, TypeAlias, TypeVar
+
+from siggen.errors import Problem
+
+Table: TypeAlias = tuple[tuple[str, str], ...]
+"""Keys of sections, each with the one that the user wrote."""
+Value = TypeVar("Value")
+DRIVER, DRIVEN, EITHER, SEVERAL = "pinion", "gear", "either", "several"
+ROLES = (DRIVER, DRIVEN)
+"""What the gears of a mesh are to each other: the one that drives, and the one that is driven."""
+KEYS: Table = (
+    ("pinion", "driver"), ("gear", "driven"), ("pinion_depth", "driver_depth"), ("gear_depth", "driven_depth"),
+    ("pinion_encoder", "driver_encoder"), ("gear_encoder", "driven_encoder"),
+    ("accuracy_class_gear", "accuracy_class_driven"), ("crowning_gear_um", "crowning_driven_um"),
+)  # fmt: skip
+"""Keys of sections and those of a file with a `machine`."""
+
+
+@dataclass(frozen=True, slots=True)
+class GearName:
+    """What a gear is called.
+
+    Attributes
+    ----------
+    inner : in sections of the configuration: pinion, gear, slow.gear
+    word : by its user, in damage and labels; an idler has two, MESH.NAME by the mesh of each flank
+    body : in the graph; both flanks of an idler are one body
+    called : in sentences: the pinion, ida
+    """
+
+    inner: str
+    word: str
+    body: str
+    called: str
+
+    @property
+    def column(self) -> str:
+        """What parts of the names of columns call it."""
+        return "_".join(self.word.split("."))
+
+    @property
+    def inner_column(self) -> str:
+        """The same before names are given."""
+        return "_".join(self.inner.split("."))
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftName:
+    """What a shaft is called: in sections, by its user, in sentences, and what its bearings are."""
+
+    inner: str
+    word: str
+    called: str
+
+    @property
+    def bearing(self) -> str:
+        """The place of its bearings."""
+        return f"{self.word}_bearing"
+
+
+@dataclass(frozen=True, slots=True)
+class MeshName:
+    """What a mesh is called, in sections and by its user, and its gears; the mesh of a pair has no name."""
+
+    inner: str
+    word: str
+    driver: GearName
+    driven: GearName
+
+    @property
+    def gears(self) -> tuple[GearName, GearName]:
+        """Driver and driven gear."""
+        return self.driver, self.driven
+
+    def gear(self, role: str) -> GearName:
+        """Return the gear of a role."""
+        return self.gears[ROLES.index(role)]
+
+    @property
+    def frequency(self) -> str:
+        """The column of its frequency."""
+        return f"mesh_{self.word}_hz" if self.word else "mesh_hz"
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The names of one gearbox.
+
+    Attributes
+    ----------
+    meshes, shafts : in the order of power; of a planetary set those of sun and planet, and of planet and ring
+    paths : keys of sections, such as stages.0.gears.pinion, and where the user wrote them
+    given : whether a file gave them
+    """
+
+    meshes: tuple[MeshName, ...]
+    shafts: tuple[ShaftName, ...]
+    paths: Table = ()
+    given: bool = False
+
+    @property
+    def gears(self) -> tuple[GearName, ...]:
+        """All gears, those of each mesh one after the other; of a planetary set the planet once."""
+        return tuple(dict.fromkeys(gear for mesh in self.meshes for gear in mesh.gears))
+
+    @property
+    def first(self) -> MeshName:
+        """The first mesh."""
+        return self.meshes[0]
+
+    def alone(self, number: int) -> Names:
+        """Return the names of one mesh as if there were no other."""
+        if not self.given:
+            return PAIR
+        mesh, (front, behind) = self.meshes[number], self.shafts[number : number + 2]
+        driver, driven = (replace(gear, inner=role) for gear, role in zip(mesh.gears, ROLES, strict=True))
+        shafts = replace(front, inner=DRIVER), replace(behind, inner=DRIVEN)
+        return replace(self, meshes=(MeshName("", mesh.word, driver, driven),), shafts=shafts)
+
+    def gear(self, inner: str) -> str:
+        """Return what damage and labels call a gear; words such as none stay."""
+        return _words(self).get(inner, inner)
+
+    def mesh(self, inner: str) -> MeshName:
+        """Return a mesh."""
+        return next(mesh for mesh in self.meshes if mesh.inner == inner)
+
+    @property
+    def damaged(self) -> dict[str, str]:
+        """What `gear` of damage may hold, by sections: gears, and for each mesh the drawn one of both."""
+        either = {_in(mesh.inner, EITHER): _in(mesh.word, EITHER) for mesh in self.meshes}
+        return {**{gear.inner: gear.word for gear in self.gears}, **either}
+
+    @property
+    def bearings(self) -> dict[str, str]:
+        """Places of the bearings of all shafts, by sections."""
+        return {f"{shaft.inner}_bearing": shaft.bearing for shaft in self.shafts}
+
+    def quantity(self, mesh: MeshName, name: str) -> str:
+        """Return the name of a quantity of a mesh that no sensor sees; that of the only mesh stands alone."""
+        return f"{mesh.word}_{name}" if mesh.word and len(self.meshes) > 1 else name
+
+    def of_turning(self, of_shafts: Sequence[Value]) -> dict[str, Value]:
+        """Return what is known of every shaft in the order of power by all that turns: motor, gears, load."""
+        found = {"motor": of_shafts[0]}
+        # of a planetary set the ring's mesh has no shaft behind it
+        for mesh, driving, driven in zip(self.meshes, of_shafts, of_shafts[1:], strict=False):
+            found |= {mesh.driver.body: driving, mesh.driven.body: driven}
+        return {**found, "load": of_shafts[-1]}
+
+    def inner_path(self, path: str) -> str:
+        """Return a key of the user as sections have it, such as one that a state changes."""
+        for inner, own in self.paths:
+            if path.startswith(f"{own}."):
+                return f"{inner}{path.removeprefix(own)}"
+        return path
+
+    def own_path(self, path: str) -> str:
+        """Return a key of sections as the user wrote it."""
+        for inner, own in sorted(self.paths, key=lambda table: -len(table[0])):
+            if path.startswith(f"{inner}.") or (path == inner and not inner.endswith("gears")):
+                return f"{own}{path.removeprefix(inner)}"
+        return path
+
+    def problem(self, problem: Problem) -> Problem:
+        """Return a problem at the key that the user wrote."""
+        if not self.given:
+            return problem
+        path, keys = self.own_path(problem.path), {inner: own for inner, own in KEYS if inner not in ROLES}
+        path = ".".join(keys.get(part, part) for part in path.split("."))
+        before, changes, below = path.partition(".changes.")
+        return replace(problem, path=f"{before}{changes}{self.own_path(below)}" if changes else path)
+
+
+PAIR = Names(
+    (MeshName("", "", GearName(DRIVER, DRIVER, DRIVER, "the pinion"), GearName(DRIVEN, DRIVEN, DRIVEN, "the gear")),),
+    (ShaftName(DRIVER, DRIVER, "the pinion's shaft"), ShaftName(DRIVEN, DRIVEN, "the gear's shaft")),
+)
+"""Of two gears without names of their own."""
+PLANET = GearName(DRIVEN, "planet", "planet_1", "the planet")
+PLANETARY = Names(
+    (
+        MeshName("", "", GearName(DRIVER, "sun", "sun", "the sun"), PLANET),
+        MeshName("ring", "ring", PLANET, GearName("ring.gear", "ring", "ring", "the ring")),
+    ),
+    (ShaftName(DRIVER, "sun", "the sun's shaft"), ShaftName(DRIVEN, "carrier", "the carrier's shaft")),
+)
+"""Of a planetary set, whose first mesh is that of the sun with its first planet."""
+
+
+@cache
+def of_stages(*stages: str) -> Names:
+    """Return the names of a pair with stages behind it, whose gears are STAGE.pinion and STAGE.gear."""
+    behind = []
+    for stage in stages:
+        gears = ((f"{stage}.{role}", f"{stage}_{role}") for role in ROLES)
+        behind.append(MeshName(stage, stage, *(GearName(name, name, body, name) for name, body in gears)))
+    shafts = (ShaftName(stage, stage, f"the shaft of {stage}.{DRIVEN}") for stage in stages)
+    return replace(PAIR, meshes=(*PAIR.meshes, *behind), shafts=(*PAIR.shafts, *shafts))
+
+
+def renamed_keys(value: Any, *, own: bool) -> Any:
+    """Return mappings and lists with the keys of the other form: the user's `own`, or those of sections."""
+    table = dict(KEYS) if own else {to: key for key, to in KEYS}
+    if isinstance(value, Mapping):
+        return {table.get(key, key): renamed_keys(item, own=own) for key, item in value.items()}
+    return [renamed_keys(item, own=own) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _in(mesh: str, gear: str) -> str:
+    return f"{mesh}.{gear}" if mesh else gear
+
+
+@cache
+def _words(names: Names) -> dict[str, str]:
+    """Return what labels call gears."""
+    return names.damaged
