@@ -46,7 +46,7 @@ def random_config(number: int) -> Config | None:
         "dynamics.mesh_damping_ratio": f"{drawn['damping_ratio']}",
         "operating_points.0.speed_hz": f"{drawn['speed_hz']}",
         "operating_points.0.torque_nm": f"{drawn['torque_nm']}",
-        "states": f"[{{name: healthy}}, {{name: severe, damage: {{{SPALL}, profile_length_mm: {size * SPALL_MM}}}}}]",
+        "states": f"{{healthy: {{}}, severe: {{damage: {{{SPALL}, profile_length_mm: {size * SPALL_MM}}}}}}}",
         "duration_s": f"{ceil(100.0 * max(LEAST_S, LEAST_PITCHES / (TEETH * drawn['speed_hz']))) / 100.0}",
         "seed": f"{1000 + number}",
         "specimens": "1",

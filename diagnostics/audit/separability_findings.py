@@ -107,7 +107,7 @@ def shared_specimens(measured: MeasuredSet) -> list[Finding]:
 
 def solver_settings(measured: MeasuredSet) -> list[Finding]:
     """Return a finding if states of the configuration differ in settings that are not their damage."""
-    states = [state for state in measured.config.get("states", []) if isinstance(state, Mapping)]
+    states = [state for state in measured.config.get("states", {}).values() if isinstance(state, Mapping)]
     own = [_settings(state) for state in states]
     if len(own) < 2 or all(settings == own[0] for settings in own):
         return []

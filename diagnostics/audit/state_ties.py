@@ -275,7 +275,7 @@ def failed_states(measured: MeasuredSet) -> list[Finding]:
     states = measured.states()
     if not measured.failures or len(states) < 2:
         return []
-    planned = [str(state.get("name")) for state in measured.config.get("states", [])] or list(states)
+    planned = [*measured.config.get("states", {})] or list(states)
     points, repeats = (int(measured.labels[name].max()) + 1 for name in ("operating_point_id", "repeat"))
     block = points * repeats
     counts = np.bincount(

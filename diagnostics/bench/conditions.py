@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 SPEED, TORQUE = [32.5, 37.0], [30.0, 60.0]
-HEALTHY = ({"name": "healthy"}, {"name": "healthy_again"})
+HEALTHY: Mapping[str, Any] = {"healthy": {}, "healthy_again": {}}
 MODERATE = {"severity": "moderate", "grows_from": "none"}
 SPALL = {
     "kind": "irregular",
@@ -22,39 +22,17 @@ SPALL = {
     "face_share": 1.0,
     "skew_mm_per_10mm": [-0.054, 0.054],
 }
-OTHER_FAULTS = (
-    *HEALTHY,
-    {
-        "name": "crack",
+OTHER_FAULTS = {
+    **HEALTHY,
+    "crack": {
         **MODERATE,
-        "damage": {
-            "kind": "crack",
-            "gear": "pinion",
-            "depth_share": [0.15, 0.35],
-            "angle_deg": [45.0, 65.0],
-        },
+        "damage": {"kind": "crack", "gear": "pinion", "depth_share": [0.15, 0.35], "angle_deg": [45.0, 65.0]},
     },
-    {
-        "name": "chip",
-        **MODERATE,
-        "damage": {"kind": "chip", "gear": "pinion", "height_mm": [0.3, 1.0]},
-    },
-    {
-        "name": "wear",
-        **MODERATE,
-        "damage": {"kind": "wear", "depth_um": [10.0, 30.0]},
-    },
-    {
-        "name": "bearing",
-        **MODERATE,
-        "damage": {
-            "kind": "bearing_spall",
-            "element": "outer",
-            "length_mm": [1.0, 3.0],
-        },
-    },
-    {"name": "sham", "sham": True, "damage": SPALL},
-)
+    "chip": {**MODERATE, "damage": {"kind": "chip", "gear": "pinion", "height_mm": [0.3, 1.0]}},
+    "wear": {**MODERATE, "damage": {"kind": "wear", "depth_um": [10.0, 30.0]}},
+    "bearing": {**MODERATE, "damage": {"kind": "bearing_spall", "element": "outer", "length_mm": [1.0, 3.0]}},
+    "sham": {"sham": True, "damage": SPALL},
+}
 """Faults of `confusers` with the sizes that it has: none of them is learned from."""
 
 TEETH = ((20, 51), (22, 45), (23, 37), (24, 61))
@@ -66,10 +44,10 @@ CONDITIONS: Mapping[str, Mapping[str, Any]] = {
     "other_speed": {"operating_points": [{"speed_hz": [25.0, 29.0], "torque_nm": TORQUE}]},
     "other_torque": {"operating_points": [{"speed_hz": SPEED, "torque_nm": [12.0, 20.0]}]},
     "new_pair": {"gears": {"pairs": PAIRS}, "dynamics": SHAFTS},
-    "other_place": {"places": {"first": "wall", "second": "pinion_end"}},
+    "other_place": {"sensors": {"first": {"place": "wall"}, "second": {"place": "pinion_end"}}},
     "other_fault": {"states": OTHER_FAULTS},
 }
-"""Name -> top-level keys that differ; `places` are those of the sensors."""
+"""Name -> top-level keys that differ."""
 LIFE_CONDITIONS: Mapping[str, Mapping[str, Any]] = {"same": {}, "other_load": {"life": {"history": [[1.0, 1.05]]}}}
 """The same of lives; 5 % more torque wears 1.05^10 = 1.6 times as fast."""
 
@@ -86,14 +64,9 @@ TIERS: Mapping[str, Tier] = {"tiny": Tier(12, 6), "small": Tier(60, 24), "full":
 
 
 def changed(config: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a configuration with what a condition changes; sections stay but for the keys named."""
-    found = dict(config)
-    for name, value in changes.items():
-        if name == "places":
-            found["sensors"] = [{**one, "place": value.get(one["name"], one["place"])} for one in config["sensors"]]
-        else:
-            found[name] = _merged(config.get(name), value)
-    return found
+    """Return a configuration with what a condition changes; sections stay but for the keys named, states are others."""
+    named = {name: value if name == "states" else _merged(config.get(name), value) for name, value in changes.items()}
+    return {**config, **named}
 
 
 def _merged(section: Any, value: Any) -> Any:

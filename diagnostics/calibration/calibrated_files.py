@@ -76,7 +76,7 @@ def write_calibration(found: Calibration, out: Path) -> Path:
 
 def sensor_axes(found: Calibration) -> list[tuple[str, str]]:
     """Return name and axis of the sensor that stands for each channel; sensors of several axes become several."""
-    axes = [(sensor["name"], axis, len(sensor["axes"])) for sensor in found.rig.sensors for axis in sensor["axes"]]
+    axes = [(name, axis, len(one["axes"])) for name, one in found.rig.sensors.items() for axis in one["axes"]]
     return [(name if count == 1 else f"{name}_{axis}", axis) for name, axis, count in axes]
 
 
@@ -105,6 +105,7 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         "dynamics: {unbalance: {grade_mm_s: 0.0}}    # among the lines of the recordings",
         *_manufacture(found.rig.config),
         "sensors:",
+        "  others: null",
     ]
     for channel, (name, axis) in zip(found.channels, sensor_axes(found), strict=True):
         lines += _sensor(channel, (name, axis), data_folder(out).name, found.rig.depth_keys)
@@ -119,7 +120,7 @@ def _manufacture(config: dict[str, Any]) -> Iterable[str]:
 
 def _sensor(channel: ChannelFit, called: tuple[str, str], folder: str, depth_keys: tuple[str, str]) -> Iterable[str]:
     (name, axis), noise, sensor = called, channel.noise, channel.sensor
-    yield f"  - name: {name}                # column or channel {channel.name}"
+    yield f"  {name}:                # column or channel {channel.name}"
     yield "    place: casing"
     yield f"    axes: [{axis}]"
     yield f"    range_m_s2: {sensor.range_m_s2:.6g}"

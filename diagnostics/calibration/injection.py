@@ -219,9 +219,10 @@ class Difference:
     identity: str
 
 
-def damage_states(mine: Path) -> tuple[dict[str, Any], ...]:
-    """Return the damaged states of a calibrated configuration, as it gives them."""
-    return tuple(state for state in siggen.load_config(mine).canonical()["states"] if state.get("damage"))
+def damage_states(mine: Path) -> dict[str, dict[str, Any]]:
+    """Return the damaged states of a calibrated configuration by name, as it gives them."""
+    states = siggen.load_config(mine).canonical()["states"]
+    return {name: state for name, state in states.items() if state.get("damage")}
 
 
 def simulated_differences(mine: Path, block: Block, gearbox: int) -> Iterator[Difference]:
@@ -230,12 +231,12 @@ def simulated_differences(mine: Path, block: Block, gearbox: int) -> Iterator[Di
     duration = np.ceil(wanted * block.fs_hz) / block.fs_hz
     changes = _quiet(mine, block, duration, gearbox)
     try:
-        healthy = siggen.run(siggen.draw(siggen.load_config({**changes, "states": [{"name": "healthy"}]}), gearbox))
+        healthy = siggen.run(siggen.draw(siggen.load_config({**changes, "states": {"healthy": {}}}), gearbox))
     except SolverFailure:
         return
-    for state in damage_states(mine):
+    for name, state in damage_states(mine).items():
         alone = {**state, "grows_from": "none"} if "grows_from" in state else state
-        config = siggen.load_config({**changes, "states": [alone]})
+        config = siggen.load_config({**changes, "states": {name: alone}})
         try:
             damaged = siggen.run(siggen.draw(config, gearbox), config.state_names[0])
         except SolverFailure:
@@ -257,16 +258,16 @@ def _quiet(mine: Path, block: Block, duration_s: float, gearbox: int) -> dict[st
         "repeats": 1,
         "duration_s": float(duration_s),
         "variation": {},
-        "sensors": [{**sensor, **off} for sensor in config["sensors"]],
+        "sensors": {name: {**sensor, **off} for name, sensor in config["sensors"].items()},
         "operating_points": [{**config["operating_points"][0], "speed_hz": block.speed_hz}],
     }
 
 
-def _refuse_other_kinds(mine: Path, sensors: Sequence[Mapping[str, Any]], off: Mapping[str, Any]) -> None:
-    for sensor in sensors:
+def _refuse_other_kinds(mine: Path, sensors: Mapping[str, Mapping[str, Any]], off: Mapping[str, Any]) -> None:
+    for name, sensor in sensors.items():
         if lacking := [key for key in off if key not in sensor]:
             raise UsageError(
-                f"{mine}: sensor {sensor['name']}: received kind {sensor.get('kind')}, which has no "
+                f"{mine}: sensor {name}: received kind {sensor.get('kind')}, which has no "
                 f"{', '.join(lacking)}; allowed: accelerometers, whose noise is taken off before damage is injected. "
                 "Leave this sensor and its recordings out"
             )

@@ -91,7 +91,7 @@ def simulated_blocks(
     config: Path | Mapping[str, object], channels: tuple[str, ...], gearboxes: int, advance: Callable[[], None]
 ) -> list[Block]:
     """Return one healthy record of each of some gearboxes; channels take the recordings' names in their order."""
-    loaded = siggen.load_config(config, ["states=[{name: healthy}]", f"specimens={gearboxes}", "repeats=1"])
+    loaded = siggen.load_config(config, ["states={healthy: {}}", f"specimens={gearboxes}", "repeats=1"])
     found = []
     for number in range(gearboxes):
         with suppress(SolverFailure):

@@ -44,14 +44,14 @@ class Rig:
     forces: tuple[str, ...]
 
     @property
-    def sensors(self) -> list[dict[str, Any]]:
-        """Accelerometers: recordings of others have neither path nor noise that is fitted."""
-        return [one for one in self.config["sensors"] if one["kind"] == "accelerometer"]
+    def sensors(self) -> dict[str, dict[str, Any]]:
+        """Accelerometers by name: recordings of others have neither path nor noise that is fitted."""
+        return {name: one for name, one in self.config["sensors"].items() if one["kind"] == "accelerometer"}
 
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of their channels."""
-        return tuple(f"{sensor['name']}_{axis}" for sensor in self.sensors for axis in sensor["axes"])
+        return tuple(f"{name}_{axis}" for name, sensor in self.sensors.items() for axis in sensor["axes"])
 
     @property
     def depth_keys(self) -> tuple[str, str]:
@@ -69,7 +69,7 @@ class Rig:
     @property
     def left_out(self) -> tuple[str, ...]:
         """Names of the other sensors."""
-        return tuple(one["name"] for one in self.config["sensors"] if one["kind"] != "accelerometer")
+        return tuple(name for name, one in self.config["sensors"].items() if one["kind"] != "accelerometer")
 
 
 def read_rig(file: Path) -> Rig:

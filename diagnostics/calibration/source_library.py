@@ -91,7 +91,7 @@ def library_configuration(rig: Rig, operating_point: dict[str, Any], fs_hz: floa
     return {
         **at_recordings(rig, operating_point, fs_hz),
         "background": None,
-        "sensors": [{"name": "bearing", "place": place, "bits": None, "range_m_s2": 1e6}],
+        "sensors": {"bearing": {"place": place, "bits": None, "range_m_s2": 1e6}},
         "internals": {"quantities": force_columns(rig)},
     }
 
@@ -103,7 +103,7 @@ def at_recordings(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> di
         "name": "sources",
         **sampled_as(rig, operating_point, fs_hz),
         "repeats": 1,
-        "states": [{"name": "healthy"}],
+        "states": {"healthy": {}},
         "operating_points": [operating_point],
     }
 

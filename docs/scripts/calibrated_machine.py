@@ -38,7 +38,7 @@ def recordings(folder: Path, seed: int) -> HealthyBlocks:
         "repeats": FITTED + JUDGED,
         "operating_points": [point],
     }
-    gearbox = siggen.draw(siggen.load_config({**base, "states": [{"name": "healthy"}]}))
+    gearbox = siggen.draw(siggen.load_config({**base, "states": {"others": None, "healthy": {}}}))
     records = siggen.runs(gearbox, gearbox.cases)
     files = [write_recording(one, folder / f"run{k}.npz") for k, one in enumerate(records)]
     return healthy_blocks(

@@ -34,7 +34,7 @@ LOADS = (0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0, 100.0)
 SPEEDS_HZ, LOAD_OF_SPEEDS = (15.0, 17.0, 19.0, 21.5, 24.0, 26.5, 29.5, 33.0, 36.5, 40.0), 75.0
 LEAST_LOAD = 9.0
 """Below a tenth of the load gears rattle: no references are taken there [%]."""
-BROKEN = {"name": "broken", "severity": "severe", "damage": {"kind": "chip", "gear": "pinion", "height_mm": 6.0}}
+BROKEN = {"severity": "severe", "damage": {"kind": "chip", "gear": "pinion", "height_mm": 6.0}}
 DAMAGED = ("through", "broken")
 DRAWS = 8
 LOAD, SPEED = "load", "speed"
@@ -64,7 +64,7 @@ def recorded(number: int, folder: Path, over: str) -> dict[str, np.ndarray]:
     kept = folder / f"{over}s_{number}.npz"
     if not kept.exists():
         raw, conditions = machine(number, folder), points(over)
-        states = [{"name": HEALTHY}, {"name": "again"}, STATES[3], BROKEN]
+        states = {HEALTHY: {}, "again": {}, "through": STATES["through"], "broken": BROKEN}
         changes = {"operating_points": conditions, "states": states, "specimens": 1, "duration_s": DURATION_S}
         config = siggen.load_config({**raw, **changes})
         gearbox = siggen.draw(config)

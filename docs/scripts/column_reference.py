@@ -21,7 +21,7 @@ from siggen.record.quantities import quantity_column
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL = CONFIGS / "industrial.yaml"
-BARE = ("manufacture=null", "variation={}", "background=null", "sensors.0.position_mm=[0, 0]", "states.19={name: last}")
+BARE = ("manufacture=null", "variation={}", "background=null", "sensors.lid.position_mm=[0, 0]", "states.sham=null")
 """Without what the preset has of the sections that are added one by one; with a place that grows with the gears."""
 MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
 PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"
@@ -30,16 +30,14 @@ AROUND = (
     "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, second_stage: {order: 7}, "
     "auxiliary_drive: {order: 20}}"
 )
-SHAM = (
-    "states.0={name: sham, sham: true, damage: {kind: spall, face_length_mm: 8, profile_length_mm: 1, depth_mm: 0.3}}"
-)
+SHAM = "states.sham={sham: true, damage: {kind: spall, face_length_mm: 8, profile_length_mm: 1, depth_mm: 0.3}}"
 ADDED = {
     "manufacture": MADE,
     "variation": "variation.speed.random_rms=0.001",
     "gears.pairs": PAIR,
     "dynamics.friction.oil": OILS,
     "background": AROUND,
-    "states[].sham": SHAM,
+    "states.NAME.sham": SHAM,
 }
 """With these a configuration that has every part with columns of its own."""
 PLATES = "`housing.kind: plates`"
@@ -111,13 +109,13 @@ def needs(full: pa.Schema) -> dict[str, str]:
     for key, off in (("helix", "off"), ("crowning_um", "0")):
         less = schema([f"manufacture.{key}={off}"])
         found |= dict.fromkeys(set(full.names) - set(less.names), f"`manufacture.{key}`")
-    sensors = len(siggen.load_config(FULL).sensors)
+    sensors = [one.name for one in siggen.load_config(FULL).sensors]
     for part in SENSOR_PARTS:
-        keys = [f"sensors.{k}.{part}=null" for k in range(sensors)]
+        keys = [f"sensors.{name}.{part}=null" for name in sensors]
         left = {general(name, channels(full)) for name in schema(keys).names}
-        found |= {name: f"`sensors[].{part}`" for name in full.names if general(name, channels(full)) not in left}
+        found |= {name: f"`sensors.NAME.{part}`" for name in full.names if general(name, channels(full)) not in left}
     found |= {column.name: PLATES for column in HOUSING_COLUMNS}
-    return found | {name: f"{PLATES}, or `sensors[].path`" for name in full.names if name.startswith("path_")}
+    return found | {name: f"{PLATES}, or `sensors.NAME.path`" for name in full.names if name.startswith("path_")}
 
 
 def channels(full: pa.Schema) -> list[str]:

@@ -67,7 +67,7 @@ Entry = dict[str, Any]
 def preset(name: str, gearboxes: int, chosen: tuple[str, ...]) -> dict[str, Any]:
     """Return a preset with some of its states."""
     raw = inherited(read_yaml(CONFIGS / f"{name}.yaml"), CONFIGS)
-    states = [state for state in raw["states"] if state["name"] in chosen]
+    states = {name: state for name, state in raw["states"].items() if name in chosen}
     by = {"by": "pair"} if name == "families" else {}
     return {**raw, "specimens": gearboxes, "states": states, "splits": {**HALVES, **by}}
 
@@ -79,25 +79,23 @@ def _irregular(state: dict[str, Any]) -> bool:
 def parallel(raw: dict[str, Any]) -> dict[str, Any]:
     """Return a configuration with the edges of all irregular spalls parallel to the axis."""
     straight = {"skew_mm_per_10mm": 0.0, "waviness": 0.0}
-    states = [
-        {**state, "damage": {**state["damage"], **straight}}
-        if state["name"].startswith(("face_", "through_"))
-        else state
-        for state in raw["states"]
-    ]
+    states = {
+        name: {**state, "damage": {**state["damage"], **straight}} if name.startswith(("face_", "through_")) else state
+        for name, state in raw["states"].items()
+    }
     return {**raw, "name": "bench_parallel", "states": states}
 
 
 def edges(gearboxes: int) -> dict[str, Any]:
     """Return bench with spalls of 1 mm by share of the face and skew of both edges."""
-    damaged = []
+    damaged = {}
     for share in SHARES:
         for skew in SKEWS_MM:
             name = f"share_{100 * share:03.0f}_skew_{100 * skew:03.0f}"
             damage = {**SPALL, "skew_mm_per_10mm": 0.5 * skew, "face_share": share}
-            damaged.append({"name": name, "severity": "severe", "grows_from": "none", "damage": damage})
+            damaged[name] = {"severity": "severe", "grows_from": "none", "damage": damage}
     raw = preset("bench", gearboxes, STATES[:2])
-    return {**raw, "name": "edges", "states": [*raw["states"], *damaged]}
+    return {**raw, "name": "edges", "states": {**raw["states"], **damaged}}
 
 
 def audited(folder: str, raw: dict[str, Any], workers: int) -> dict[str, dict[str, Entry]]:

@@ -138,8 +138,8 @@ def compare(config, overrides, samples=600, record=0, rtol=1e-6):
 
 IDEAL = ["manufacture=null", "dynamics.shafts=null"]
 SPALL = (
-    "states.5.damage={kind: spall, gear: pinion, teeth: 1, centre_height_mm: pitch, face_length_mm: 20.0, "
-    "depth_mm: 0.2, profile_length_mm: [0.8, 1.0]}"
+    "states.spalled_through.damage={kind: spall, gear: pinion, teeth: 1, centre_height_mm: pitch, "
+    "face_length_mm: 20.0, depth_mm: 0.2, profile_length_mm: [0.8, 1.0]}"
 )
 FINE = ["dynamics.steps_per_sample=8"]
 MISALIGNED = [*FINE, "manufacture.lead_misalignment_um=5"]

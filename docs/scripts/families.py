@@ -29,7 +29,7 @@ Entry = dict[str, Any]
 def raw(gearboxes: int, *, many: bool) -> dict[str, Any]:
     """Return the preset with three states, with or without its pairs."""
     found = inherited(read_yaml(CONFIGS / "families.yaml"), CONFIGS)
-    states = [state for state in found["states"] if state["name"] in STATES]
+    states = {name: state for name, state in found["states"].items() if name in STATES}
     found |= {"name": "families_small", "specimens": gearboxes, "states": states}
     if many:
         return found

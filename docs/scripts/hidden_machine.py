@@ -20,12 +20,12 @@ FS_HZ, TEETH = 25_600.0, (18, 47)
 CHANNELS = ("sensor_1_vertical", "sensor_2_horizontal")
 SPALL = {"kind": "irregular", "gear": "pinion", "teeth": 1, "edge_radius_mm": 0.1}
 HEALTHY = "healthy"
-STATES = [
-    {"name": HEALTHY},
-    {"name": "healthy_again"},
-    {"name": "partial", "severity": "slight", "damage": {**SPALL, "profile_length_mm": 1.0, "face_share": 0.4}},
-    {"name": "through", "severity": "severe", "damage": {**SPALL, "profile_length_mm": 0.6, "face_share": 1.0}},
-]
+STATES = {
+    HEALTHY: {},
+    "healthy_again": {},
+    "partial": {"severity": "slight", "damage": {**SPALL, "profile_length_mm": 1.0, "face_share": 0.4}},
+    "through": {"severity": "severe", "damage": {**SPALL, "profile_length_mm": 0.6, "face_share": 1.0}},
+}
 
 
 def machine(number: int, folder: Path) -> dict[str, Any]:
@@ -72,16 +72,16 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
             "damping_ratio": [0.015, 0.05],
             "wall_mm": wall_mm,
         },
-        "sensors": [
-            {
-                "name": f"sensor_{k + 1}",
+        "sensors": {"others": None}
+        | {
+            f"sensor_{k + 1}": {
                 "place": place,
                 "axes": [axis],
                 "bits": 24,
                 "noise": {"floor_m_s2": log(0.003, 0.03)},
             }
             for k, (place, axis) in enumerate((("lid", "vertical"), ("gear_end", "horizontal")))
-        ],
+        },
     }
     return _with_own_path(found, folder)
 
@@ -92,8 +92,10 @@ def _with_own_path(found: dict[str, Any], folder: Path) -> dict[str, Any]:
 
     file = (folder / "path.parquet").resolve()
     if not file.exists():
-        write_table_file(path_curves(siggen.load_config({**found, "states": STATES[:1]})).table, file)
-    for sensor in found["sensors"]:
+        write_table_file(
+            path_curves(siggen.load_config({**found, "states": {"others": None, HEALTHY: {}}})).table, file
+        )
+    for sensor in filter(None, found["sensors"].values()):
         sensor |= {"place": "casing", "path": {"file": str(file)}}
     return found
 

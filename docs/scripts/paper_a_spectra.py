@@ -56,7 +56,10 @@ def main() -> None:
     for band in next(iter(table.values())):
         print(f"| {band} | " + " | ".join(f"{values[band]:.2g}" for values in table.values()) + " |")
     print_mesh("one pitted tooth", lines)
-    print_mesh("18 pitted teeth", spectra(*(f"states.{i}.damage.teeth={TEETH}" for i in (1, 2, 3)), "duration_s=2"))
+    print_mesh(
+        "18 pitted teeth",
+        spectra(*(f"states.{name}.damage.teeth={TEETH}" for name in ("slight", "moderate", "severe")), "duration_s=2"),
+    )
     figure = Figure(figsize=(9, 8), layout="constrained")
     axes = figure.subplots(len(lines), 1, sharex=True, sharey=True)
     for axis, (state, amplitudes) in zip(axes, lines.items(), strict=True):

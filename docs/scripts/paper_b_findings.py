@@ -77,10 +77,21 @@ def said(name):
     )
 
 
+def by_name(states):
+    """Return states as a file gives them."""
+    return {one["name"]: {key: value for key, value in one.items() if key != "name"} for one in states}
+
+
 def runs(states, speeds_hz, duration_s, *overrides, fs_hz=54000.0):
     """Yield state, speed, rate and quantities by name of every record."""
     points = [{"speed_hz": speed, "torque_nm": TORQUE_NM} for speed in speeds_hz]
-    raw = {**read_yaml(CONFIG), "states": states, "operating_points": points, "duration_s": duration_s, "fs_hz": fs_hz}
+    raw = {
+        **read_yaml(CONFIG),
+        "states": by_name(states),
+        "operating_points": points,
+        "duration_s": duration_s,
+        "fs_hz": fs_hz,
+    }
     config = load_config(raw, [*CONSTANTS, "mesh_harmonics=5", *overrides])
     specimen = draw_specimen(config, 0)
     for index, state in enumerate(states):

@@ -26,7 +26,12 @@ PICTURE = re.compile(r"data:image/png;base64,([A-Za-z0-9+/=]+)")
 def recorded(folder: Path) -> list[str]:
     """Write the recordings, healthy ones first; return their files."""
     raw = machine(1, folder)
-    changes = {"specimens": 1, "repeats": HEALTHY, "duration_s": DURATION_S, "states": [STATES[0], STATES[3]]}
+    changes = {
+        "specimens": 1,
+        "repeats": HEALTHY,
+        "duration_s": DURATION_S,
+        "states": {name: STATES[name] for name in ("healthy", "through")},
+    }
     gearbox = siggen.draw(siggen.load_config({**raw, **changes}))
     files = [f"{k}.npz" for k in range(1, HEALTHY + 2)]
     for file, record in zip(files, siggen.runs(gearbox, gearbox.cases[: HEALTHY + 1]), strict=True):

@@ -44,26 +44,28 @@ class Schema:
     def sections(self, value: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
         """Yield (how a path goes on, section) for the sections that a value may hold; what may be listed too once."""
         found = list(self.options(value))
-        for option, listed in found:
-            if listed and (option, False) in found:
+        for option, ending in found:
+            if ending and (option, "") in found:
                 continue
             section = self.resolved(option)
             if is_number_part(option) or "properties" not in section:
                 continue
             kind = section["properties"].get("kind", {}).get("const")
             label = f" (kind: {kind})" if kind else ""
-            yield ("[]" if listed else "") + label, section
+            yield ending + label, section
 
-    def options(self, value: Mapping[str, Any], listed: bool = False) -> Iterator[tuple[Mapping[str, Any], bool]]:
-        """Yield the alternatives of a value, and whether they are entries of a list."""
+    def options(self, value: Mapping[str, Any], ending: str = "") -> Iterator[tuple[Mapping[str, Any], str]]:
+        """Yield the alternatives of a value, and how its path goes on to them: as entries of a list, or by name."""
         alternatives = value.get("anyOf") or value.get("oneOf")
         if alternatives is not None:
             for alternative in alternatives:
-                yield from self.options(alternative, listed)
+                yield from self.options(alternative, ending)
         elif value.get("type") == "array" and "items" in value:
-            yield from self.options(value["items"], True)
+            yield from self.options(value["items"], "[]")
+        elif isinstance(value.get("additionalProperties"), Mapping):
+            yield from self.options(value["additionalProperties"], ".NAME")
         else:
-            yield value, listed
+            yield value, ending
 
 
 def is_number_part(option: Mapping[str, Any]) -> bool:

@@ -77,7 +77,7 @@ def machine(index: int) -> tuple[dict[str, Any], tuple[int, int]]:
     changes = {
         "specimens": 1, "repeats": 1, "duration_s": DURATION_S, "seed": seed,
         "operating_points": [{"speed_hz": speed_hz, "torque_nm": torque_nm}],
-        "states": [state for state in raw["states"] if state["name"] in STATES],
+        "states": {name: raw["states"][name] for name in STATES},
         "variation": {**raw["variation"], "speed": speed},
         "background": {**raw["background"], "second_stage": stage if index % 3 else None},
     }  # fmt: skip

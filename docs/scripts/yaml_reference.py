@@ -28,13 +28,14 @@ This page is printed by `make reference` from `siggen schema`. Begin with
 * **Number**, or a limit alone, may be a constant, or a range such as `[1, 2]` from which siggen draws once per gearbox
   ([below](#ranges)).
 * A key of `pinion` stands for that of `gear` too, where the gear has no line of its own.
-* **extends** names a preset or another file. Mappings are merged key by key, all else is replaced. The set's own
-  `config.yaml` holds the result.
+* **extends** names a preset or another file. Mappings are merged key by key, states and sensors by name, all else is
+  replaced. A state or sensor that is null is removed; `others: null` takes over none. The set's own `config.yaml` holds
+  the result.
 * The default stands last, in brackets. A key without brackets is required wherever its section stands.
 * Keys of one meaning share a line; what differs between them is divided by a slash. Sections are not counted.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
-* `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
-  `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
+* `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`, `a.NAME.b` that of every name. On
+  the command line: `--set a.b=VALUE`, `--set a.0.b=VALUE` for the first entry, `--set states.severe.b=VALUE`.
 """
 RANGES_TEXT = """## Ranges
 
@@ -186,7 +187,7 @@ class Entry:
         return self.values(schema) == "section" and set(self.defaults) <= {"", SECTION_DEFAULT}
 
 
-BEGINNING = r"^{}(?:\[\])?(?: \(kind: \w+\))?(?:\.\w+ \(kind: \w+\))?\."
+BEGINNING = r"^{}(?:\[\]|\.NAME)?(?: \(kind: \w+\))?(?:\.\w+ \(kind: \w+\))?\."
 """Of the paths of a top-level key: an entry of its list and its kind, and a section with kinds."""
 
 
@@ -196,7 +197,7 @@ def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
     for key in keys:
         begins = re.match(BEGINNING.format(top), key.path)
         if begins is not None:
-            place = re.sub(r" \(kind: \w+\)|\[\]", "", begins[0])
+            place = re.sub(r" \(kind: \w+\)|\[\]|\.NAME", "", begins[0])
             found.setdefault(place, {}).setdefault(described(schema, key.schema) or key.path, []).append(key)
     return [[Entry(tuple(same), top) for same in place.values()] for place in found.values()]
 
@@ -272,6 +273,7 @@ def page() -> str:
     for top, tables in tops:
         text = described(schema, top.schema)
         listed = " A list; these are the keys of an entry." if top.schema.get("type") == "array" else ""
+        listed = " By name; these are the keys of an entry." if "additionalProperties" in top.schema else listed
         need = "Required." if top.required else "Optional."
         for number, rows in enumerate(tables):
             if number == 0:

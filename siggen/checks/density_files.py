@@ -36,11 +36,10 @@ def with_density_files(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[st
         return {**parent, key: {**{k: v for k, v in table.items() if k != "file"}, **numbers}}
 
     found = dict(raw)
-    if isinstance(raw.get("sensors"), (list, tuple)):
-        sensors = list(raw["sensors"])
+    if isinstance(sensors := raw.get("sensors"), Mapping):
         for source in (one for one in SOURCES if one.file_columns):
             key, columns = source.key, source.file_columns
-            sensors = [filled(one, key, f"sensors.{i}.{key}", columns) for i, one in enumerate(sensors)]
+            sensors = {name: filled(one, key, f"sensors.{name}.{key}", columns) for name, one in sensors.items()}
         found["sensors"] = sensors
     return found, problems
 

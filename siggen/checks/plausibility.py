@@ -253,9 +253,9 @@ def _record(config: Config) -> Iterator[Quantity]:
     shaft, order = _slowest_shaft(config)
     turns = config.duration_s * slowest * order
     yield Quantity("duration_s", f"turns of {shaft} in a record", (turns, turns), 3.0, 1e5, "averages need several")
-    for i, sensor in enumerate(config.sensors):
+    for sensor in config.sensors:
         what = f"range [{sensor.quantity.shown_unit}]"
-        yield _of(f"sensors.{i}.{sensor.limit_key}", what, sensor.limit, *sensor.plausible)
+        yield _of(f"sensors.{sensor.name}.{sensor.limit_key}", what, sensor.limit, *sensor.plausible)
 
 
 def _slowest_shaft(config: Config) -> tuple[str, float]:

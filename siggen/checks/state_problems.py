@@ -19,33 +19,33 @@ from siggen.keys.problems import refused_problems
 
 def state_problems(parsed: ParsedConfig) -> Iterator[Problem]:
     """Yield what is wrong with what states change, at the bounds of all numbers; of keys that are valid otherwise."""
-    states: Mapping[int, StateSection] = parsed.sections.get("states", {})
+    states: Mapping[str, StateSection] = parsed.sections.get("states", {})
     if parsed.problems or not any(state.changes for state in states.values()):
         return
     known = {problem.path for problem in _every(parsed, parsed.sections)}
-    for index in states:
+    for index, name in enumerate(states):
         changes = [one for _, one in changes_of(tuple(states.values()), index)]
         if changes:
-            yield from _changed_problems(parsed, index, changes, known)
+            yield from _changed_problems(parsed, name, changes, known)
 
 
 def _changed_problems(
-    parsed: ParsedConfig, index: int, changes: Sequence[Change], known: Iterable[str]
+    parsed: ParsedConfig, state: str, changes: Sequence[Change], known: Iterable[str]
 ) -> Iterator[Problem]:
     try:
         changed = changed_sections(parsed.sections, changes)
     except PydanticCustomError as error:
-        yield from refused_problems(error, f"states.{index}.changes")
+        yield from refused_problems(error, f"states.{state}.changes")
         return
     manufacture = parsed.sections.get("manufacture")
     if manufacture is not None and manufacture.draw == "state":
         allowed = "allowed: none with manufacture.draw: state, whose gears are others in every state; or draw: specimen"
-        yield Problem(f"states.{index}.changes", _texts(changes), allowed)
+        yield Problem(f"states.{state}.changes", _texts(changes), allowed)
     for problem in _every(parsed, {**parsed.sections, **changed}):
         if problem.path not in known:
-            path, remark = _blamed(problem.path, changes, parsed.sections)
-            yield Problem(f"states.{index}.changes{path}", f"{remark}{problem.received}", problem.allowed)
-    yield from _column_problems(parsed.sections, changed, changes, f"states.{index}.changes")
+            path, remark = _blamed(problem.path, changes)
+            yield Problem(f"states.{state}.changes{path}", f"{remark}{problem.received}", problem.allowed)
+    yield from _column_problems(parsed.sections, changed, changes, f"states.{state}.changes")
 
 
 def _every(parsed: ParsedConfig, sections: Mapping[str, Any]) -> list[Problem]:
@@ -53,22 +53,11 @@ def _every(parsed: ParsedConfig, sections: Mapping[str, Any]) -> list[Problem]:
     return [*consistency_problems(sections, {}), *physical_problems(replace(parsed, sections=sections))]
 
 
-def _blamed(path: str, changes: Sequence[Change], sections: Mapping[str, Any]) -> tuple[str, str]:
+def _blamed(path: str, changes: Sequence[Change]) -> tuple[str, str]:
     """Return the key of the change that a problem is about, and what stands before what was received."""
-    same = [one.path for one in changes if _numbered(one.path, sections) == path or one.path == path]
-    if same:
-        return f".{same[0]}", ""
+    if path in {one.path for one in changes}:
+        return f".{path}", ""
     return f".{changes[0].path}" if len(changes) == 1 else "", f"{path}: "
-
-
-def _numbered(path: str, sections: Mapping[str, Any]) -> str:
-    """Return a path with the index of a sensor in place of its name."""
-    first, _, rest = path.partition(".")
-    name, _, key = rest.partition(".")
-    for index, sensor in sections.get("sensors", {}).items():
-        if first == "sensors" and sensor.name == name:
-            return f"sensors.{index}.{key}"
-    return path
 
 
 def _column_problems(

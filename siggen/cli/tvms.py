@@ -45,8 +45,8 @@ class KeyStudy:
         typer.Option(
             "--vary",
             metavar="KEY=VALUES",
-            help="Curves of one state at values of a key, such as states.2.damage.first_height_mm=1,1.9,2.8, beside "
-            "the first state's. The state is that of the key, else the last; it grows from no other then.",
+            help="Curves of one state at values of a key, such as states.moderate.damage.first_height_mm=1,1.9,2.8, "
+            "beside the first state's. The state is that of the key, else the last; it grows from no other then.",
         ),
     ] = ""
 
@@ -79,7 +79,7 @@ def tvms(
     The curves begin one pitch before that angle. Where damage acts as geometry (dynamics.mesh.law: pairs)
     the stiffness is force over approach at rest, at a torque; then with sink and land of the damaged pair.
 
-    Example: siggen inspect tvms paper_a --vary states.2.damage.first_height_mm=1,1.9,2.8 --png heights.png
+    Example: siggen inspect tvms paper_a --vary states.moderate.damage.first_height_mm=1,1.9,2.8 --png heights.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file

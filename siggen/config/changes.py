@@ -97,7 +97,7 @@ def changed_sections(sections: Mapping[str, Any], changes: Sequence[Change]) -> 
     Parameters
     ----------
     sections : mapping
-        Valid sections of a configuration; lists as tuples or as mappings from their index.
+        Valid sections of a configuration; sensors as a tuple or by name.
     changes : sequence of Change
 
     Raises
@@ -135,14 +135,12 @@ def _replaced(value: Any, parts: Sequence[str], change: Change) -> Any:
 
 
 def _in_list(entries: Any, parts: Sequence[str], change: Change) -> Any:
-    """Return a list in which the entry of a name, or of an index, is changed."""
-    numbered = dict(entries) if isinstance(entries, Mapping) else dict(enumerate(entries))
-    names = {one.name: index for index, one in numbered.items()}
-    index = names.get(parts[0], int(parts[0]) if parts[0].isdecimal() else -1)
-    if index not in numbered or len(parts) == 1:
-        raise _refused(change, f"allowed: a key of one of {', '.join(names)}{nearest(parts[0], [*names])}")
-    numbered[index] = _replaced(numbered[index], parts[1:], change)
-    return numbered if isinstance(entries, Mapping) else tuple(numbered.values())
+    """Return sensors of which that of a name is changed."""
+    named = dict(entries) if isinstance(entries, Mapping) else {one.name: one for one in entries}
+    if parts[0] not in named or len(parts) == 1:
+        raise _refused(change, f"allowed: a key of one of {', '.join(named)}{nearest(parts[0], [*named])}")
+    named[parts[0]] = _replaced(named[parts[0]], parts[1:], change)
+    return named if isinstance(entries, Mapping) else tuple(named.values())
 
 
 def _leaf(section: Section, name: str, own: Any, change: Change) -> Any:

@@ -7,7 +7,7 @@ import json
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_serializer, model_validator
 
 from siggen.config.background import Background
 from siggen.config.changes import Change
@@ -27,6 +27,7 @@ from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
+from siggen.keys.by_name import ByName, written_by_name
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
@@ -74,6 +75,8 @@ class OperatingRange(Section):
     )
 
 
+STATES = ByName("{healthy: {}, slight: {damage: {kind: irregular, ...}}}")
+SENSORS = ByName("{lid: {place: lid}, side: {place: gear_end}}")
 OPERATING_POINTS = AllowedText("a list of at least one mapping with speed_hz and torque_nm")
 
 
@@ -111,13 +114,13 @@ class Config(Section):
     operating_points: Annotated[tuple[OperatingRange, ...], Field(min_length=1), OPERATING_POINTS] = Field(
         description="speeds and torques; ranges are drawn for each entry"
     )
-    states: Annotated[tuple[StateSection, ...], Field(min_length=1)] = Field(
-        default=(), description="conditions of health"
+    states: Annotated[tuple[StateSection, ...], Field(min_length=1), STATES] = Field(
+        default=(), description="conditions of health, in their order"
     )
     life: Life | None = Field(
         default=None, description="null: `states`; given: gearboxes run until teeth fail, and `states` has no entry"
     )
-    sensors: Annotated[tuple[SensorSection, ...], Field(min_length=1)] = Field(
+    sensors: Annotated[tuple[SensorSection, ...], Field(min_length=1), SENSORS] = Field(
         description="what measures; of kind accelerometer unless it says otherwise"
     )
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
@@ -128,6 +131,10 @@ class Config(Section):
         description="what carries the bearings with dynamics.model: casing; plates, modal or rigid",
     )
     background: Background | None = Field(default=None, description="what a healthy machine adds; null: nothing")
+
+    @field_serializer("states", "sensors")
+    def _by_name(self, sections: tuple[Section, ...]) -> dict[str, Any]:
+        return written_by_name(sections)
 
     @property
     def samples(self) -> int:

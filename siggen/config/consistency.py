@@ -20,7 +20,9 @@ from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_pro
 from siggen.config.stages import shaft_orders
 from siggen.config.states import SEVERITIES, StateSection
 from siggen.errors import Problem
+from siggen.faults.fault import Fault
 from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
+from siggen.keys.by_name import named_entries
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
@@ -119,8 +121,8 @@ def places_of(sections: Mapping[str, Any]) -> Places | None:
 
 
 def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    sensors, written = sections.get("sensors", {}), raw.get("sensors")
-    if isinstance(written, (list, tuple)) and len(written) > len(sensors):  # one may be missing that is wrong itself
+    sensors = sections.get("sensors", {})
+    if len(named_entries("sensors", raw)) > len(sensors):  # one may be missing that is wrong itself
         return
     places = places_of(sections)
     for index, sensor in sensors.items() if places is not None else ():
@@ -207,7 +209,7 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    for key in ("states", "sensors", "stages"):
+    for key in ("stages",):
         names = _raw_names(raw, key)
         for index, name in names.items():
             first = next(i for i, other in names.items() if other == name)
@@ -230,18 +232,19 @@ def _raw_name(entry: object) -> object:
 
 
 def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    states: Mapping[int, StateSection] = sections.get("states", {})
-    names = _raw_names(raw, "states")
+    states: Mapping[str, StateSection] = sections.get("states", {})
+    names = [*named_entries("states", raw)] or [*states]
     for index, state in states.items():
         if not state.faulty or state.grows_from == "none":
             continue
-        earlier = [i for i in states if i < index and states[i].faulty]
+        before = names[: names.index(index)]
+        earlier = [name for name in before if name in states and states[name].faulty]
         if state.grows_from == "previous":
-            milder = next((i for i in reversed(earlier) if states[i].damaged), None) if state.damaged else None
+            milder = next((name for name in reversed(earlier) if states[name].damaged), None) if state.damaged else None
         else:
-            milder = next((i for i, name in names.items() if name == state.grows_from), None)
-            if milder is None or milder >= index or (milder in states and milder not in earlier):
-                candidates = ["previous", "none", *(states[i].name for i in earlier)]
+            milder = state.grows_from
+            if milder not in before or (milder in states and milder not in earlier):
+                candidates = ["previous", "none", *earlier]
                 allowed = f"allowed: an earlier state with damage or changes: one of {', '.join(candidates)}"
                 yield Problem(f"states.{index}.grows_from", f"'{state.grows_from}'", allowed)
                 continue
@@ -251,13 +254,15 @@ def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[
 
 def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield labels that do not say what a state shows, by its own damage or by that of a state before it."""
-    states: Mapping[int, StateSection] = sections.get("states", {})
+    states: Mapping[str, StateSection] = sections.get("states", {})
+    shown: list[Fault] = []
     for index, state in states.items():
+        before = [*shown]
+        shown += state.damages if state.damaged else ()
         if not state.faulty or state.fault == HEALTHY:
             continue
         own = [word for section in state.damages for word in section.own_words]
         outranked = {word for section in state.damages for word in section.outranked}
-        before = (section for i in states if i < index and states[i].damaged for section in states[i].damages)
         inherited = (word for section in before for word in section.own_words)
         words = dict.fromkeys([*own, *(word for word in inherited if word not in outranked)])
         words |= {COMBINED: None} if len(words) > 1 else {}
@@ -268,7 +273,7 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
 
 def _severities(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield severities that are a slip of the pen from a usual one, or from the name of their state."""
-    states: Mapping[int, StateSection] = sections.get("states", {})
+    states: Mapping[str, StateSection] = sections.get("states", {})
     for index, state in states.items():
         usual = [*SEVERITIES, state.name]
         if state.severity in usual:

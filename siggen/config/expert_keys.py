@@ -59,6 +59,8 @@ def keys_of_presets() -> dict[str, set[str]]:
 
 def _written(value: object, raw: object) -> Iterator[tuple[str, Iterable[str]]]:
     """Yield name and written keys of a section and of those in it."""
+    if isinstance(value, tuple) and isinstance(raw, Mapping) and all(getattr(one, "key_field", "") for one in value):
+        raw = [entry for entry in raw.values() if entry is not None]
     if isinstance(value, tuple) and isinstance(raw, list):
         for item, of_item in zip(value, raw, strict=True):
             yield from _written(item, of_item)

@@ -14,6 +14,8 @@ from siggen.keys.distributions import is_written_number
 from siggen.keys.problems import received_text
 
 EXTENDS = "extends"
+OTHERS = "others"
+"""Key of a mapping that takes nothing over where it is null."""
 REPLACED = ("gears", "stages", "planetary")
 """Sections that a machine takes the place of."""
 REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
@@ -24,8 +26,9 @@ DEEPEST = 8
 def inherited(raw: Mapping[str, Any], folder: Path = Path(), source: str = "configuration") -> dict[str, Any]:
     """Return a raw configuration in which `extends` is resolved; without that key, a copy.
 
-    Mappings are merged key by key. Everything else replaces what it extends: numbers, lists, null, and mappings that
-    have a `kind` of their own or stand for a number. A `machine` takes the place of gears and of their shafts.
+    Mappings are merged key by key, states and sensors by name; one with `others: null` takes nothing over. Everything
+    else replaces what it extends: numbers, lists, null, and mappings that have a `kind` of their own or stand for a
+    number. A `machine` takes the place of gears and of their shafts.
 
     Parameters
     ----------
@@ -113,10 +116,20 @@ def _beside(folder: Path, names: Any) -> Any:
 
 
 def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `base` with the values of `own`; see `inherited` for what is merged and what is replaced."""
-    result = dict(base)
+    """Return `base` with the values of `own`; see `inherited` for what is merged and what is replaced.
+
+    A key that is new stands behind the one before it in `own`, and at the end where there is none.
+    """
+    if OTHERS in own and own[OTHERS] is None:
+        return {key: value for key, value in own.items() if key != OTHERS}
+    keys = [*base]
+    at = len(keys) - 1
+    for key in own:
+        at = keys.index(key) if key in keys else at + 1
+        keys[at:at] = [] if key in keys else [key]
+    result = {key: base.get(key) for key in keys}
     for key, value in own.items():
-        below = result.get(key)
+        below = result[key]
         both = isinstance(below, Mapping) and isinstance(value, Mapping)
         replaces = not both or "kind" in value or is_written_number(value)
         result[key] = value if replaces else merged(below, value)  # type: ignore[arg-type]

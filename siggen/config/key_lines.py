@@ -33,7 +33,7 @@ class KeyLine(NamedTuple):
 
 
 def key_line(node: yaml.Node | None, path: str) -> KeyLine | None:
-    """Return where a key such as `states.1.damage.teeth` stands; None if not even its first part is there.
+    """Return where a key such as `states.slight.damage.teeth` stands; None if not even its first part is there.
 
     A key that an anchor brings stands where it is written. A key may hold dots itself, as those of `changes` do.
     """

@@ -16,7 +16,7 @@ def life_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Ite
     if life is None:
         return
     if raw.get("states"):
-        yield Problem("states", "states beside a section life", "allowed: one of both; with life states: []")
+        yield Problem("states", "states beside a section life", "allowed: one of both; with life states: null")
     for key in ("stages", "planetary"):
         if sections.get(key):
             yield Problem("life", f"a section life with {key}", f"allowed: null, or no {key}: teeth of one pair wear")

@@ -1,4 +1,4 @@
-"""Overrides such as `states.1.damage.count=3`: single values of a configuration set from a command line."""
+"""Overrides such as `states.slight.damage.count=3`: single values of a configuration set from a command line."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 
 from siggen.config.yaml_source import yaml_value
 from siggen.errors import ConfigError, Problem
-from siggen.keys.problems import received_text
+from siggen.keys.by_name import BY_NAME, named_entries
+from siggen.keys.problems import nearest, received_text
 
 FORM = "allowed: a path and a value, such as gears.module_mm=3.5 or operating_points.0.speed_hz=25"
 
@@ -28,6 +29,7 @@ def apply_overrides(raw: Mapping[str, Any], overrides: Sequence[str]) -> dict[st
     problems = []
     for override in overrides:
         try:
+            _refuse_new_name(override, raw, changed)
             _apply(changed, override)
         except _Astray as astray:
             problems.append(Problem(f"--set {override}", astray.received, astray.allowed))
@@ -41,6 +43,17 @@ def apply_overrides(raw: Mapping[str, Any], overrides: Sequence[str]) -> dict[st
 class _Astray(Exception):  # noqa: N818 - caught a few lines above, never seen outside
     def __init__(self, received: str, allowed: str) -> None:
         self.received, self.allowed = received, allowed
+
+
+def _refuse_new_name(override: str, raw: Mapping[str, Any], changed: Mapping[str, Any]) -> None:
+    """Refuse a key of a state or sensor that the file has not: a slip would add one."""
+    section, *below = override.partition("=")[0].strip().split(".")
+    if section in BY_NAME and len(below) > 1 and named_entries(section, raw):
+        names = [*named_entries(section, changed)]
+        if below[0] not in names:
+            raise _Astray(
+                f"'{below[0]}' as a name in {section}", f"allowed: {', '.join(names)}{nearest(below[0], names)}"
+            )
 
 
 def _apply(target: dict[str, Any], override: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
 from typing import Any, get_args
@@ -16,12 +16,18 @@ from siggen.config.machine import Machine
 from siggen.config.machine_problems import machine_problems
 from siggen.config.short_form import names_of, short_form
 from siggen.errors import Problem
-from siggen.keys.problems import MISSING, MOST_PROBLEMS, missing_key, received_text, section_problems, unknown_keys
+from siggen.keys.by_name import BY_NAME, named_entries, refused_list
+from siggen.keys.problems import (
+    MISSING,
+    MOST_PROBLEMS,
+    joined,
+    missing_key,
+    received_text,
+    section_problems,
+    unknown_keys,
+)
 from siggen.keys.wording import allowed_text
 from siggen.names import PAIR, Names
-
-LISTS = ("states", "sensors")
-"""Sections whose entries are checked one by one, so that one bad entry does not hide what is wrong with the others."""
 
 MOST_ENTRIES = 5_000
 """Of a section that is a list; a file has no room for as many mappings."""
@@ -36,8 +42,8 @@ class ParsedConfig:
     config
         The configuration; None if there are problems.
     sections
-        Valid top-level values by key, with defaults for absent ones. `states` and `sensors` are mappings from the index
-        of an entry to the valid entry.
+        Valid top-level values by key, with defaults for absent ones. `states` and `sensors` are mappings from names to
+        valid entries.
     problems
         Everything that is wrong, physics not considered.
     names
@@ -72,35 +78,27 @@ def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:
     unknown = [(str(key), raw[key]) for key in raw if key not in Config.model_fields]
     problems = unknown_keys(unknown, list(Config.model_fields))
     for name in (name for name in Config.model_fields if name != "machine"):
-        value, found = (
-            _entries(name, raw[name]) if name in LISTS and _is_filled_list(raw, name) else _section(name, raw)
-        )
+        value, found = _entries(name, raw) if name in BY_NAME and name in raw else _section(name, raw)
         problems += found
         if value is not None:
-            sections[name] = dict(enumerate(value)) if name in LISTS and isinstance(value, tuple) else value
+            sections[name] = {} if value == () and name in BY_NAME else value
     problems += consistency_problems(sections, raw)
     config = None if problems else Config.model_validate(_listed(sections))
     return ParsedConfig(config, MappingProxyType(sections), tuple(problems))
 
 
 def _listed(sections: Mapping[str, Any]) -> dict[str, Any]:
-    """Return valid sections with lists in place of their numbered entries, and without lists of none."""
-    lists = {name: tuple(sections[name].values()) for name in LISTS}
+    """Return valid sections with lists in place of entries by name, and without lists of none."""
+    lists = {name: tuple(sections[name].values()) for name in BY_NAME}
     return {name: lists.get(name, value) for name, value in sections.items() if lists.get(name) != ()}
-
-
-def _is_filled_list(raw: Mapping[str, object], name: str) -> bool:
-    return isinstance(raw.get(name), (list, tuple)) and bool(raw[name])
 
 
 def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     field = Config.model_fields[name]
     if isinstance(value := raw.get(name), (list, tuple)) and len(value) > MOST_ENTRIES:
         return None, [Problem(name, f"a list of {len(value)}", f"allowed: at most {MOST_ENTRIES} entries")]
-    if name == "states" and not raw.get(name) and not raw.get("life"):
-        received = received_text(raw[name]) if name in raw else MISSING
-        allowed = f"this key is needed, or a section life in its place; allowed: {allowed_text(field)}"
-        return None, [Problem(name, received, allowed)]
+    if name == "states" and not raw.get("life"):
+        return None, [_no_states(MISSING)]
     if name not in raw:
         if field.is_required():
             return None, [missing_key(name, field)]
@@ -108,17 +106,48 @@ def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     return _validated(_adapter(name), raw[name], (name,))
 
 
-def _entries(name: str, raw: Any) -> tuple[dict[int, Any], list[Problem]]:
-    entries: dict[int, Any] = {}
+def _no_states(received: str) -> Problem:
+    allowed = allowed_text(Config.model_fields["states"])
+    return Problem("states", received, f"this key is needed, or a section life in its place; allowed: {allowed}")
+
+
+def _entries(name: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any] | None, list[Problem]]:
+    """Return entries by name, each checked by itself, so that a bad one does not hide what is wrong with the others."""
+    given, allowed = raw[name], allowed_text(Config.model_fields[name])
+    if not isinstance(given, Mapping) or len(given) > MOST_ENTRIES:
+        return None, [refused_list(name, given, allowed)]
+    items = named_entries(name, raw)
+    if not items and name == "states":
+        return None, [_no_states(received_text(given))]
+    if not items:
+        return None, [Problem(name, received_text(given), f"allowed: {allowed}")]
+    entries: dict[str, Any] = {}
     problems: list[Problem] = []
-    for index, item in enumerate(raw):
+    for key, item in items.items():
         if len(problems) >= MOST_PROBLEMS:
             break
-        entry, found = _validated(_entry_adapter(name), item, (name, index))
-        problems += found
+        if isinstance(item, Mapping) and "name" in item:
+            allowed = "allowed: no key name here, since the name stands before the entry"
+            problems.append(Problem(_below(name, key, "name"), received_text(item["name"]), allowed))
+            continue
+        named = {"name": key, **item} if isinstance(item, Mapping) else item
+        entry, found = _validated(_entry_adapter(name), named, (name, 0))
+        problems += [_of_entry(one, name, key) for one in found]
         if entry is not None:
-            entries[index] = entry
+            entries[key] = entry
     return entries, problems
+
+
+def _of_entry(problem: Problem, name: str, key: str) -> Problem:
+    """Return the problem of an entry under its name; that of the name itself stands at the entry."""
+    below = problem.path.removeprefix(f"{name}.0").removeprefix(".")
+    if below != "name":
+        return replace(problem, path=_below(name, key, below))
+    return replace(problem, path=_below(name, key), received=problem.received.replace("the text", "the name", 1))
+
+
+def _below(*parts: str) -> str:
+    return joined(*(part[:200] for part in parts))
 
 
 def _validated(adapter: TypeAdapter[Any], value: object, location: tuple[str | int, ...]) -> tuple[Any, list[Problem]]:

@@ -108,9 +108,10 @@ def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
     own |= {key: renamed_keys(own[key], own=True) for key in WITH_KEYS}
     for section, key, table in _words(names):
         own[section] = _replaced(own[section], key, table)
-    states = [
-        {**one, "changes": {names.own_path(path): to for path, to in one["changes"].items()}} for one in own["states"]
-    ]
+    states = {
+        name: {**one, "changes": {names.own_path(path): to for path, to in one["changes"].items()}}
+        for name, one in own["states"].items()
+    }
     return {**own, "states": states}
 
 
@@ -207,9 +208,9 @@ def _unknown(value: Any, path: str, key: str, table: Mapping[str, str]) -> Itera
 def _with_changes(short: dict[str, Any], names: Names) -> dict[str, Any]:
     """Return a raw configuration whose states change keys of the short form."""
     states = short.get("states")
-    if not isinstance(states, list):
+    if not isinstance(states, Mapping):
         return short
-    return {**short, "states": [_with_short_paths(state, names) for state in states]}
+    return {**short, "states": {name: _with_short_paths(state, names) for name, state in states.items()}}
 
 
 def _with_short_paths(state: Any, names: Names) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -11,6 +11,7 @@ from siggen.config.changes import Change, Changes
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.registry import COMBINED, DAMAGE, FAULT_WORDS, HEALTHY, DamageSections, default_word
+from siggen.keys.by_name import without_key_field
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -32,12 +33,14 @@ STATE_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a 
 
 def _labels_are_optional(schema: dict[str, Any]) -> None:
     """Keep the labels out of the required keys for editors: they are filled in before validation."""
+    without_key_field(schema, "name")
     schema["required"] = [key for key in schema["required"] if key not in ("fault", "severity")]
 
 
 class StateSection(Section):
     """One condition: its label, its damage, and the milder state it has grown from."""
 
+    key_field: ClassVar[str] = "name"
     model_config = ConfigDict(json_schema_extra=_labels_are_optional)
 
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from siggen.errors import Problem, counted
-from siggen.keys.wording import allowed_text, models_in, words_in
+from siggen.keys.wording import allowed_text, keys_of, models_in, words_in
 
 REFUSAL = "refusal"
 MISSING = "nothing"
@@ -95,7 +95,7 @@ def section_problems(model: type[BaseModel], errors: Sequence[ErrorDetails], bel
         elif len(found) < MOST_PROBLEMS and not _echoes(error):
             found += _translated(model, place, error)
     for place, keys in unknown.items():
-        found += unknown_keys(keys, list(_model_at(model, place).model_fields))
+        found += unknown_keys(keys, keys_of(_model_at(model, place)))
     return found
 
 

@@ -15,6 +15,9 @@ class Section(BaseModel):
     understood_kind: ClassVar[bool] = False
     """Whether its `kind` is what the same section without one is; then it counts in no identity."""
 
+    key_field: ClassVar[str] = ""
+    """The field that a file gives as the key under which the section stands, such as the name of a state."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     def identity_value(self, key: str) -> Any:

@@ -42,6 +42,11 @@ def models_in(annotation: object) -> list[type[BaseModel]]:
     return [model for argument in get_args(annotation) for model in models_in(argument)]
 
 
+def keys_of(model: type[BaseModel]) -> list[str]:
+    """Return the keys of a section as a file has them."""
+    return [name for name in model.model_fields if name != getattr(model, "key_field", "")]
+
+
 def words_in(field: FieldInfo) -> list[str]:
     """Return the words that a field may hold, as far as its type and its markers list them."""
     marked = [word for marker in field.metadata for word in getattr(marker, "words", ()) if isinstance(word, str)]
@@ -66,7 +71,7 @@ def _type_text(annotation: object, limits: str = "") -> str:
     if origin is tuple:
         return f"a list{limits}, each entry {_type_text(arguments[0])}"
     if models:
-        return f"a mapping with the keys {', '.join(models[0].model_fields)}"
+        return f"a mapping with the keys {', '.join(keys_of(models[0]))}"
     words: dict[object, str] = {
         bool: "true or false", int: "a whole number", float: "a number", str: "a text", type(None): "null"
     }  # fmt: skip

@@ -176,12 +176,10 @@ class Gearbox:
         if self._config.life is not None:
             raise refused("more", repr(state), "no states for a gearbox that lives and fails by its set")
         entry = self._entry(state)
-        canonical, number = self._config.canonical(), len(self._config.states)
-        key = f"states.{number}"
-        with saying(
-            {f"{key}.damage": f"damages of {state.name}", f"{key}.name": "State.name", key: f"state {state.name}"}
-        ):
-            config = load_config({**canonical, "states": [*canonical["states"], entry]})
+        canonical, key = self._config.canonical(), f"states.{state.name}"
+        named = {f"{key}.damage": f"damages of {state.name}", f"{key}: received the name": "State.name: received"}
+        with saying({**named, key: f"state {state.name}"}):
+            config = load_config({**canonical, "states": {**canonical["states"], state.name: entry}})
         made = replace(self, states=(*self.states, state), _config=config, _added=(*self._added, state))
         for section in made._shapes(state):
             for problem in section.place_problems(self._seat(section.damage).pair):
@@ -191,7 +189,7 @@ class Gearbox:
     def _entry(self, state: State) -> dict[str, Any]:
         """Return a state as a file writes it, without damage of the user's own kinds."""
         damage = entries(state.damages, self._seat)
-        entry: dict[str, Any] = {"name": state.name}
+        entry: dict[str, Any] = {}
         if damage:
             entry |= {"damage": damage, "sham": state.sham}
         if damage and not state.sham:

@@ -97,7 +97,7 @@ def machine(
         for one in several:
             one.setdefault(key, value)  # where rules know none: what is wrong is said of the file that this makes
     raw = {
-        "extends": "two_stage", "name": "machine", "machine": listed, "states": [{"name": "healthy"}],
+        "extends": "two_stage", "name": "machine", "machine": listed, "states": {"others": None, "healthy": {}},
         "operating_points": [{"speed_hz": speed, "torque_nm": torque}], "mesh_harmonics": 1, "fs_hz": FS_HZ, **rest,
     }  # fmt: skip
     with saying({**keys, "machine.": "", "operating_points.0.torque_nm": "rated_nm", "fs_hz": "rated_hz"}):
@@ -184,10 +184,10 @@ def _filled(listed: Mapping[str, list[dict[str, Any]]], steps: list[_Step]) -> d
             "bolts": {"positions_mm": [[size * x, size * y] for x, y in BOLTS_MM]},
         },
         "background": {"base": {"mass_kg": base}, "machines": {"density_n_per_sqrt_hz": density}},
-        "sensors": [
-            {**_SENSOR, "name": name, "axes": [axis], "position_mm": [size * x for x in place]}
+        "sensors": {"others": None} | {
+            name: {**_SENSOR, "axes": [axis], "position_mm": [size * x for x in place]}
             for name, axis, place in zip(("input", "output"), ("vertical", "horizontal"), SENSORS_MM, strict=True)
-        ],
+        },
     }  # fmt: skip
 
 
@@ -267,7 +267,7 @@ def planetary(
         for end in ("input", "output")
     }
     raw = inherited({
-        "extends": "planetary", "states": [{"name": "healthy"}], "mesh_harmonics": 1, "fs_hz": FS_HZ,
+        "extends": "planetary", "states": {"others": None, "healthy": {}}, "mesh_harmonics": 1, "fs_hz": FS_HZ,
         "gears": {
             "module_mm": module, "face_width_mm": width,
             "pinion": {"teeth": sun, "bore_radius_mm": 0.16 * module * sun},

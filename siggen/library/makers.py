@@ -84,7 +84,7 @@ def single_stage(
         rig = Rig(pair, module, width, (speed, speed), (torque, torque), pressure_angle_deg=angle)
         rig = replace(rig, accuracy_classes=covering_classes(checked_rig(rig)))
         raw = inherited(parse_yaml(rig_text(rig, "single_stage", "bench"), "single_stage"))
-        return made({**raw, "states": [{"name": "healthy"}]}, number)
+        return made({**raw, "states": {"healthy": {}}}, number)
 
 
 def made(raw: Mapping[str, Any], number: int) -> Gearbox:

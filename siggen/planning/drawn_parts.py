@@ -34,7 +34,7 @@ def has_drawn_parts(config: Config) -> bool:
     )
 
 
-def possible_states(states: Mapping[int, StateSection]) -> Iterator[dict[int, StateSection]]:
+def possible_states(states: Mapping[str, StateSection]) -> Iterator[dict[str, StateSection]]:
     """Yield the states with each gear that may be damaged, at most of its teeth: what checks look at."""
     either = any(_gear(one) == "either" for state in states.values() for one in state.damages)
     for gear in ("pinion", "gear") if either else ("pinion",):

@@ -104,7 +104,7 @@ def ring_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _sections_on(sections: Mapping[str, Any], name: str) -> dict[str, Any]:
-    states: Mapping[int, StateSection] = sections.get("states", {})
+    states: Mapping[str, StateSection] = sections.get("states", {})
     own = {index: state.model_copy(update={"damage": _own(state, name)}) for index, state in states.items()}
     return {**sections, "states": own, "stages": ()}
 

@@ -83,14 +83,14 @@ def _numbers(path: str, section: Section, words: Mapping[str, str]) -> Iterator[
         value = getattr(section, name)
         below = f"{path}.{name}" if path else name
         items = value if isinstance(value, tuple) and value and all(isinstance(item, Section) for item in value) else ()
-        if name in NOT_NUMBERS and not path:
+        if (name in NOT_NUMBERS and not path) or name == section.key_field:
             continue
         if items:
             for place, item in enumerate(items):
                 if isinstance(item, Change):
                     yield f"{below}.{item.path}", f"{item.how} {item.value}", str(field.description), False
                 else:
-                    yield from _numbers(f"{below}.{place}", item, words)
+                    yield from _numbers(f"{below}.{getattr(item, item.key_field or '', place)}", item, words)
         elif isinstance(value, Section) and not isinstance(value, DRAWN) and "kind" not in type(value).model_fields:
             yield from _numbers(below, value, words)
         else:

@@ -24,7 +24,7 @@ def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
     ----------
     sections : mapping
         Valid sections of a configuration, `gears` and `operating_points` among them; states and sensors as tuples or
-        as mappings from their index.
+        by name.
     pair : Pair
     """
     gears: Gears = sections["gears"]

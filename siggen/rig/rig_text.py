@@ -142,17 +142,18 @@ def _states(rig: Rig) -> str:
     names = NAMES[rig.severities] if rig.severities in NAMES else [f"size_{k + 1}" for k in range(rig.severities)]
     lines = [
         f"states:                       # {rig.damage} on one tooth of the pinion; sizes grow with the module",
-        "  - name: healthy",
-        "  - name: healthy_again       # the same gearbox measured a second time: what a paired comparison starts from",
-        f"  - name: {names[0]}",
+        "  others: null                # none of the preset's",
+        "  healthy: {}",
+        "  healthy_again: {}           # the same gearbox measured a second time: what a paired comparison starts from",
+        f"  {names[0]}:",
         *(f"    {line}" for line in ("damage: &damage", *first, *(f"  {key}: {one}" for key, one in size(share[0])))),
     ]
     for name, part in zip(names[1:], share[1:], strict=True):
         own = ", ".join(f"{key}: {one}" for key, one in size(part))
-        lines += [f"  - name: {name}", f"    damage: {{<<: *damage, {own}}}"]
+        lines += [f"  {name}: {{damage: {{<<: *damage, {own}}}}}"]
     own = ", ".join(f"{key}: {one}" for key, one in size(0.5))
     lines += [
-        "  - name: sham                # its damage passes everywhere, with nothing removed: what finds it is a leak",
+        "  sham:                       # its damage passes everywhere, with nothing removed: what finds it is a leak",
         "    sham: true",
         f"    damage: {{<<: *damage, {own}}}",
     ]
@@ -218,6 +219,7 @@ background:                   # {ASSUMED}
 def _sensors(rig: Rig) -> str:
     lines = [
         "sensors:                      # on the housing, about 15 mm around the middle of its plates",
+        "  others: null",
         *(_sensor(i) for i in range(rig.sensors)),
     ]
     return "\n".join(lines) + "\n"
@@ -225,13 +227,12 @@ def _sensors(rig: Rig) -> str:
 
 def _sensor(i: int) -> str:
     place, axis = PLACES[i % len(PLACES)]
-    own = f"""name: sensor_{i + 1}
-    place: {place}
+    own = f"""place: {place}
     axes: [{axis}]"""
     if i:
-        return f"  - <<: *sensor\n    {own}"
+        return f"  sensor_{i + 1}:\n    <<: *sensor\n    {own}"
     return f"""\
-  - &sensor
+  sensor_{i + 1}: &sensor
     {own}
     gain: {{normal: [1.0, 0.05], within: [0.9, 1.1]}}
     noise: {{floor_m_s2: {{log: [0.003, 0.01]}}}}

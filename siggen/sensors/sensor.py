@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Self, get_args
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.errors import Problem, counted
+from siggen.keys.by_name import without_key_field
 from siggen.keys.distributions import DRAWN
 from siggen.keys.number import Each, Number, Within, at, bounds
 from siggen.keys.problems import BRANCHES, refusal
@@ -77,6 +78,9 @@ class SensorBase(Section):
 
     plausible: ClassVar[tuple[float, float, str]] = (0.0, float("inf"), "")
     """Range that nobody wonders about, and what to ask beyond it."""
+
+    key_field: ClassVar[str] = "name"
+    model_config = ConfigDict(json_schema_extra=lambda schema: without_key_field(schema, "name"))
 
     kind: str
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,199}$"), SENSOR_NAME] = Field(

@@ -69,24 +69,22 @@ def with_measured_responses(raw: Mapping[str, Any], folder: Path) -> tuple[Mappi
     folder : Path from which the paths of the files count
     """
     sensors = raw.get("sensors")
-    if not isinstance(sensors, (list, tuple)):
+    if not isinstance(sensors, Mapping):
         return raw, []
     problems: list[Problem] = []
-    filled = []
-    for index, sensor in enumerate(sensors):
+    filled = dict(sensors)
+    for name, sensor in sensors.items():
         try:
-            filled.append(_filled(sensor, folder))
+            filled[name] = _filled(str(name), sensor, folder)
         except ResponseRefusal as refused:
-            problems.append(Problem(f"sensors.{index}.path.file", refused.received, refused.allowed))
-            filled.append(sensor)
+            problems.append(Problem(f"sensors.{name}.path.file", refused.received, refused.allowed))
     return {**raw, "sensors": filled}, problems
 
 
-def _filled(sensor: Any, folder: Path) -> Any:
+def _filled(name: str, sensor: Any, folder: Path) -> Any:
     path = sensor.get("path") if isinstance(sensor, Mapping) else None
     if not isinstance(path, Mapping) or path.get("kind", "measured") != "measured":
         return sensor
-    name = str(sensor.get("name", ""))
     if path.get("response") is not None:
         return sensor
     read = _family if isinstance(path.get("file"), (list, tuple)) else _read

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.keys.problems import nearest
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
 
 
@@ -22,13 +23,13 @@ def varied(text: str, states: Sequence[str]) -> Iterator[tuple[str, list[str], i
     key, _, listed = text.partition("=")
     values = [value.strip() for value in listed.split(",") if value.strip()]
     if not key or len(values) < 2:
-        allowed = "KEY=VALUES with at least two values, such as states.2.damage.first_height_mm=1,1.9,2.8"
+        allowed = "KEY=VALUES with at least two values, such as states.moderate.damage.first_height_mm=1,1.9,2.8"
         raise UsageError(f"--vary: received '{text}'; allowed: {allowed}")
-    own = re.match(r"states\.(\d+)\.", key)
-    state = int(own[1]) if own else len(states) - 1
-    if state >= len(states):
-        raise UsageError(f"--vary: received state {state}; allowed: 0 to {len(states) - 1} ({', '.join(states)})")
-    alone = [f"states.{state}.grows_from=none"] if own else []
+    own = re.match(r"states\.([^.]+)\.", key)
+    name = own[1] if own else states[-1]
+    if name not in states:
+        raise UsageError(f"--vary: received state '{name}'; allowed: {', '.join(states)}{nearest(name, states)}")
+    state, alone = states.index(name), [f"states.{name}.grows_from=none"] if own else []
     for value in values:
         yield f"{key}={value}", [*alone, f"{key}={value}"], state
 

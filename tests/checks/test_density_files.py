@@ -12,14 +12,14 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.errors import ConfigError
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 
 
 def loaded(folder: Path, table: dict[str, object]) -> Config:
-    raw = minimal(sensors=[{**PLAIN, "noise_spectrum": table}], duration_s=1.0)
+    raw = minimal(sensors=by_name([{**PLAIN, "noise_spectrum": table}]), duration_s=1.0)
     (folder / "set.yaml").write_text(yaml.safe_dump(raw))
     return load_config(folder / "set.yaml")
 
@@ -41,8 +41,8 @@ def test_a_file_is_its_numbers(tmp_path: Path) -> None:
 def test_a_sensor_shows_the_density_of_its_table(tmp_path: Path) -> None:
     table = {"frequency_hz": [100.0, 10_000.0], "density": [10.0, 0.1]}
     raw = {"duration_s": 1.0, "dynamics__model": "8dof"}
-    noisy = load_config(minimal(sensors=[{**PLAIN, "noise_spectrum": {**table, "factor": 2.0}}], **raw))
-    clean = load_config(minimal(sensors=[PLAIN], **raw))
+    noisy = load_config(minimal(sensors=by_name([{**PLAIN, "noise_spectrum": {**table, "factor": 2.0}}]), **raw))
+    clean = load_config(minimal(sensors=by_name([PLAIN]), **raw))
     found, without = simulate(noisy, [0])[0], simulate(clean, [0])[0]
     assert isinstance(found, SimulatedRecord)
     assert isinstance(without, SimulatedRecord)
@@ -56,15 +56,15 @@ def test_a_sensor_shows_the_density_of_its_table(tmp_path: Path) -> None:
 
 
 def test_files_that_cannot_be_used_are_named(tmp_path: Path) -> None:
-    assert set(problems(tmp_path, {"file": "none.csv"})) == {"sensors.0.noise_spectrum.file"}
+    assert set(problems(tmp_path, {"file": "none.csv"})) == {"sensors.bearing.noise_spectrum.file"}
     (tmp_path / "other.csv").write_text("hz,density\n10,1\n20,1\n")
-    assert "columns are missing" in problems(tmp_path, {"file": "other.csv"})["sensors.0.noise_spectrum.file"]
+    assert "columns are missing" in problems(tmp_path, {"file": "other.csv"})["sensors.bearing.noise_spectrum.file"]
     (tmp_path / "short.csv").write_text("frequency_hz,density\n10,1\n")
-    assert "1 rows" in problems(tmp_path, {"file": "short.csv"})["sensors.0.noise_spectrum.file"]
+    assert "1 rows" in problems(tmp_path, {"file": "short.csv"})["sensors.bearing.noise_spectrum.file"]
 
 
 def test_knots_that_fall_or_do_not_match_are_refused(tmp_path: Path) -> None:
     falling = problems(tmp_path, {"frequency_hz": [20.0, 10.0], "density": [1.0, 1.0]})
-    assert "sensors.0.noise_spectrum.frequency_hz" in falling
+    assert "sensors.bearing.noise_spectrum.frequency_hz" in falling
     fewer = problems(tmp_path, {"frequency_hz": [10.0, 20.0, 30.0], "density": [1.0, 1.0]})
-    assert fewer["sensors.0.noise_spectrum.density"] == "3 frequencies, 2 densities"
+    assert fewer["sensors.bearing.noise_spectrum.density"] == "3 frequencies, 2 densities"

@@ -9,9 +9,9 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
 from siggen.gears.contact.edge_law import edge_terms
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 
-PITS = minimal()["states"][1]  # type: ignore[index]
+PITS = {"name": "slight", **minimal()["states"]["slight"]}
 
 
 def spalls(radius: object) -> list[dict[str, Any]]:
@@ -22,13 +22,13 @@ def spalls(radius: object) -> list[dict[str, Any]]:
 def test_edges_rounder_than_a_seventh_of_the_relative_radius_are_refused() -> None:
     drawn = [0.1, 0.99]
     with pytest.raises(ConfigError) as refused:
-        load_config(minimal(states=spalls(drawn), dynamics__mesh__pit_edge_radius_mm=0.99))
+        load_config(minimal(states=by_name(spalls(drawn)), dynamics__mesh__pit_edge_radius_mm=0.99))
     (found,) = refused.value.problems  # pit_edge_radius_mm is of no damage here
-    assert found.path == "states.1.damage.edge_radius_mm"
+    assert found.path == "states.slight.damage.edge_radius_mm"
     assert found.allowed.startswith("allowed: at most 0.95")
     with pytest.raises(ConfigError, match=r"dynamics.mesh.pit_edge_radius_mm: received 0.99; allowed: at most 0.95"):
-        load_config(minimal(states=[{"name": "healthy"}, PITS], dynamics__mesh__pit_edge_radius_mm=0.99))
-    load_config(minimal(states=spalls(0.9)))
+        load_config(minimal(states=by_name([{"name": "healthy"}, PITS]), dynamics__mesh__pit_edge_radius_mm=0.99))
+    load_config(minimal(states=by_name(spalls(0.9))))
 
 
 def test_beyond_that_share_the_sink_of_the_law_falls_below_none_at_the_edge() -> None:

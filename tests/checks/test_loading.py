@@ -40,11 +40,11 @@ def refusals(**changes) -> dict[str, tuple[str, str]]:
 
 
 def damage(**keys):
-    return {"states__1__damage": {**minimal()["states"][1]["damage"], **keys}}
+    return {"states__slight__damage": {**minimal()["states"]["slight"]["damage"], **keys}}
 
 
 def pits(*listed: dict, **keys):
-    return {"states__1__damage": {"kind": "list", "pits": [{**PIT, **pit} for pit in listed], **keys}}
+    return {"states__slight__damage": {"kind": "list", "pits": [{**PIT, **pit} for pit in listed], **keys}}
 
 
 # Lengths for 18/47 teeth of 3 mm at 20 degrees: root radius of the pinion 27 - 3.75 = 23.25 mm, centre distance
@@ -66,20 +66,25 @@ IMPOSSIBLE = [
         "from the start of the involute",
     ),
     ({"gears__centre_distance_mm": 90}, "gears.centre_distance_mm", "90 mm", "at least 97.5 mm"),
-    (damage(first_height_mm=30), "states.1.damage.first_height_mm", "30 mm", "4.74319 mm"),
-    (damage(first_height_mm=uniform(1, 6)), "states.1.damage.first_height_mm", "6 mm", "4.74319 mm"),
-    (damage(layers=12), "states.1.damage.first_height_mm", "row 12 of 12: height 6.05", "involute flank"),
-    (damage(pits_per_layer=30), "states.1.damage.spacing_face_mm", "face -4.5 mm", "0 to 20 mm"),
-    (damage(pits_per_layer=1, face_centre_mm=21), "states.1.damage.face_centre_mm", "21 mm", "0 to 20 mm"),
-    (damage(depth_mm=3), "states.1.damage.depth_mm", "3 mm", "half tooth thickness"),
-    (damage(depth_mm=uniform(0.1, 3)), "states.1.damage.depth_mm", "3 mm", "half tooth thickness"),
-    (damage(pits_per_layer=20, semi_axis_face_mm=1) | LINEAR, "states.1.damage", "whole contact length", "20 mm"),
-    (pits({"height_mm": 6}), "states.1.damage.pits.0.height_mm", "6 mm", "4.74319 mm"),
-    (pits({}, {"face_mm": 20.5}), "states.1.damage.pits.1.face_mm", "20.5 mm", "0 to 20 mm"),
-    (pits({"depth_mm": 2.5}), "states.1.damage.pits.0.depth_mm", "2.5 mm", "half tooth thickness"),
-    (pits({"semi_axis_face_mm": 11}) | LINEAR, "states.1.damage", "whole contact length", "20 mm"),
-    ({"states__1__damage": {**CLUSTER, "centre_height_mm": 5}}, "states.1.damage.centre_height_mm", "5 mm", "flank"),
-    ({"states__1__damage": {**CLUSTER, "depth_mm": 1.5}}, "states.1.damage.depth_mm", "1.5 mm", "half tooth"),
+    (damage(first_height_mm=30), "states.slight.damage.first_height_mm", "30 mm", "4.74319 mm"),
+    (damage(first_height_mm=uniform(1, 6)), "states.slight.damage.first_height_mm", "6 mm", "4.74319 mm"),
+    (damage(layers=12), "states.slight.damage.first_height_mm", "row 12 of 12: height 6.05", "involute flank"),
+    (damage(pits_per_layer=30), "states.slight.damage.spacing_face_mm", "face -4.5 mm", "0 to 20 mm"),
+    (damage(pits_per_layer=1, face_centre_mm=21), "states.slight.damage.face_centre_mm", "21 mm", "0 to 20 mm"),
+    (damage(depth_mm=3), "states.slight.damage.depth_mm", "3 mm", "half tooth thickness"),
+    (damage(depth_mm=uniform(0.1, 3)), "states.slight.damage.depth_mm", "3 mm", "half tooth thickness"),
+    (damage(pits_per_layer=20, semi_axis_face_mm=1) | LINEAR, "states.slight.damage", "whole contact length", "20 mm"),
+    (pits({"height_mm": 6}), "states.slight.damage.pits.0.height_mm", "6 mm", "4.74319 mm"),
+    (pits({}, {"face_mm": 20.5}), "states.slight.damage.pits.1.face_mm", "20.5 mm", "0 to 20 mm"),
+    (pits({"depth_mm": 2.5}), "states.slight.damage.pits.0.depth_mm", "2.5 mm", "half tooth thickness"),
+    (pits({"semi_axis_face_mm": 11}) | LINEAR, "states.slight.damage", "whole contact length", "20 mm"),
+    (
+        {"states__slight__damage": {**CLUSTER, "centre_height_mm": 5}},
+        "states.slight.damage.centre_height_mm",
+        "5 mm",
+        "flank",
+    ),
+    ({"states__slight__damage": {**CLUSTER, "depth_mm": 1.5}}, "states.slight.damage.depth_mm", "1.5 mm", "half tooth"),
 ]
 
 
@@ -110,7 +115,7 @@ def test_lengths_are_given_in_the_units_of_the_file(changes):
         damage(pits_per_layer=20, spacing_face_mm=1.0),
         damage(first_height_mm=4.7),  # cut by the tip
         pits({"height_mm": 0.5}, {"gear": "gear", "tooth": 46, "height_mm": "pitch"}),
-        {"states__1__damage": CLUSTER},
+        {"states__slight__damage": CLUSTER},
     ],
     ids=str,
 )
@@ -119,13 +124,13 @@ def test_what_is_only_unusual_is_accepted(changes):
 
 
 def test_physical_problems_are_named_beside_mistakes_in_other_sections():
-    found = refusals(seed="x", gears__pinion__bore_radius_mm=25, states__0__name="X Y", sensors__0__bits=99)
-    assert sorted(found) == ["gears.pinion.bore_radius_mm", "seed", "sensors.0.bits", "states.0.name"]
+    found = refusals(seed="x", gears__pinion__bore_radius_mm=25, states__healthy__name="X Y", sensors__bearing__bits=99)
+    assert sorted(found) == ["gears.pinion.bore_radius_mm", "seed", "sensors.bearing.bits", "states.healthy.name"]
 
 
 def test_damage_is_checked_where_another_state_is_wrong():
-    found = refusals(states__0__name="X Y", **damage(depth_mm=3))
-    assert sorted(found) == ["states.0.name", "states.1.damage.depth_mm"]
+    found = refusals(states__healthy__name="X Y", **damage(depth_mm=3))
+    assert sorted(found) == ["states.healthy.name", "states.slight.damage.depth_mm"]
 
 
 def test_heights_are_read_as_the_configuration_says():

@@ -72,7 +72,7 @@ def test_idealised_sets_say_what_they_lack() -> None:
 
 
 def test_pink_noise_alone_is_noise() -> None:
-    pink = "sensors.0.pink_noise={density_m_s2_per_sqrt_hz: 0.001}"
+    pink = "sensors.bearing.pink_noise={density_m_s2_per_sqrt_hz: 0.001}"
     assert "no noise at all" not in "\n".join(implausible(load_config("tests/configs/ideal.yaml", [pink])))
 
 
@@ -83,11 +83,11 @@ def test_one_gear_pair_cannot_be_split_by_pairs_and_all_can() -> None:
 
 def test_only_sensors_of_which_nothing_is_drawn_are_called_identical() -> None:
     def said(*sensors: str) -> bool:
-        silent = [f"sensors=[{', '.join(sensors)}]", "background=null"]
+        silent = [f"sensors={{{', '.join(sensors)}}}", "background=null"]
         return "identical, bit by bit" in "\n".join(implausible(load_config("tests/configs/ideal.yaml", silent)))
 
-    accelerometers = "{{name: one{0}}}, {{name: two{0}}}"
+    accelerometers = "one: {{bits: 16{0}}}, two: {{bits: 16{0}}}"
     assert said(accelerometers.format(""))
     assert not said(accelerometers.format(", gain: [0.9, 1.1]"))
     # each disc has marks and a seat of its own
-    assert not said("{kind: encoder, name: one, place: pinion}", "{kind: encoder, name: two, place: pinion}")
+    assert not said("one: {kind: encoder, place: pinion}", "two: {kind: encoder, place: pinion}")

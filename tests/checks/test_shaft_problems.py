@@ -74,7 +74,7 @@ def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
     uneven = with_shafts(gear_position=0.42, bearing_span_mm=120.0)
     smooth = {**uneven["dynamics"], "friction": {"model": "off"}}
     gears = {**uneven["gears"], "helix_deg": helix_deg}
-    healthy = {"gears": gears, "dynamics": smooth, "states": [{"name": "healthy"}]}
+    healthy = {"gears": gears, "dynamics": smooth, "states": {"healthy": {}}}
     config = load_config(uneven | healthy)
     config = load_config(config.canonical() | {"operating_points": [{"speed_hz": 20.0, "torque_nm": 45.0}]})
     specimen = draw_specimen(config, 0)

@@ -15,6 +15,7 @@ from siggen.errors import ConfigError, Problem
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.staged_structure import axis_places_m
 from siggen.specimen.structure import structure
+from tests.config.minimal import by_name
 from tests.config.staged import SLOW, staged
 
 HEALTHY = [{"name": "healthy"}]
@@ -24,7 +25,7 @@ EQUAL = {**SLOW["gears"], **THIN, "module_mm": 2.5}
 
 
 def one_more(**changes: Any) -> dict[str, Any]:
-    return staged(stages=[{**SLOW, **changes}], states=HEALTHY)
+    return staged(stages=[{**SLOW, **changes}], states=by_name(HEALTHY))
 
 
 def told(raw: dict[str, Any]) -> Problem:
@@ -95,7 +96,7 @@ def test_a_name_that_means_something_else_is_refused_with_the_reason(name: str, 
 def test_two_stages_that_share_a_column_are_refused_and_the_line_is_told(tmp_path: Path) -> None:
     stages = [{**SLOW, "name": "mesh_a"}, {**SLOW, "name": "a_shaft", "gears": EQUAL}]
     file = tmp_path / "two.yaml"
-    file.write_text(yaml.safe_dump(staged(stages=stages, states=HEALTHY), sort_keys=False), encoding="utf-8")
+    file.write_text(yaml.safe_dump(staged(stages=stages, states=by_name(HEALTHY)), sort_keys=False), encoding="utf-8")
     line = [i for i, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1) if "name: a_shaft" in text]
     with pytest.raises(ConfigError) as refused:
         load_config(file)

@@ -7,13 +7,13 @@ import pytest
 from siggen.checks.damage_notes import state_notes
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 
 CHANGED = {"name": "changed", "severity": "moderate", "changes": {"dynamics.backlash_um": {"add": 40}}}
 
 
 def notes(fault: str) -> tuple[str, ...]:
-    return state_notes(load_config(minimal(states=[{"name": "healthy"}, {**CHANGED, "fault": fault}])))
+    return state_notes(load_config(minimal(states=by_name([{"name": "healthy"}, {**CHANGED, "fault": fault}]))))
 
 
 def test_a_slip_is_pointed_out_and_a_word_of_ones_own_is_not() -> None:
@@ -23,9 +23,9 @@ def test_a_slip_is_pointed_out_and_a_word_of_ones_own_is_not() -> None:
 
 
 def test_changes_alone_are_no_damage_and_need_a_word() -> None:
-    with pytest.raises(ConfigError, match=r"states\.1\.fault: .*pitting needs kind"):
+    with pytest.raises(ConfigError, match=r"states\.changed\.fault: .*pitting needs kind"):
         notes("pitting")
-    with pytest.raises(ConfigError, match=r"states\.1\.fault: received nothing"):
-        load_config(minimal(states=[{"name": "healthy"}, CHANGED]))
-    with pytest.raises(ConfigError, match=r"states\.1\.fault: received healthy, with changes"):
+    with pytest.raises(ConfigError, match=r"states\.changed\.fault: received nothing"):
+        load_config(minimal(states=by_name([{"name": "healthy"}, CHANGED])))
+    with pytest.raises(ConfigError, match=r"states\.changed\.fault: received healthy, with changes"):
         notes("healthy")

@@ -8,7 +8,7 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 
 DAMAGED = {"name": "severe", "damage": {"kind": "spall", "face_length_mm": 8, "profile_length_mm": 1, "depth_mm": 0.3}}
 
@@ -16,13 +16,13 @@ DAMAGED = {"name": "severe", "damage": {"kind": "spall", "face_length_mm": 8, "p
 def refused(changes: dict[str, Any], **more: Any) -> str:
     changed = {"name": "changed", "fault": "own", "severity": "moderate", "changes": changes}
     with pytest.raises(ConfigError) as found:
-        load_config(minimal(states=[{"name": "healthy"}, DAMAGED, changed]) | more)
+        load_config(minimal(states=by_name([{"name": "healthy"}, DAMAGED, changed])) | more)
     return str(found.value)
 
 
 def test_physics_is_checked_for_the_changed_gearbox() -> None:
     said = refused({"dynamics.mesh.pit_edge_radius_mm": {"times": 10}})
-    assert "states.2.changes.dynamics.mesh.pit_edge_radius_mm: received 1" in said
+    assert "states.changed.changes.dynamics.mesh.pit_edge_radius_mm: received 1" in said
     assert "a seventh of the flanks' relative radius" in said
 
 
@@ -34,11 +34,11 @@ def test_what_grows_is_checked_with_all_that_it_holds() -> None:
         "changes": {"dynamics.mesh.pit_edge_radius_mm": 0.5},
     }
     second = {**first, "name": "second", "grows_from": "first", "changes": {"dynamics.backlash_um": {"add": -90}}}
-    with pytest.raises(ConfigError, match=r"states\.3\.changes\.dynamics\.backlash_um: received -10"):
-        load_config(minimal(states=[{"name": "healthy"}, DAMAGED, first, second]))
+    with pytest.raises(ConfigError, match=r"states\.second\.changes\.dynamics\.backlash_um: received -10"):
+        load_config(minimal(states=by_name([{"name": "healthy"}, DAMAGED, first, second])))
 
 
 def test_gears_that_are_drawn_for_each_state_cannot_be_the_healthy_ones() -> None:
     said = refused({"dynamics.backlash_um": 90}, manufacture={"accuracy_class": 5, "draw": "state"})
-    assert "states.2.changes: " in said
+    assert "states.changed.changes: " in said
     assert "draw: specimen" in said

@@ -68,7 +68,7 @@ def test_damage_is_drawn_to_scale() -> None:
 
 
 def test_a_picture_with_many_flanks_says_what_it_leaves_out() -> None:
-    views = flank_views(config(states__1__damage__teeth=MOST_FLANKS + 2))
+    views = flank_views(config(states__slight__damage__teeth=MOST_FLANKS + 2))
     figure = flank_figure(views)
     assert f"{MOST_FLANKS} of {MOST_FLANKS + 2}" in figure.get_suptitle()
 

@@ -17,7 +17,7 @@ runner = CliRunner()
 
 def healthy_set(folder: Path) -> Path:
     content = yaml.safe_load(Path("tests/configs/ideal.yaml").read_text())
-    content["states"], content["specimens"] = [{"name": "healthy"}], 1
+    content["states"], content["specimens"] = {"healthy": {}}, 1
     content["splits"] = {"train": 20, "validation": 0, "test": 0}
     content["mesh_harmonics"] = 8
     path = folder / "helical.yaml"
@@ -48,7 +48,7 @@ def test_what_helical_teeth_cannot_do_yet_is_refused_by_its_path() -> None:
     result = runner.invoke(app, ["inspect", "tvms", "confusers", "--set", "gears.helix_deg=15", "--out", "never.csv"])
     assert result.exit_code != 0
     told = " ".join(f"{result.output} {result.exception}".split())
-    assert "states.4.damage.kind: received 'crack'" in told
+    assert "states.crack.damage.kind: received 'crack'" in told
 
 
 def test_only_spur_teeth_enter_a_spall_along_a_whole_line() -> None:

@@ -15,6 +15,7 @@ from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
 from tests.cli.test_stages import rows, run
+from tests.config.minimal import by_name
 from tests.config.planets import CARRIER_HZ, SPALL, planets
 
 TURNS = 3
@@ -23,7 +24,7 @@ LID = {"name": "lid", "place": "casing", "position_mm": [70.0, 90.0], "axes": ["
 HOUSED = {
     "dynamics": {**planets()["dynamics"], "model": "casing"},
     "housing": {"kind": "rigid", "mass_kg": 40.0},
-    "sensors": [LID],
+    "sensors": by_name([LID]),
 }
 MODES = "frequency_hz,damping_ratio,ring_turning_per_sqrt_kg_m,lid_vertical_per_sqrt_kg\n450,0.03,1.5,0.1\n"
 
@@ -133,7 +134,9 @@ def test_what_knows_no_carrier_says_so(made: Path) -> None:
 
 def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:
     healthy = [{"name": "healthy"}]
-    made = generated(tmp_path, states=healthy, planetary={"ring_teeth": 77, "pin_error_um": 20.0}, duration_s=0.5)
+    made = generated(
+        tmp_path, states=by_name(healthy), planetary={"ring_teeth": 77, "pin_error_um": 20.0}, duration_s=0.5
+    )
     (record,) = rows(made, "data")
     assert share_off(power(record), PLANETS * TURNS) > 1e-3  # ten times what a healthy set may have
     assert np.std(record["pin_errors_um"]) > 1.0
@@ -149,31 +152,31 @@ def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:
         ({"stages": [{"name": "slow", "gears": planets()["gears"]}]}, "stages", "none"),
         ({"background": {"second_stage": {"order": 20.0}}}, "background.second_stage", "auxiliary_drive"),
         ({"background": {"base": {}}}, "background.base", "dynamics.model: casing"),
-        ({**HOUSED, "sensors": [{"name": "b", "place": "lid"}]}, "sensors.0.place", "casing, ring"),
-        ({**HOUSED, "sensors": [{"name": "b", "place": "casing"}]}, "sensors.0.position_mm", "centre of gravity"),
+        ({**HOUSED, "sensors": {"b": {"place": "lid"}}}, "sensors.b.place", "casing, ring"),
+        ({**HOUSED, "sensors": {"b": {"place": "casing"}}}, "sensors.b.position_mm", "centre of gravity"),
         ({**HOUSED, "housing": {"kind": "modal", "modes": MODES}}, "housing.modes", "for the bearing forces"),
         ({"operating_points": [{"speed_hz": 20.0, "torque_nm": 0.0}]}, "operating_points.0.torque_nm", "above 0"),
-        ({"sensors": [{"name": "b", "place": "pinion_bearing"}]}, "sensors.0.place", "ring"),
-        ({"planetary": None}, "states.1.damage.gear", "a section planetary"),
+        ({"sensors": {"b": {"place": "pinion_bearing"}}}, "sensors.b.place", "ring"),
+        ({"planetary": None}, "states.sun.damage.gear", "a section planetary"),
         (
-            {"states": [{"name": "severe", "damage": {"kind": "chip", "gear": "sun", "height_mm": 1.0}}]},
-            "states.0.damage.kind", "pits, spalls and cracks",
+            {"states": {"severe": {"damage": {"kind": "chip", "gear": "sun", "height_mm": 1.0}}}},
+            "states.severe.damage.kind", "pits, spalls and cracks",
         ),
         (
-            {"states": [{"name": "severe", "damage": {"kind": "crack", "gear": "ring", "depth_share": 0.2}}]},
-            "states.0.damage.kind", "pits and spalls of a ring",
+            {"states": {"severe": {"damage": {"kind": "crack", "gear": "ring", "depth_share": 0.2}}}},
+            "states.severe.damage.kind", "pits and spalls of a ring",
         ),
         (
-            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "ring", "centre_height_mm": 9.0}}]},
-            "states.0.damage.centre_height_mm", "flank",
+            {"states": {"severe": {"damage": {**SPALL, "gear": "ring", "centre_height_mm": 9.0}}}},
+            "states.severe.damage.centre_height_mm", "flank",
         ),
         (
-            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "ring", "teeth": [77]}}]},
-            "states.0.damage.teeth", "the ring has 77 teeth",
+            {"states": {"severe": {"damage": {**SPALL, "gear": "ring", "teeth": [77]}}}},
+            "states.severe.damage.teeth", "the ring has 77 teeth",
         ),
         (
-            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "planet", "teeth": [26]}}]},
-            "states.0.damage.teeth", "the planet has 26 teeth",
+            {"states": {"severe": {"damage": {**SPALL, "gear": "planet", "teeth": [26]}}}},
+            "states.severe.damage.teeth", "the planet has 26 teeth",
         ),
     ],
 )  # fmt: skip
@@ -203,7 +206,7 @@ def test_columns_of_a_set_are_read_from_plain_parquet(made: Path) -> None:
 
 def test_a_healthy_set_in_a_housing_keeps_the_closed_rule_of_orders(tmp_path: Path) -> None:
     """What the housing passes on turns with the planets, and equal planets pass after each other."""
-    (record,) = rows(generated(tmp_path, **HOUSED, states=[{"name": "healthy"}]), "data")
+    (record,) = rows(generated(tmp_path, **HOUSED, states={"healthy": {}}), "data")
     found = power(record, "accel_lid_vertical_m_s2")
     assert share_off(found, PLANETS * TURNS) < 1e-4  # -40 dB
     assert found.sum() > 0.0
@@ -232,9 +235,9 @@ def test_a_transfer_that_is_alike_at_all_angles_hears_no_carrier(
     changes = {
         **HOUSED,
         "housing": {"kind": "modal", "modes": modal(**modes)},
-        "sensors": [{"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None}],
+        "sensors": {"lid": {"place": "casing", "axes": ["vertical"], "bits": None}},
         "planetary": {"ring_teeth": 77, "pin_error_um": 20.0},
-        "states": [{"name": "healthy"}],
+        "states": {"healthy": {}},
     }
     (record,) = rows(generated(tmp_path, **changes), "data")
     found = power(record, "accel_lid_vertical_m_s2")
@@ -248,7 +251,9 @@ def test_a_set_with_housing_and_background_is_generated_verified_and_names_its_s
         "base": {}, "rubbing": {"bursts": {}}, "bearings": {}, "machines": {}, "shafts": {},
         "auxiliary_drive": {"order": 4.7},
     }  # fmt: skip
-    made = generated(tmp_path, **HOUSED, background=background, states=planets()["states"][:2], specimens=2)
+    made = generated(
+        tmp_path, **HOUSED, background=background, states=dict([*planets()["states"].items()][:2]), specimens=2
+    )
     told = run("verify", str(made))
     assert told.returncode == 0, told.stdout + told.stderr
     found = rows(made, "data")

@@ -17,6 +17,7 @@ from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
 from tests.command import Ended, command
 from tests.config.mill import mill
+from tests.config.minimal import by_name
 from tests.config.staged import SLOW, SPALL, staged
 
 SENSORS = [
@@ -40,7 +41,7 @@ def written(folder: Path, **changes: Any) -> str:
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("stages")
-    file = written(folder, specimens=1, fs_hz=12_800.0, duration_s=0.1, sensors=SENSORS)
+    file = written(folder, specimens=1, fs_hz=12_800.0, duration_s=0.1, sensors=by_name(SENSORS))
     done = run("generate", file, "--out", str(folder / "set"), "--engine", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder / "set"
@@ -107,12 +108,12 @@ IRREGULAR = [
         ({"stages": [SLOW, SLOW]}, "stages.1.name", "does not have already"),
         ({"stages": [SLOW, {**SLOW, "name": "gear"}]}, "stages.1.name", "another name than pinion, gear, either"),
         (
-            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "fast.pinion"}}]},
-            "states.0.damage.gear", "slow.gear",
+            {"states": {"severe": {"damage": {**SPALL, "gear": "fast.pinion"}}}},
+            "states.severe.damage.gear", "slow.gear",
         ),
         (
-            {"states": [{"name": "severe", "damage": {**SPALL, "gear": "slow.pinion", "teeth": [17]}}]},
-            "states.0.damage.teeth", "slow.pinion has 17 teeth",
+            {"states": {"severe": {"damage": {**SPALL, "gear": "slow.pinion", "teeth": [17]}}}},
+            "states.severe.damage.teeth", "slow.pinion has 17 teeth",
         ),
         ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -1.0}]}, "operating_points.0.torque_nm", "above 0"),
         ({"stages": [{**SLOW, "direction_deg": 270.0}]}, "stages.0.direction_deg", "from -180 to 180"),
@@ -121,7 +122,7 @@ IRREGULAR = [
             "stages.0.gears.pinion.bore_radius_mm", "below the root radius",
         ),
         ({"fs_hz": 2_560.0}, "fs_hz", "mesh harmonic"),
-        ({"stages": [], "states": IRREGULAR}, "states.1.damage.gear", "allowed: pinion, gear"),
+        ({"stages": [], "states": by_name(IRREGULAR)}, "states.severe.damage.gear", "allowed: pinion, gear"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_with_its_path_and_what_is_allowed(

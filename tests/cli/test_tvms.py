@@ -104,7 +104,7 @@ def test_a_picture_with_an_unknown_ending_is_refused_before_any_work(tmp_path: P
 @pytest.mark.drawn
 def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
     spall = "{kind: spall, teeth: 1, profile_length_mm: 1.5, face_length_mm: 20.0, depth_mm: 0.2}"
-    states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"
+    states = f"states={{healthy: {{}}, severe: {{damage: {spall}}}}}"
     arguments = ("--parts", "--potential-energy", "--torque", 45, "--png", tmp_path / "tvms.png", "--set", states)
     said = run("tests/configs/ideal.yaml", "--out", tmp_path / "tvms.csv", *arguments)
     assert "quasi-static mesh stiffness at 45\u00a0N\u00a0m: force over approach, as simulated" in said
@@ -144,7 +144,7 @@ def test_where_damage_takes_stiffness_the_curve_is_the_potential_energy_and_has_
 
 def test_parts_of_a_contact_across_the_face_add_up_to_the_pair_that_is_simulated(tmp_path: Path) -> None:
     spall = "{kind: spall, face_length_mm: 10, profile_length_mm: 1.0, depth_mm: 0.2}"
-    states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"
+    states = f"states={{healthy: {{}}, severe: {{damage: {spall}}}}}"
     face = ("--set", "dynamics.mesh.tip_relief_um=0", "--set", states)
     run("configs/quickstart.yaml", "--out", tmp_path / "face.parquet", "--parts", "--torque", 60, *face)
     table = pyarrow.parquet.read_table(tmp_path / "face.parquet")
@@ -167,7 +167,7 @@ def test_a_torque_that_no_teeth_carry_is_refused_with_the_largest_of_the_set(tmp
 
 
 def test_a_study_of_a_key_names_its_curves_as_the_user_typed_them(tmp_path: Path) -> None:
-    key = "states.2.damage.first_height_mm"
+    key = "states.moderate.damage.first_height_mm"
     run("configs/paper_a.yaml", "--vary", f"{key}=1.9,2.8", "--out", tmp_path / "tvms.csv")
     table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
     assert table.column_names == ["angle_deg", *(f"{s}_n_per_m" for s in ("healthy", f"{key}=1.9", f"{key}=2.8"))]

@@ -14,7 +14,7 @@ from siggen.keys.distributions import Uniform
 OVERRIDES = (
     "manufacture={accuracy_class: 6}",
     "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, second_stage: {order: 7}}",
-    "sensors.0.mounting={frequency_hz: 8000, damping_ratio: 0.05}",
+    "sensors.lid.mounting={frequency_hz: 8000, damping_ratio: 0.05}",
     "variation={}",
 )
 SOME = Uniform(low=0.3, high=0.4)

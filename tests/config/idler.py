@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tests.config.mill import mill
+from tests.config.minimal import by_name
 from tests.config.staged import SPALL
 
 MACHINE: dict[str, Any] = {
@@ -32,7 +33,7 @@ def idler(**changes: Any) -> dict[str, Any]:
         {"name": "front", "severity": "severe", "grows_from": "none", "damage": {**spall, "gear": "first.b"}},
         {"name": "behind", "severity": "severe", "grows_from": "none", "damage": {**spall, "gear": "second.b"}},
     ]
-    return mill(**{"machine": MACHINE, "states": states, **changes})
+    return mill(**{"machine": MACHINE, "states": by_name(states), **changes})
 
 
 def with_idler(key: str, index: int, **changes: Any) -> dict[str, Any]:

@@ -29,8 +29,8 @@ def mill(**changes: Any) -> dict[str, Any]:
         "machine": MACHINE,
         "dynamics": {"model": "8dof"},
         "operating_points": [{"speed_hz": 30.0, "torque_nm": 20.0}],
-        "sensors": [{"name": "bearing", "place": "input_bearing"}],
-        "states": [{"name": "healthy"}, {"name": "severe", "damage": {**SPALL, "gear": "eva", "teeth": 1}}],
+        "sensors": {"bearing": {"place": "input_bearing"}},
+        "states": {"healthy": {}, "severe": {"damage": {**SPALL, "gear": "eva", "teeth": 1}}},
     }
     found = minimal(**{**raw, **changes})
     return {key: value for key, value in found.items() if key != "gears"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from siggen.config import Config, parse
@@ -18,10 +19,9 @@ MINIMAL: dict[str, Any] = {
         "gear": {"teeth": 47, "bore_radius_mm": 15.0},
     },
     "operating_points": [{"speed_hz": 30.0, "torque_nm": 60.0}],
-    "states": [
-        {"name": "healthy"},
-        {
-            "name": "slight",
+    "states": {
+        "healthy": {},
+        "slight": {
             "damage": {
                 "kind": "layered",
                 "layers": 1,
@@ -29,11 +29,16 @@ MINIMAL: dict[str, Any] = {
                 "semi_axis_face_mm": 0.3,
                 "semi_axis_profile_mm": 0.2,
                 "depth_mm": 0.4,
-            },
+            }
         },
-    ],
-    "sensors": [{"name": "bearing"}],
+    },
+    "sensors": {"bearing": {}},
 }
+
+
+def by_name(entries: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return states or sensors with names as a file gives them."""
+    return {one["name"]: {key: value for key, value in one.items() if key != "name"} for one in entries}
 
 
 def minimal(**changes: Any) -> dict[str, Any]:

@@ -36,12 +36,12 @@ def planets(**changes: Any) -> dict[str, Any]:
             "output_coupling": DAMPED,
         },
         "operating_points": [{"speed_hz": 24.48, "torque_nm": 60.0}],
-        "states": [
-            {"name": "healthy"},
-            {"name": "sun", "severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "sun"}},
-            {"name": "planet", "severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "planet"}},
-            {"name": "ring", "severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "ring"}},
-        ],
-        "sensors": [{"name": "ring", "place": "ring", "axes": ["horizontal", "vertical"], "bits": None}],
+        "states": {
+            "healthy": {},
+            "sun": {"severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "sun"}},
+            "planet": {"severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "planet"}},
+            "ring": {"severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "ring"}},
+        },
+        "sensors": {"ring": {"place": "ring", "axes": ["horizontal", "vertical"], "bits": None}},
     }
     return minimal(**{**raw, **changes})

@@ -30,9 +30,6 @@ def staged(**changes: Any) -> dict[str, Any]:
         "stages": [SLOW],
         "dynamics": {"model": "8dof"},
         "operating_points": [{"speed_hz": 30.0, "torque_nm": 20.0}],
-        "states": [
-            {"name": "healthy"},
-            {"name": "severe", "damage": {**SPALL, "gear": "slow.pinion", "teeth": 1}},
-        ],
+        "states": {"healthy": {}, "severe": {"damage": {**SPALL, "gear": "slow.pinion", "teeth": 1}}},
     }
     return minimal(**{**raw, **changes})

@@ -9,7 +9,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import Config, parse
 from siggen.errors import ConfigError
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 
 LAYERS = {"kind": "layered", "layers": 1, "pits_per_layer": 4}
 CLUSTER = {"kind": "clustered", "count": 9, "spread_profile_mm": 0.3}
@@ -21,7 +21,7 @@ def state(name: str, damage: dict | None = None, **keys) -> dict:
 
 
 def parsed(*states: dict):
-    return parse(minimal(states=list(states)))
+    return parse(minimal(states=by_name(states)))
 
 
 def grown(*states: dict) -> list[int | None]:
@@ -62,7 +62,7 @@ def test_labels_follow_from_the_name_and_the_damage():
 @pytest.mark.parametrize(("severity", "meant"), [("slihgt", "slight"), ("sever", "severe"), ("moderat", "moderate")])
 def test_a_severity_that_is_a_slip_of_the_pen_is_asked_for(severity: str, meant: str) -> None:
     (problem,) = parsed(state("healthy"), state("worn", LAYERS, severity=severity)).problems
-    assert problem.path == "states.1.severity"
+    assert problem.path == "states.worn.severity"
     assert problem.allowed.startswith(f"did you mean '{meant}'?")
 
 
@@ -73,7 +73,7 @@ def test_a_severity_may_have_any_other_name(severity: str) -> None:
 
 def test_a_milder_state_cannot_grow_from_a_more_severe_one():
     (problem,) = parsed(state("severe", LAYERS), state("slight", CLUSTER)).problems
-    assert problem.path == "states.1.grows_from"
+    assert problem.path == "states.slight.grows_from"
     assert "severe (severe), for a slight state" in problem.received
     assert parsed(state("severe", LAYERS), state("slight", CLUSTER, grows_from="none")).problems == ()
 
@@ -89,7 +89,7 @@ def test_a_milder_state_cannot_grow_from_a_more_severe_one():
 )
 def test_a_state_must_add_pits_to_the_one_it_grows_from(milder, damage, key):
     (problem,) = parsed(state("slight", milder), state("severe", damage)).problems
-    assert problem.path == f"states.1.damage.{key}"
+    assert problem.path == f"states.severe.damage.{key}"
     assert "no pits beyond those of slight" in problem.received
     assert parsed(state("slight", milder), state("severe", damage, grows_from="none")).problems == ()
 
@@ -115,16 +115,15 @@ def test_a_spall_smaller_than_the_milder_one_is_no_growth(
     milder: dict, smaller: dict, larger: dict, key: str, tmp_path: Path
 ) -> None:
     def planned(change: dict, **keys: str) -> Config:
-        states = [
-            {"name": "healthy"},
-            {"name": "slight", "damage": milder},
-            {"name": "severe", "damage": {**milder, **change}, **keys},
-        ]
+        severe = {"damage": {**milder, **change}, **keys}
+        states = f"states:\n  others: null\n  healthy: {{}}\n  slight: {{damage: {milder}}}\n  severe: {severe}\n"
         file = tmp_path / "mine.yaml"
-        file.write_text(f"extends: quickstart\nname: mine\nstates:\n- {states[0]}\n- {states[1]}\n- {states[2]}\n")
+        file.write_text(f"extends: quickstart\nname: mine\n{states}")
         return load_config(file)
 
-    with pytest.raises(ConfigError, match=rf"states\.2\.damage\.{key}: received no spalls beyond .*slight.*\(line 6\)"):
+    with pytest.raises(
+        ConfigError, match=rf"states\.severe\.damage\.{key}: received no spalls beyond .*slight.*\(line 7\)"
+    ):
         planned(smaller)
     planned(smaller, grows_from="none")
     planned({})  # as large

@@ -27,10 +27,10 @@ def test_mappings_merge_and_distributions_and_lists_are_replaced(tmp_path: Path)
 
 def test_data_files_of_the_extended_file_count_from_its_folder(tmp_path: Path) -> None:
     (tmp_path / "below").mkdir()
-    (tmp_path / "below" / "base.yaml").write_text("sensors: [{noise_spectrum: {file: floor.csv}}]\n")
+    (tmp_path / "below" / "base.yaml").write_text("sensors: {lid: {noise_spectrum: {file: floor.csv}}}\n")
     (tmp_path / "middle.yaml").write_text("extends: below/base.yaml\n")
     found = inherited({"extends": "middle.yaml"}, tmp_path)
-    assert Path(found["sensors"][0]["noise_spectrum"]["file"]) == (tmp_path / "below" / "floor.csv").resolve()
+    assert Path(found["sensors"]["lid"]["noise_spectrum"]["file"]) == (tmp_path / "below" / "floor.csv").resolve()
 
 
 @pytest.mark.parametrize(

@@ -39,11 +39,11 @@ def test_every_key_of_a_shipped_file_stands_on_its_line(file: Path) -> None:
 
 
 def test_a_missing_key_has_the_line_of_what_misses_it_and_merges_end() -> None:
-    text = "gears:\n  pinion: {teeth: 18}\nstates:\n  - &a {name: x}\n  - <<: *a\n    damage: null\n"
+    text = "gears:\n  pinion: {teeth: 18}\nstates:\n  a: &a {sham: true}\n  b:\n    <<: *a\n    damage: null\n"
     node = yaml_node(text)
     assert key_line(node, "gears.pinion.bore_radius_mm") == (2, 2, False)
-    assert key_line(node, "states.1.name") == (4, 3, True)
-    assert key_line(node, "states.1.damage") == (6, 3, True)
+    assert key_line(node, "states.b.sham") == (4, 3, True)
+    assert key_line(node, "states.b.damage") == (7, 3, True)
     assert key_line(node, "dynamics.mesh") is None
     # a mapping that merges itself is refused before anybody asks for its lines
     assert yaml_node("a: &a {<<: *a, b: 1}\n") is None
@@ -53,16 +53,14 @@ def test_a_missing_key_has_the_line_of_what_misses_it_and_merges_end() -> None:
 def test_a_key_of_an_extended_file_is_found_there_unless_a_list_or_kind_replaces_it(tmp_path: Path) -> None:
     (tmp_path / "base.yaml").write_text(BENCH.read_text().replace("module_mm:", "modul_mm:", 1))
     own = tmp_path / "own.yaml"
-    own.write_text(
-        "extends: base.yaml\nname: own\nsensors:\n  - {name: lid, axes: [vertical], place: x}\nmesh_harmonics: 0\n"
-    )
+    own.write_text("extends: base.yaml\nname: own\nsensors:\n  lid: {axes: [vertical], place: x}\nmesh_harmonics: 0\n")
     with pytest.raises(ConfigError) as refused:
         load_config(own)
     found = {problem.path: problem.where for problem in refused.value.problems}
     line = next(i for i, text in enumerate((tmp_path / "base.yaml").read_text().splitlines(), 1) if "modul_mm:" in text)
     assert found["gears.modul_mm"] == f"line {line} of base.yaml, which this file extends"
     assert found["mesh_harmonics"] == "line 5"
-    assert found["sensors.0.place"] == "line 4"
+    assert found["sensors.lid.place"] == "line 4"
 
 
 # what is written in place of what; key, and what is said
@@ -71,10 +69,10 @@ BAD = [
     ("  lead_misalignment_um: ", "  lead_misalignment_um: 1e6 #", "manufacture.lead_misalignment_um"),
     ("  crowning_um: ", "  crowning_um: -1 #", "manufacture.crowning_um"),
     ("  machines: {}\n", "  machines:\n    density_n_per_sqrt_hz: 1e9\n", "background.machines.density_n_per_sqrt_hz"),
-    ("states:\n", "states:\n  - {name: x, severity: slight, damage: {kind: irregular, profile_length_mm: 0.2, "
-     "face_share: 1.0, skew_mm_per_10mm: [-2, 2]}}\n", "states.0.damage.skew_mm_per_10mm"),
-    ("states:\n", "states:\n  - {name: x, severity: slight, damage: {kind: irregular, profile_length_mm: 9, "
-     "face_share: 1.0}}\n", "states.0.damage.profile_length_mm"),
+    ("states:\n", "states:\n  x: {severity: slight, damage: {kind: irregular, profile_length_mm: 0.2, "
+     "face_share: 1.0, skew_mm_per_10mm: [-2, 2]}}\n", "states.x.damage.skew_mm_per_10mm"),
+    ("states:\n", "states:\n  x: {severity: slight, damage: {kind: irregular, profile_length_mm: 9, "
+     "face_share: 1.0}}\n", "states.x.damage.profile_length_mm"),
 ]  # fmt: skip
 
 

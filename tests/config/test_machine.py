@@ -16,6 +16,7 @@ from siggen.planning.stages import first_mesh, stage_config
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler
 from tests.config.mill import MACHINE, mill, with_machine
+from tests.config.minimal import by_name
 from tests.config.staged import SLOW, SPALL, staged
 
 WHEEL = {"teeth": 20, "bore_radius_mm": 12.0}
@@ -24,7 +25,7 @@ MESH = {"module_mm": 2.0, "face_width_mm": 20.0}
 
 def test_a_machine_is_its_short_form_with_other_words() -> None:
     own, short = parse(mill()).config, parse(staged(
-        stages=[{**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}], sensors=[{"name": "bearing"}]
+        stages=[{**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}], sensors={"bearing": {}}
     )).config  # fmt: skip
     assert own is not None
     assert short is not None
@@ -44,9 +45,9 @@ def test_its_own_file_reads_the_same_and_never_says_pinion() -> None:
 def test_states_change_shafts_by_their_place_in_the_machine() -> None:
     key = "machine.shafts.1.bearing_stiffness_x_n_per_m"
     state = {"name": "soft", "fault": "loose_bearing", "severity": "slight", "changes": {key: {"times": 0.5}}}
-    config = load_config(mill(states=[{"name": "healthy"}, state]))
+    config = load_config(mill(states=by_name([{"name": "healthy"}, state])))
     assert [one.path for one in config.states[1].changes] == ["dynamics.pinion.bearing_stiffness_x_n_per_m"]
-    assert list(config.canonical()["states"][1]["changes"]) == [key]
+    assert list(config.canonical()["states"]["soft"]["changes"]) == [key]
 
 
 def test_one_mesh_alone_is_a_machine_of_its_two_gears() -> None:
@@ -123,7 +124,7 @@ def test_a_machine_that_cannot_be_is_refused_at_the_users_line(mistake: str, tmp
 
 
 def test_an_idler_is_named_by_the_mesh_of_each_flank() -> None:
-    config = load_config(idler(sensors=[{"kind": "encoder", "name": "out", "place": "b"}]))
+    config = load_config(idler(sensors={"out": {"kind": "encoder", "place": "b"}}))
     assert [state.damages[0].gear for state in config.states[1:]] == ["gear", "second.pinion"]
     assert parse(config.canonical()).config == config
     assert {"faulty_teeth_first_b", "faulty_teeth_second_b"} <= set(label_names(config))
@@ -149,13 +150,13 @@ OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {
         {"machine": with_idler("meshes", 1, driver="c", driven="b")}, "machine.shafts.1.name", "is driven in 2 meshes",
     ),
     "damage of no flank": (
-        {"states": [{"name": "bad", "severity": "slight", "damage": {**SPALL, "gear": "b"}}]},
-        "states.0.damage.gear", "first.b, second.b, c",
+        {"states": {"bad": {"severity": "slight", "damage": {**SPALL, "gear": "b"}}}},
+        "states.bad.damage.gear", "first.b, second.b, c",
     ),
     "a tooth that is gone": (
-        {"states": [{"name": "bad", "severity": "slight", "damage": {
+        {"states": {"bad": {"severity": "slight", "damage": {
             "kind": "chip", "gear": "second.b", "height_mm": "whole",
-        }}]}, "states.0.damage.kind", "pits, spalls and cracks of an idler",
+        }}}}, "states.bad.damage.kind", "pits, spalls and cracks of an idler",
     ),
     "a name of a flank": (
         {"machine": with_idler("gears", 2, name="second_b") | {"meshes": [
@@ -188,7 +189,7 @@ def test_a_loop_whose_ratios_agree_turns_but_has_two_ways_for_power() -> None:
 
 
 def test_a_machine_takes_the_place_of_gears_and_shafts_that_its_file_extends() -> None:
-    own = {key: mill()[key] for key in ("machine", "sensors", "states")}
+    own = {"machine": mill()["machine"]} | {key: {"others": None, **mill()[key]} for key in ("sensors", "states")}
     found = load_config({"extends": "quickstart", **own, "housing": {"kind": "rigid"}, "background": None})
     assert found.gears.pinion.teeth == 18
     assert found.dynamics.shafts is None
@@ -202,11 +203,11 @@ def test_a_machine_takes_the_place_of_gears_and_shafts_that_its_file_extends() -
 
 OTHERS: dict[str, tuple[dict[str, Any], str, str]] = {
     "damage": (
-        {"states": [{"name": "bad", "severity": "slight", "damage": {**SPALL, "gear": "pinion"}}]},
-        "states.0.damage.gear",
+        {"states": {"bad": {"severity": "slight", "damage": {**SPALL, "gear": "pinion"}}}},
+        "states.bad.damage.gear",
         "karl",
     ),
-    "place": ({"sensors": [{"name": "a", "place": "pinion_bearing"}]}, "sensors.0.place", "input_bearing"),
+    "place": ({"sensors": {"a": {"place": "pinion_bearing"}}}, "sensors.a.place", "input_bearing"),
     "beside": ({"stages": [SLOW]}, "stages", "either this section or machine"),
     "rotor": ({"dynamics": {"model": "8dof", "gear": {"mass_kg": 1.0}}}, "dynamics.gear", "machine.shafts"),
     "casing": ({"dynamics": {"model": "6dof"}}, "dynamics.model", "8dof, casing"),

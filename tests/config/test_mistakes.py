@@ -26,7 +26,7 @@ MISTAKES = [
     ({"gears__modul_mm": 3}, "gears.modul_mm", "3", "did you mean 'module_mm'?"),
     ({"sensor": []}, "sensor", "a list of 0", "did you mean 'sensors'?"),
     ({"dynamics__pinion__mass": 1}, "dynamics.pinion.mass", "1", "did you mean 'mass_kg'?"),
-    ({"states__1__damage__count": 3}, "states.1.damage.count", "3", "known keys: "),
+    ({"states__slight__damage__count": 3}, "states.slight.damage.count", "3", "known keys: "),
     ({"gears__pinion": {"teeth": 18}}, "gears.pinion.bore_radius_mm", "nothing", "a number from 0.01 to 10000"),
     ({"operating_points": [{"speed_hz": 30}]}, "operating_points.0.torque_nm", "nothing", "a number from -1e+08"),
     # types
@@ -44,36 +44,61 @@ MISTAKES = [
     ({"gears__module_mm": 10**400}, "gears.module_mm", "1000", "a number above 0"),
     ({"gears": 3}, "gears", "3", "a mapping with the keys module_mm, "),
     ({"specimens": True}, "specimens", "true", "a whole number from 1"),
-    ({"states": {}}, "states", "an empty mapping", "a list of at least 1, each entry a mapping"),
-    ({"states__1": None}, "states.1", "null", "a mapping with the keys name, "),
+    ({"states": {}}, "states", "an empty mapping", "a mapping by name, such as "),
+    ({"states__slight": 3}, "states.slight", "3", "a mapping with the keys fault, "),
     ({"operating_points": 5}, "operating_points", "5", "mapping with speed_hz and torque_nm"),
-    ({"sensors__0__axes": "vertical"}, "sensors.0.axes", "the text 'vertical'", "a list of at least 1"),
+    ({"sensors__bearing__axes": "vertical"}, "sensors.bearing.axes", "the text 'vertical'", "a list of at least 1"),
     # ranges and words
-    ({"states__1__damage__kind": "spal"}, "states.1.damage.kind", "'spal'", "bearing_spall; did you mean 'spall'?"),
-    ({"states__1__damage__gear": "pinoin"}, "states.1.damage.gear", "'pinoin'", "ring; did you mean 'pinion'?"),
-    ({"sensors__0__kind": "acelerometer"}, "sensors.0.kind", "'acelerometer'", "; did you mean 'accelerometer'?"),
+    (
+        {"states__slight__damage__kind": "spal"},
+        "states.slight.damage.kind",
+        "'spal'",
+        "bearing_spall; did you mean 'spall'?",
+    ),
+    (
+        {"states__slight__damage__gear": "pinoin"},
+        "states.slight.damage.gear",
+        "'pinoin'",
+        "ring; did you mean 'pinion'?",
+    ),
+    (
+        {"sensors__bearing__kind": "acelerometer"},
+        "sensors.bearing.kind",
+        "'acelerometer'",
+        "; did you mean 'accelerometer'?",
+    ),
     ({"gears__module_mm": -3}, "gears.module_mm", "-3.0", "a number above 0"),
     ({"dynamics__mesh_damping_ratio": 1.5}, "dynamics.mesh_damping_ratio", "1.5", "of at least 0 and below 1"),
     ({"gears__gear__profile_shift": 3}, "gears.gear.profile_shift", "3.0", "a number from -1 to 1.5"),
     ({"dynamics__model": "12dof"}, "dynamics.model", "the text '12dof'", "one of 8dof, casing"),
-    ({"sensors__0__axes": ["up"]}, "sensors.0.axes.0", "the text 'up'", "one of vertical, horizontal"),
+    ({"sensors__bearing__axes": ["up"]}, "sensors.bearing.axes.0", "the text 'up'", "one of vertical, horizontal"),
     (
-        {"housing": {"kind": "rigid"}, "sensors__0__place": "casing"},
-        "sensors.0.position_mm",
+        {"housing": {"kind": "rigid"}, "sensors__bearing__place": "casing"},
+        "sensors.bearing.position_mm",
         "null",
         "[horizontal, vertical] from the centre of gravity; or a measured path",
     ),
-    ({"sensors__0__position_mm": [1.0, 2.0]}, "sensors.0.position_mm", "[1.0, 2.0]", "null at place pinion_bearing"),
-    ({"sensors__0__place": "lid", "sensors__0__position_mm": [1.0]}, "sensors.0.position_mm", "[1.0]", "a list of 2"),
     (
-        {"sensors__0__place": "lid", "sensors__0__position_mm": [1.0, 2, 3]},
-        "sensors.0.position_mm",
+        {"sensors__bearing__position_mm": [1.0, 2.0]},
+        "sensors.bearing.position_mm",
+        "[1.0, 2.0]",
+        "null at place pinion_bearing",
+    ),
+    (
+        {"sensors__bearing__place": "lid", "sensors__bearing__position_mm": [1.0]},
+        "sensors.bearing.position_mm",
+        "[1.0]",
+        "a list of 2",
+    ),
+    (
+        {"sensors__bearing__place": "lid", "sensors__bearing__position_mm": [1.0, 2, 3]},
+        "sensors.bearing.position_mm",
         "[1.0, 2, 3]",
         "a list of 2, each a number, or a range",
     ),
     (
-        {"sensors__0__position_mm": [1.0, "a"]},
-        "sensors.0.position_mm.1",
+        {"sensors__bearing__position_mm": [1.0, "a"]},
+        "sensors.bearing.position_mm.1",
         "the text 'a'",
         "allowed: a number, or a range",
     ),
@@ -84,8 +109,8 @@ MISTAKES = [
         "two numbers, [horizontal, vertical] in mm",
     ),
     (
-        {"dynamics__model": "8dof", "sensors__0__place": "casing", "sensors__0__position_mm": [60.0, 50.0]},
-        "sensors.0.place",
+        {"dynamics__model": "8dof", "sensors__bearing__place": "casing", "sensors__bearing__position_mm": [60.0, 50.0]},
+        "sensors.bearing.place",
         "'casing'",
         "one of pinion_bearing, gear_bearing (dynamics.model: 8dof)",
     ),
@@ -115,34 +140,39 @@ MISTAKES = [
     ({"housing": {"kind": "rigid", "wall_mm": 8.0}}, "housing.wall_mm", "8.0", "known keys: kind, mass_kg"),
     ({"dynamics__model": "8dof", "housing": {"kind": "rigid"}}, "housing", "a section", "dynamics.model: casing"),
     ({"dynamics__model": "8dof", "housing__wall_mm": 8.0}, "housing", "a section", "dynamics.model: casing"),
-    ({"sensors__0__place": "roof"}, "sensors.0.place", "'roof'", "one of lid, wall, pinion_end, gear_end, foot"),
     (
-        {"sensors__0__place": "casing", "sensors__0__position_mm": [60.0, 50.0]},
-        "sensors.0.place",
+        {"sensors__bearing__place": "roof"},
+        "sensors.bearing.place",
+        "'roof'",
+        "one of lid, wall, pinion_end, gear_end, foot",
+    ),
+    (
+        {"sensors__bearing__place": "casing", "sensors__bearing__position_mm": [60.0, 50.0]},
+        "sensors.bearing.place",
         "'casing'",
         "one of lid, wall, pinion_end, gear_end, foot, pinion_bearing, gear_bearing",
     ),
     (
-        {"housing": {"kind": "rigid"}, "sensors__0__place": "lid"},
-        "sensors.0.place",
+        {"housing": {"kind": "rigid"}, "sensors__bearing__place": "lid"},
+        "sensors.bearing.place",
         "'lid'",
         "one of casing, pinion_bearing, gear_bearing",
     ),
     (
-        {"housing": {"kind": "rigid"}, "sensors__0__axes": ["axial"]},
-        "sensors.0.axes",
+        {"housing": {"kind": "rigid"}, "sensors__bearing__axes": ["axial"]},
+        "sensors.bearing.axes",
         "axial",
         "axial needs housing.kind: plates or modal, a path, or helical",
     ),
     (
-        {"sensors__0__place": "lid", "sensors__0__path": {"kind": "modal"}},
-        "sensors.0.path.kind",
+        {"sensors__bearing__place": "lid", "sensors__bearing__path": {"kind": "modal"}},
+        "sensors.bearing.path.kind",
         "'modal'",
         "measured; a sensor on a place of a housing of plates needs no path",
     ),
     (
-        {"sensors__0__place": "lid", "sensors__0__path": {"file": "path.csv"}},
-        "sensors.0.path",
+        {"sensors__bearing__place": "lid", "sensors__bearing__path": {"file": "path.csv"}},
+        "sensors.bearing.path",
         "a path at place lid",
         "null, or place: casing",
     ),
@@ -153,12 +183,12 @@ MISTAKES = [
         "dynamics.mesh.law: pairs",
     ),
     ({"dynamics__mesh__tip_relief_um": -8}, "dynamics.mesh.tip_relief_um", "-8.0", "a number of at least 0"),
-    ({"sensors__0__bits": 64}, "sensors.0.bits", "64", "from 4 to 24, noise, or null"),
-    ({"sensors__0__bits": "loud"}, "sensors.0.bits", "the text 'loud'", "from 4 to 24, noise, or null"),
-    ({"sensors__0__bits": "noise"}, "sensors.0.bits", "noise", "without a noise floor"),
+    ({"sensors__bearing__bits": 64}, "sensors.bearing.bits", "64", "from 4 to 24, noise, or null"),
+    ({"sensors__bearing__bits": "loud"}, "sensors.bearing.bits", "the text 'loud'", "from 4 to 24, noise, or null"),
+    ({"sensors__bearing__bits": "noise"}, "sensors.bearing.bits", "noise", "without a noise floor"),
     (
-        {"sensors__0__bits": "noise", "sensors__0__noise": {"floor_m_s2": {"one_of": [0, 1]}}},
-        "sensors.0.bits",
+        {"sensors__bearing__bits": "noise", "sensors__bearing__noise": {"floor_m_s2": {"one_of": [0, 1]}}},
+        "sensors.bearing.bits",
         "noise",
         "one that may be 0",
     ),
@@ -195,48 +225,99 @@ MISTAKES = [
         "{kind: normal, mean: 3, std: 0.1, low: 2, high: 4}",
         "write {normal: [3, 0.1], within: [2, 4]}",
     ),
-    ({"states__1__damage__teeth": {"kind": "choice", "values": [1, 2]}}, "states.1.damage.teeth", "kind", "[1, 2]}"),
-    # numbers for each of several things
-    ({"sensors__0__gain": [1, -1]}, "sensors.0.gain", "[1, -1]", "the low number first"),
-    ({"sensors__0__gain": {"each": [1, -1]}}, "sensors.0.gain.each.1", "-1.0", "above 0"),
-    ({"sensors__0__gain": {"each": [1, 1]}}, "sensors.0.gain", "one for each of 2", "one for each of 1 axis"),
-    # damage
-    ({"states__1__damage__kind": "blob"}, "states.1.damage.kind", "'blob'", "one of layered, clustered, spall, list"),
-    ({"states__1__damage": {"layers": 1}}, "states.1.damage.kind", "nothing", "one of layered, clustered, spall, list"),
-    ({"states__1__damage": []}, "states.1.damage", "a list of 0", "kind: layered, clustered, spall, "),
-    ({"states__1__damage__teeth": [0, 0]}, "states.1.damage.teeth", "[0, 0]", "different tooth indices"),
-    ({"states__1__damage__teeth": 0}, "states.1.damage.teeth", "0", "a whole number from 1"),
-    ({"states__1__damage__teeth": 19}, "states.1.damage.teeth", "19", "at most 18, the teeth of the pinion"),
-    ({"states__1__damage__teeth": [3, 18]}, "states.1.damage.teeth", "tooth 18", "from 0 to 17"),
     (
-        {"states__1__damage__teeth": {"one_of": [1, 1.5]}},
-        "states.1.damage.teeth",
+        {"states__slight__damage__teeth": {"kind": "choice", "values": [1, 2]}},
+        "states.slight.damage.teeth",
+        "kind",
+        "[1, 2]}",
+    ),
+    # numbers for each of several things
+    ({"sensors__bearing__gain": [1, -1]}, "sensors.bearing.gain", "[1, -1]", "the low number first"),
+    ({"sensors__bearing__gain": {"each": [1, -1]}}, "sensors.bearing.gain.each.1", "-1.0", "above 0"),
+    (
+        {"sensors__bearing__gain": {"each": [1, 1]}},
+        "sensors.bearing.gain",
+        "one for each of 2",
+        "one for each of 1 axis",
+    ),
+    # damage
+    (
+        {"states__slight__damage__kind": "blob"},
+        "states.slight.damage.kind",
+        "'blob'",
+        "one of layered, clustered, spall, list",
+    ),
+    (
+        {"states__slight__damage": {"layers": 1}},
+        "states.slight.damage.kind",
+        "nothing",
+        "one of layered, clustered, spall, list",
+    ),
+    ({"states__slight__damage": []}, "states.slight.damage", "a list of 0", "kind: layered, clustered, spall, "),
+    ({"states__slight__damage__teeth": [0, 0]}, "states.slight.damage.teeth", "[0, 0]", "different tooth indices"),
+    ({"states__slight__damage__teeth": 0}, "states.slight.damage.teeth", "0", "a whole number from 1"),
+    ({"states__slight__damage__teeth": 19}, "states.slight.damage.teeth", "19", "at most 18, the teeth of the pinion"),
+    ({"states__slight__damage__teeth": [3, 18]}, "states.slight.damage.teeth", "tooth 18", "from 0 to 17"),
+    (
+        {"states__slight__damage__teeth": {"one_of": [1, 1.5]}},
+        "states.slight.damage.teeth",
         "1.5",
         "whole",
     ),
-    ({"states__1__damage__gear": "any"}, "states.1.damage.gear", "'any'", "one of pinion, gear, either"),
+    ({"states__slight__damage__gear": "any"}, "states.slight.damage.gear", "'any'", "one of pinion, gear, either"),
     ({"dynamics__friction__oil": ["ISO VG 100", "lard"]}, "dynamics.friction.oil", "a list of 2", "or a list of some"),
-    ({"states__1__damage__first_height_mm": "top"}, "states.1.damage.first_height_mm", "'top'", "or pitch"),
+    ({"states__slight__damage__first_height_mm": "top"}, "states.slight.damage.first_height_mm", "'top'", "or pitch"),
     # contradictions
     (
-        {"states__1__fault": "spalling"},
-        "states.1.fault",
+        {"states__slight__fault": "spalling"},
+        "states.slight.fault",
         "'spalling', with damage of kind layered",
         "pitting; spalling needs",
     ),
-    ({"states__1__fault": "healthy"}, "states.1.fault", "healthy, with damage", "pitting or spalling"),
-    ({"states__1__severity": "healthy"}, "states.1.severity", "healthy, with damage", "any other name, or no damage"),
-    ({"states__0__fault": "pitting"}, "states.0.damage", "nothing, with fault pitting", "fault and severity both"),
-    ({"states__1__name": "none", "states__1__severity": "slight"}, "states.1.name", "'none'", "other than previous"),
-    ({"states__0__name": "slight"}, "states.1.name", "'slight'", "a name that states.0 does not have"),
-    ({"states__1__grows_from": "nobody"}, "states.1.grows_from", "'nobody'", "an earlier state with damage"),
-    ({"states__1__grows_from": "slight"}, "states.1.grows_from", "'slight'", "an earlier state with damage"),
-    ({"states__1__grows_from": "healthy"}, "states.1.grows_from", "'healthy'", "an earlier state with damage"),
-    ({"states__0__grows_from": "slight"}, "states.0.grows_from", "'slight', without damage", "only a state with"),
-    ({"sensors__0__axes": ["vertical", "vertical"]}, "sensors.0.axes", "vertical, vertical", "each axis once"),
-    ({"sensors": [{"name": "a"}, {"name": "a"}]}, "sensors.1.name", "'a'", "a name that sensors.0 does not have"),
-    ({"sensors__0__noise": {"snr_db": 3, "floor_m_s2": 1}}, "sensors.0.noise.snr_db", "3", "known keys: floor_m_s2"),
-    ({"sensors__0__noise": 0.1}, "sensors.0.noise", "0.1", "a mapping with floor_m_s2"),
+    ({"states__slight__fault": "healthy"}, "states.slight.fault", "healthy, with damage", "pitting or spalling"),
+    (
+        {"states__slight__severity": "healthy"},
+        "states.slight.severity",
+        "healthy, with damage",
+        "any other name, or no damage",
+    ),
+    (
+        {"states__healthy__fault": "pitting"},
+        "states.healthy.damage",
+        "nothing, with fault pitting",
+        "fault and severity both",
+    ),
+    ({"states__none": {}}, "states.none", "the name 'none'", "other than previous"),
+    ({"states": [{"name": "healthy"}]}, "states", "a list of 1", "write states: {healthy: {}}"),
+    ({"sensors": [{"name": "lid", "place": "lid"}]}, "sensors", "a list of 1", "write sensors: {lid: {place: lid}}"),
+    ({"states__healthy__name": "sound"}, "states.healthy.name", "'sound'", "the name stands before"),
+    ({"states__slight__grows_from": "nobody"}, "states.slight.grows_from", "'nobody'", "an earlier state with damage"),
+    ({"states__slight__grows_from": "slight"}, "states.slight.grows_from", "'slight'", "an earlier state with damage"),
+    (
+        {"states__slight__grows_from": "healthy"},
+        "states.slight.grows_from",
+        "'healthy'",
+        "an earlier state with damage",
+    ),
+    (
+        {"states__healthy__grows_from": "slight"},
+        "states.healthy.grows_from",
+        "'slight', without damage",
+        "only a state with",
+    ),
+    (
+        {"sensors__bearing__axes": ["vertical", "vertical"]},
+        "sensors.bearing.axes",
+        "vertical, vertical",
+        "each axis once",
+    ),
+    (
+        {"sensors__bearing__noise": {"snr_db": 3, "floor_m_s2": 1}},
+        "sensors.bearing.noise.snr_db",
+        "3",
+        "known keys: floor_m_s2",
+    ),
+    ({"sensors__bearing__noise": 0.1}, "sensors.bearing.noise", "0.1", "a mapping with floor_m_s2"),
     ({"fs_hz": 2000}, "fs_hz", "2000.0", "mesh harmonic 5 (mesh_harmonics)"),
     ({"duration_s": 0.00001}, "duration_s", "0.512 samples", "a whole number of at least 2 samples"),
 ]
@@ -259,20 +340,27 @@ def test_messages_speak_of_gears_and_not_of_programs(changes, path, received, al
 
 
 def test_all_mistakes_are_reported_at_once():
-    changes = {"seed": "x", "gears__modul_mm": 3, "states__0__name": "X", "sensors__0__bits": 99, "fs_hz": -1, "foo": 1}
+    changes = {
+        "seed": "x",
+        "gears__modul_mm": 3,
+        "states__X": {},
+        "sensors__bearing__bits": 99,
+        "fs_hz": -1,
+        "foo": 1,
+    }
     paths = [problem.path for problem in parse(minimal(**changes)).problems]
-    assert sorted(paths) == ["foo", "fs_hz", "gears.modul_mm", "seed", "sensors.0.bits", "states.0.name"]
+    assert sorted(paths) == ["foo", "fs_hz", "gears.modul_mm", "seed", "sensors.bearing.bits", "states.X"]
 
 
 def test_a_mistake_in_one_state_hides_neither_the_others_nor_what_follows_from_them():
-    raw = minimal(states__0__name="X Y", states__1__damage__teeth=40)
-    assert [problem.path for problem in parse(raw).problems] == ["states.0.name", "states.1.damage.teeth"]
+    raw = minimal(**{"states__X Y": {}, "states__slight__damage__teeth": 40})
+    assert [problem.path for problem in parse(raw).problems] == ["states.X Y", "states.slight.damage.teeth"]
 
 
 def test_a_state_that_is_wrong_does_not_make_its_name_unknown():
-    raw = minimal(states__1__damage__depth_mm=-1)
-    raw["states"].append({"name": "severe", "grows_from": "slight", "damage": CLUSTER})
-    assert [problem.path for problem in parse(raw).problems] == ["states.1.damage.depth_mm"]
+    raw = minimal(states__slight__damage__depth_mm=-1)
+    raw["states"]["severe"] = {"grows_from": "slight", "damage": CLUSTER}
+    assert [problem.path for problem in parse(raw).problems] == ["states.slight.damage.depth_mm"]
 
 
 @pytest.mark.parametrize("key", list(MINIMAL))
@@ -286,10 +374,10 @@ def test_every_key_that_is_needed_is_missed(key):
 
 
 def test_valid_sections_are_handed_on_when_others_fail():
-    parsed = parse(minimal(seed="x", states__0__name="X Y"))
+    parsed = parse(minimal(seed="x", states__healthy__fault="X Y"))
     assert parsed.config is None
     assert parsed.sections["gears"].pinion.teeth == 18
-    assert list(parsed.sections["states"]) == [1]
+    assert list(parsed.sections["states"]) == ["slight"]
     assert parsed.sections["dynamics"].model == "casing"  # left out: its default
     assert "seed" not in parsed.sections
 

@@ -65,7 +65,7 @@ def test_numbers_in_lists_are_counted_apart_and_a_set_may_store_more() -> None:
 def test_a_section_of_more_entries_than_anybody_lists_is_refused_at_once() -> None:
     problems = parse(minimal(operating_points=[1.5] * 20_000)).problems
     assert [(p.path, p.received) for p in problems] == [("operating_points", "a list of 20000")]
-    assert len(parse(minimal(states=[{"a": 1}] * 4_000)).problems) < 1_100
+    assert len(parse(minimal(states={f"state_{i}": {"a": 1} for i in range(4_000)})).problems) < 1_100
 
 
 def test_aliases_and_merges_of_a_useful_size_stay_allowed() -> None:

@@ -48,13 +48,13 @@ def fake_config(**changes: Any) -> Config:
             "gear": {"teeth": 47, "bore_radius_mm": 15.0},
         },
         "operating_points": [{"speed_hz": 30.0, "torque_nm": 60.0}, {"speed_hz": 20.0, "torque_nm": 40.0}],
-        "states": [
-            {"name": "healthy"},
-            {"name": "slight", "damage": {"kind": "clustered", "count": 2, "spread_profile_mm": 0.1, **pit}},
-            {"name": "moderate", "damage": {"kind": "clustered", "count": 6, "spread_profile_mm": 0.2, **pit}},
-        ],
+        "states": {
+            "healthy": {},
+            "slight": {"damage": {"kind": "clustered", "count": 2, "spread_profile_mm": 0.1, **pit}},
+            "moderate": {"damage": {"kind": "clustered", "count": 6, "spread_profile_mm": 0.2, **pit}},
+        },
         "housing": {"kind": "rigid"},
-        "sensors": [{"name": "bearing", "axes": ["vertical", "horizontal"]}],
+        "sensors": {"bearing": {"axes": ["vertical", "horizontal"]}},
         **changes,
     }
     parsed = parse(mapping)

@@ -101,7 +101,7 @@ def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
     assert "remove material" not in geometry
     assert "the mating flank sinks" in both
     assert "weakens them" in both
-    assert "every state is healthy" in damage_text(shipped("quickstart", "states=[{name: healthy}]"))
+    assert "every state is healthy" in damage_text(shipped("quickstart", "states={healthy: {}}"))
 
 
 def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:

@@ -25,7 +25,7 @@ from siggen.specimen.drive import record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import structure
 from siggen.views.exported_model import exported_model
-from tests.config.minimal import config, minimal
+from tests.config.minimal import by_name, config, minimal
 from tests.simulated import simulate
 
 SPEED_HZ, BALLS = 30.0, 9
@@ -43,14 +43,14 @@ def with_states(*damage: dict[str, Any] | None, **changes: Any) -> Config:
         own = {} if one is None else {"damage": {k: v for k, v in one.items() if k != "grows_from"}}
         grown = {} if one is None else {"grows_from": one.get("grows_from", "none")}
         states.append({"name": f"state-{number}", **severity, **grown, **own})
-    return config(states=states, **{"dynamics__model": "8dof", "fs_hz": 25600.0, "duration_s": 1.0, **changes})
+    return config(states=by_name(states), **{"dynamics__model": "8dof", "fs_hz": 25600.0, "duration_s": 1.0, **changes})
 
 
 @cache
 def signal(element: str | None, **more: Any) -> np.ndarray:
     """Return the channel of state 1 of the first gearbox."""
     spall = None if element is None else {**SPALL, "element": element, **more}
-    (record,) = simulate(with_states(spall, sensors=[{"name": "bearing", "range_m_s2": 1e5}]), [1])
+    (record,) = simulate(with_states(spall, sensors={"bearing": {"range_m_s2": 1e5}}), [1])
     return record.channels["bearing_vertical"].astype(float)
 
 
@@ -237,11 +237,11 @@ def test_what_cannot_be_is_refused_with_what_is_allowed(
     damage: dict[str, Any], changes: dict[str, Any], path: str, allowed: str
 ) -> None:
     states = [{"name": "healthy"}, {"name": "slight", "damage": {**SPALL, **damage}}]
-    parsed = parse(minimal(states=states, **changes))
+    parsed = parse(minimal(states=by_name(states), **changes))
     problems = [*parsed.problems, *physical_problems(parsed)]
     found = {problem.path: problem for problem in problems}
-    assert f"states.1.damage.{path}" in found, problems
-    assert allowed in found[f"states.1.damage.{path}"].allowed
+    assert f"states.slight.damage.{path}" in found, problems
+    assert allowed in found[f"states.slight.damage.{path}"].allowed
 
 
 def test_a_spall_is_in_the_bearing_of_its_shaft_and_else_in_a_6205() -> None:

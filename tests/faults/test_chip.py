@@ -83,14 +83,20 @@ def test_rows_tell_what_is_lost_and_a_broken_tooth_takes_the_place_of_its_chip()
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"height_mm": 0.0}, r"states\.1\.damage\.height_mm: received 0\.0; allowed: a number above 0"),
-        ({"height_mm": 6.8}, r"states\.1\.damage\.height_mm: received 6\.8; allowed: up to 6\.75, the height of the"),
-        ({"height_mm": "half"}, r"states\.1\.damage\.height_mm: received the text 'half'; .* or whole"),
-        ({"height_mm": "whole", "teeth": 2}, r"states\.1\.damage\.teeth: received 2; allowed: teeth that are no neigh"),
-        ({"height_mm": "whole", "teeth": [0, 17]}, r"states\.1\.damage\.teeth: .* no neighbours"),
-        ({"face_share": 1.2}, r"states\.1\.damage\.face_share: received 1\.2; allowed: a number above 0"),
-        ({"face_share": 0.0}, r"states\.1\.damage\.face_share: received 0\.0; allowed: a number above 0"),
-        ({"teeth": [18]}, r"states\.1\.damage\.teeth: received tooth 18"),
+        ({"height_mm": 0.0}, r"states\.slight\.damage\.height_mm: received 0\.0; allowed: a number above 0"),
+        (
+            {"height_mm": 6.8},
+            r"states\.slight\.damage\.height_mm: received 6\.8; allowed: up to 6\.75, the height of the",
+        ),
+        ({"height_mm": "half"}, r"states\.slight\.damage\.height_mm: received the text 'half'; .* or whole"),
+        (
+            {"height_mm": "whole", "teeth": 2},
+            r"states\.slight\.damage\.teeth: received 2; allowed: teeth that are no neigh",
+        ),
+        ({"height_mm": "whole", "teeth": [0, 17]}, r"states\.slight\.damage\.teeth: .* no neighbours"),
+        ({"face_share": 1.2}, r"states\.slight\.damage\.face_share: received 1\.2; allowed: a number above 0"),
+        ({"face_share": 0.0}, r"states\.slight\.damage\.face_share: received 0\.0; allowed: a number above 0"),
+        ({"teeth": [18]}, r"states\.slight\.damage\.teeth: received tooth 18"),
     ],
 )
 def test_what_cannot_be_is_refused_by_name(change: dict[str, Any], said: str) -> None:
@@ -116,9 +122,9 @@ def test_rows_tell_how_much_of_the_face_is_lost_and_more_takes_the_place_of_less
 
 
 def test_a_chip_needs_flanks_with_a_shape_and_a_state_more_of_it_than_its_milder_one() -> None:
-    with pytest.raises(ConfigError, match=r"states\.1\.damage\.kind: received 'chip'; allowed: another kind with"):
+    with pytest.raises(ConfigError, match=r"states\.slight\.damage\.kind: received 'chip'; allowed: another kind with"):
         config_with(CHIP, law="linear")
-    with pytest.raises(ConfigError, match=r"states\.2\.damage\.height_mm"):
+    with pytest.raises(ConfigError, match=r"states\.moderate\.damage\.height_mm"):
         config_with(CHIP, {**CHIP, "height_mm": 1.0})
 
 

@@ -68,24 +68,24 @@ def test_its_row_has_depth_angle_and_run_and_stands_beside_pits() -> None:
 @pytest.mark.parametrize(
     ("damages", "said"),
     [
-        ([cracked(depth_share=0.5)], ("states.1.damage.depth_share", "0.5", "above 0 and of at most 0.45")),
-        ([cracked(depth_share=0.2, angle_deg=80)], ("states.1.damage.angle_deg", "80", "35", "70")),
-        ([cracked()], ("states.1.damage.depth_share", "nothing", "this key is needed")),
-        ([cracked(depth_share=0.2, face_share=0)], ("states.1.damage.face_share", "0", "above 0")),
-        ([cracked(depth_share=0.2, gear="pinion", teeth=[18])], ("states.1.damage.teeth", "tooth 18", "0 to 17")),
+        ([cracked(depth_share=0.5)], ("states.slight.damage.depth_share", "0.5", "above 0 and of at most 0.45")),
+        ([cracked(depth_share=0.2, angle_deg=80)], ("states.slight.damage.angle_deg", "80", "35", "70")),
+        ([cracked()], ("states.slight.damage.depth_share", "nothing", "this key is needed")),
+        ([cracked(depth_share=0.2, face_share=0)], ("states.slight.damage.face_share", "0", "above 0")),
+        ([cracked(depth_share=0.2, gear="pinion", teeth=[18])], ("states.slight.damage.teeth", "tooth 18", "0 to 17")),
         (
             [cracked(depth_share=0.2), cracked(depth_share=0.3, angle_deg=60)],
-            ("states.2.damage.angle_deg", "60", "45, as in the milder state"),
+            ("states.moderate.damage.angle_deg", "60", "45, as in the milder state"),
         ),
-        ([cracked(depth_share=0.2), cracked(depth_share=0.2)], ("states.2.damage.depth_share", "grows_from")),
-        ([cracked(depth_share=0.2), cracked(depth_share=0.1)], ("states.2.damage.depth_share", "at least 0.2")),
+        ([cracked(depth_share=0.2), cracked(depth_share=0.2)], ("states.moderate.damage.depth_share", "grows_from")),
+        ([cracked(depth_share=0.2), cracked(depth_share=0.1)], ("states.moderate.damage.depth_share", "at least 0.2")),
         (
             [cracked(depth_share=UNIFORM), cracked(depth_share=[0.05, 0.2])],
-            ("states.2.damage.depth_share", "0.05 to 0.2", "at least 0.1 to 0.2"),
+            ("states.moderate.damage.depth_share", "0.05 to 0.2", "at least 0.1 to 0.2"),
         ),
         (
             [cracked(depth_share=0.2), cracked(depth_share=0.3, face_share=0.6)],
-            ("states.2.damage.face_share", "received 0.6", "allowed: null, as in the milder state"),
+            ("states.moderate.damage.face_share", "received 0.6", "allowed: null, as in the milder state"),
         ),
     ],
 )
@@ -99,8 +99,8 @@ def test_what_cannot_be_is_refused_with_key_value_and_what_is_allowed(damages, s
 def test_the_line_of_the_file_is_named(tmp_path) -> None:
     file = tmp_path / "deep.yaml"
     file.write_text(
-        "extends: quickstart\nname: deep\nstates:\n  - {name: healthy}\n"
-        "  - name: severe\n    damage:\n      kind: crack\n      depth_share: 0.6\n"
+        "extends: quickstart\nname: deep\nstates:\n  others: null\n"
+        "  severe:\n    damage:\n      kind: crack\n      depth_share: 0.6\n"
     )
     with pytest.raises(ConfigError, match=r"depth_share: received 0\.6.*line 8"):
         load_config(file)

@@ -17,6 +17,7 @@ from siggen.gears.damage.tooth_damage import Damage
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
+from tests.config.minimal import by_name
 
 PIT = {"semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
 DRAWN_PIT = {
@@ -42,8 +43,8 @@ def config_with(*damages: Mapping[str, Any], seed: int = 5, law: str = "pairs") 
             },
             "dynamics": {"mesh": {"law": law}},
             "operating_points": [{"speed_hz": 30.0, "torque_nm": 60.0}],
-            "states": states,
-            "sensors": [{"name": "bearing"}],
+            "states": by_name(states),
+            "sensors": {"bearing": {}},
         }
     )
 

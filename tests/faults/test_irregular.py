@@ -159,7 +159,7 @@ def test_rows_hold_the_outline_the_edges_and_the_depth_of_every_strip() -> None:
 def test_impossible_spalls_are_refused_by_key_value_and_range(changes: dict[str, Any], key: str, said: str) -> None:
     with pytest.raises(ConfigError) as refused:
         config_with({**SPALL, **changes})
-    assert f"states.1.damage.{key}: received" in str(refused.value)
+    assert f"states.slight.damage.{key}: received" in str(refused.value)
     assert said in str(refused.value)
 
 

@@ -1,4 +1,4 @@
-"""Irregular spalls that are listed by their very edges (`states[].damage.outlines`)."""
+"""Irregular spalls that are listed by their very edges (`states.NAME.damage.outlines`)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def listed(**changes: Any) -> dict[str, Any]:
     """Return a configuration with one listed outline, heights as arcs."""
     one = {"tooth": 3, "edges_mm": EDGES, "depth_mm": 0.1, "edge_radius_mm": 0.05, **changes}
     damage = {"kind": "list", "height_reading": "arc", "outlines": [one]}
-    return minimal(states=[{"name": "healthy"}, {"name": "slight", "damage": damage}])
+    return minimal(states={"healthy": {}, "slight": {"damage": damage}})
 
 
 def test_its_area_is_that_of_the_edges_that_are_written() -> None:

@@ -24,9 +24,10 @@ repeats: 1
 splits: {train: 10, validation: 5, test: 5}
 dynamics: {mesh: {damage: all}}
 states:
-  - {name: healthy}
-  - {name: slight, damage: {kind: toy_hinge, depth_mm: [0.8, 1.2]}}
-  - {name: severe, damage: {kind: toy_hinge, depth_mm: [3, 4]}}
+  others: null
+  healthy: {}
+  slight: {damage: {kind: toy_hinge, depth_mm: [0.8, 1.2]}}
+  severe: {damage: {kind: toy_hinge, depth_mm: [3, 4]}}
 """
 OTHER_KINDS = re.compile(r"\b(pits?|pitting|spall\w*)\b", re.IGNORECASE)
 
@@ -34,7 +35,7 @@ OTHER_KINDS = re.compile(r"\b(pits?|pitting|spall\w*)\b", re.IGNORECASE)
 LINES = {
     "generate": "siggen generate toy.yaml --out set --engine serial",
     "plan": "siggen plan toy.yaml --trial 0",
-    "mistake": "siggen plan toy.yaml --trial 0 --set states.2.damage.depth_mm=0.01",
+    "mistake": "siggen plan toy.yaml --trial 0 --set states.severe.damage.depth_mm=0.01",
     "publish": "siggen publish set --facts publication.yaml --to published",
     "explore": "siggen-diagnostics explore set --out explorer.html",
 }
@@ -72,7 +73,7 @@ def test_it_is_labelled_softens_its_tooth_and_has_its_rows(folder: Path) -> None
 def test_the_plan_counts_its_states_and_a_mistake_in_it_is_named(made: tuple[Path, dict[str, str]]) -> None:
     said = made[1]
     assert "hinge" in said["plan"]
-    assert "states.2.damage.depth_mm" in said["mistake"]
+    assert "states.severe.damage.depth_mm" in said["mistake"]
     assert "allowed: at least 0.1" in said["mistake"]
 
 

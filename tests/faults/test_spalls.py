@@ -127,7 +127,7 @@ def test_a_more_severe_state_contains_the_region_of_the_milder_one(ladder: list[
 def test_mistakes_are_named_with_their_key(
     base: dict[str, Any], bad: dict[str, Any], key: str, received: str, allowed: str
 ) -> None:
-    places = {"states.1.damage": {**base, **bad}}
+    places = {"states.slight.damage": {**base, **bad}}
     for path, damage in places.items():
         with pytest.raises(ConfigError) as refused:
             config_with(damage)

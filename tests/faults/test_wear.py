@@ -118,9 +118,12 @@ def test_fm4_of_worn_gears_is_that_of_healthy_ones_in_the_same_noise() -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"depth_um": 0.0}, r"states\.1\.damage\.depth_um: received 0\.0; allowed: a number above 0"),
-        ({"depth_um": None}, r"states\.1\.damage\.depth_um"),
-        ({"depth_um": 301.0}, r"states\.1\.damage\.depth_um: received 301; allowed: up to 300 um, 0\.1 of the module"),
+        ({"depth_um": 0.0}, r"states\.slight\.damage\.depth_um: received 0\.0; allowed: a number above 0"),
+        ({"depth_um": None}, r"states\.slight\.damage\.depth_um"),
+        (
+            {"depth_um": 301.0},
+            r"states\.slight\.damage\.depth_um: received 301; allowed: up to 300 um, 0\.1 of the module",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_by_name(change: dict[str, Any], said: str) -> None:
@@ -129,8 +132,8 @@ def test_what_cannot_be_is_refused_by_name(change: dict[str, Any], said: str) ->
 
 
 def test_wear_needs_flanks_with_a_shape_and_a_state_more_wear_than_its_milder_one() -> None:
-    with pytest.raises(ConfigError, match=r"states\.1\.damage\.kind: received 'wear'; allowed: another kind with"):
+    with pytest.raises(ConfigError, match=r"states\.slight\.damage\.kind: received 'wear'; allowed: another kind with"):
         config_with(WEAR, law="linear")
-    with pytest.raises(ConfigError, match=r"states\.2\.damage\.depth_um"):
+    with pytest.raises(ConfigError, match=r"states\.moderate\.damage\.depth_um"):
         config_with(WEAR, {**WEAR, "depth_um": 15.0})
     assert all(isinstance(one, WornFlanks) for one in damage_of(config_with(WEAR), 1))

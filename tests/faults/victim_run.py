@@ -21,8 +21,8 @@ SPECIMENS, PARTS = 6, 3
 OVERRIDES = (
     "duration_s=0.04",
     "internals={quantities: [mesh_force_n]}",
-    "states=[{name: healthy}, {name: spall, severity: severe, damage: {kind: irregular, gear: pinion, teeth: 1, "
-    "centre_height_mm: below_pitch, profile_length_mm: 0.8, face_share: 0.5, face_centre_mm: 10}}]",
+    "states={healthy: {}, spall: {severity: severe, damage: {kind: irregular, gear: pinion, teeth: 1, "
+    "centre_height_mm: below_pitch, profile_length_mm: 0.8, face_share: 0.5, face_centre_mm: 10}}}",
 )
 
 

@@ -30,9 +30,9 @@ def named_together(names: list[str], texts: list[str]) -> bool:
 def rows(page: str) -> Iterator[tuple[list[str], str]]:
     """Yield (words of a key: itself, the section around it and the top-level one, whether presets set it)."""
     top = ""
-    for line in page.partition("## Distributions")[0].splitlines():
+    for line in page.partition("## Ranges")[0].splitlines():
         if line.startswith("#"):
-            top = line.lstrip("# ").removesuffix("[].damage").removesuffix("[].path")
+            top = line.lstrip("# ").removesuffix(".NAME.damage").removesuffix(".NAME.path")
         elif found := KEY_LINE.match(line):
             key = found["key"].replace("[]", "")
             words = [*([] if top == "Top level" else [top]), *key.split(".")]

@@ -73,7 +73,9 @@ def test_a_pair_of_a_drawing_is_that_of_a_file() -> None:
 
 def test_the_study_of_paper_a_is_a_loop_of_two_lines() -> None:
     """The curves of the preset, whose 16 pits of one row stand at 1.9 mm; elsewhere the loss moves with the pits."""
-    config = siggen.load_config("paper_a", [f"states.{i}.damage.teeth=[0]" for i in (1, 2, 3)])
+    config = siggen.load_config(
+        "paper_a", [f"states.{name}.damage.teeth=[0]" for name in ("slight", "moderate", "severe")]
+    )
     (of_file,) = (curve for curve in stiffness_curves(config) if curve.state == "moderate")
     sound, worst, losses = mesh_stiffness(PAIR, law="linear", tooth="base_circle"), [], []
     for height_mm in (1.0, 1.9, 2.8):

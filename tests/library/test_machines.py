@@ -90,11 +90,11 @@ def test_a_planetary_set_runs_with_damage_on_sun_and_ring() -> None:
 
 
 def test_a_sensor_of_ones_own_reads_what_a_built_one_reads_and_moves_no_other() -> None:
-    washer = {"kind": "bearing_force", "name": "washer", "place": "pinion_bearing", "axes": ["vertical"],
+    washer = {"kind": "bearing_force", "place": "pinion_bearing", "axes": ["vertical"],
               "range_n": 1e6, "bits": None}  # fmt: skip
     config = siggen.load_config("quickstart", ["duration_s=0.1"])
     plain = siggen.draw(config, 1)
-    sensors = [*config.canonical()["sensors"], washer]
+    sensors = {**config.canonical()["sensors"], "washer": washer}
     (known,) = siggen.runs(
         siggen.draw(siggen.load_config({**config.canonical(), "sensors": sensors}), 1),
         [siggen.Case("healthy", plain.points[0])],

@@ -16,8 +16,8 @@ name: toy
 specimens: 1
 duration_s: 0.2
 repeats: 1
-states: [{{name: healthy}}]
-sensors: [{{name: lid, place: lid, position_mm: [5, 5], bits: null{source}}}]
+states: {{healthy: {{}}}}
+sensors: {{lid: {{place: lid, position_mm: [5, 5], bits: null{source}}}}}
 """
 SIGNAL, LABEL = "accel_lid_vertical_m_s2", "toy_drift_lid_vertical_m_s2_per_s"
 
@@ -49,5 +49,5 @@ def test_its_key_its_column_and_what_it_adds(made: tuple[Path, dict[str, str]]) 
 
 
 def test_a_mistake_in_it_is_named(made: tuple[Path, dict[str, str]]) -> None:
-    wanted = "sensors.0.toy_drift.size_m_s2_per_s: received -1.0; allowed: a number of at least 0"
+    wanted = "sensors.lid.toy_drift.size_m_s2_per_s: received -1.0; allowed: a number of at least 0"
     assert wanted in " ".join(made[1]["mistake"].split())

@@ -68,11 +68,11 @@ def record(pair: str, folder: Path) -> None:
         "specimens": 1,
         "repeats": 5,
         "gears": {"module_mm": module_mm, "pinion": {"teeth": pinion}, "gear": {"teeth": gear}},
-        "states": [{"name": "healthy"}],
+        "states": {"others": None, "healthy": {}},
         "operating_points": [{"speed_hz": speed_hz, "torque_nm": 40.0}],
     }
     spall = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 0.5 * module_mm, "face_share": 1.0}
-    damaged = {**raw, "states": [{"name": "spalled", "severity": "severe", "damage": spall}]}
+    damaged = {**raw, "states": {"others": None, "spalled": {"severity": "severe", "damage": spall}}}
     sound, worn = (siggen.draw(siggen.load_config(one)) for one in (raw, damaged))
     records = [siggen.run(sound, repeat=k) for k in (4, 0, 1, 2, 3)]  # the last one is the oddest
     records.append(siggen.run(worn, "spalled", repeat=1))

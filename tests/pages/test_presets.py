@@ -33,8 +33,8 @@ THROUGH = "through_100"
 def preset(name: str, states: tuple[str, ...], **changes: Any) -> Config:
     """Return a preset with some of its states; those that lose the state they grew from begin with an intact gear."""
     raw = inherited(read_yaml(CONFIGS / f"{name}.yaml"), CONFIGS)
-    kept = [{**state} for state in raw["states"] if state["name"] in states]
-    for state in kept:
+    kept = {name: {**state} for name, state in raw["states"].items() if name in states}
+    for state in kept.values():
         if "damage" in state:
             state["grows_from"] = "none"
     return load_config({**raw, "states": kept, "duration_s": 0.3, **changes})

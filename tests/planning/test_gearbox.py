@@ -11,7 +11,7 @@ from siggen.config import parse
 from siggen.planning.gearbox import gearbox_config, pair_of
 from siggen.planning.plan import SPLITS, specimen_count, split_of
 from siggen.planning.specimen import draw_specimen
-from tests.config.minimal import config, minimal
+from tests.config.minimal import by_name, config, minimal
 
 RANGES = {
     "count": 40,
@@ -80,18 +80,20 @@ PITS = {
     "depth_mm": 0.1,
 }
 DRAWN = {
-    "states": [
-        {"name": "healthy"},
-        *(
-            {
-                "name": name,
-                "damage": {**PITS, "gear": "either", "teeth": {"one_of": [1, 3]}, "count": n},
-            }
-            for name, n in (("slight", 4), ("severe", 9))
-        ),
-    ],
+    "states": by_name(
+        [
+            {"name": "healthy"},
+            *(
+                {
+                    "name": name,
+                    "damage": {**PITS, "gear": "either", "teeth": {"one_of": [1, 3]}, "count": n},
+                }
+                for name, n in (("slight", 4), ("severe", 9))
+            ),
+        ]
+    ),
     "dynamics__friction__oil": ["ISO VG 100", "ISO VG 220", "ISO VG 460"],
-    "sensors": [{"name": "lid", "place": "lid", "position_mm": [[20, 60], 5.0]}],
+    "sensors": {"lid": {"place": "lid", "position_mm": [[20, 60], 5.0]}},
 }
 
 
@@ -112,6 +114,6 @@ def test_a_gearbox_draws_gear_teeth_and_oil_once_for_all_of_its_states_and_place
 
 
 def test_naming_one_gear_one_number_and_one_place_keeps_the_identity() -> None:
-    plain = config(sensors=[{"name": "lid", "place": "lid", "position_mm": [20.0, 5.0]}])
+    plain = config(sensors={"lid": {"place": "lid", "position_mm": [20.0, 5.0]}})
     assert plain.sensors[0].position_mm == (20.0, 5.0)
     assert gearbox_config(plain, 3) is plain

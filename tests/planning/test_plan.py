@@ -53,7 +53,7 @@ def test_a_split_depends_on_nothing_but_seed_splits_and_specimen():
         specimens=10**6,
         repeats=4,
         gears__module_mm=[2, 4],
-        states=[{"name": "healthy"}],
+        states={"healthy": {}},
     )
     assert [split_of(first, i) for i in range(100)] == [split_of(other, i) for i in range(100)]
 

@@ -23,7 +23,7 @@ SPREAD = {
         }
     ]
     * 2,
-    "sensors__0__gain": [0.9, 1.1],
+    "sensors__bearing__gain": [0.9, 1.1],
 }
 
 
@@ -56,8 +56,8 @@ def test_specimens_differ():
         {"gears__gear__bore_radius_mm": [14, 16]},
         {"dynamics__backlash_um": [60, 120]},
         {"dynamics__pinion__mass_kg": [0.4, 0.6]},
-        {"sensors__0__noise": {"floor_m_s2": {"log": [0.01, 1]}}},
-        {"states": [{"name": "healthy"}]},
+        {"sensors__bearing__noise": {"floor_m_s2": {"log": [0.01, 1]}}},
+        {"states": {"healthy": {}}},
         {"repeats": 5},
         {"fs_hz": 25_600},
     ],

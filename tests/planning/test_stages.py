@@ -13,7 +13,7 @@ from siggen.planning.stages import first_mesh, stage_config, stage_point, turns
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.made_gears import MadeGears
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.config.staged import SPALL, staged
 
 
@@ -54,7 +54,7 @@ def test_damage_grows_on_both_meshes_whatever_state_adds_to_which() -> None:
         {"name": "moderate", "damage": {**SPALL, "gear": "slow.gear", "teeth": 1}},
         {"name": "severe", "damage": {**SPALL, "gear": "slow.gear", "teeth": 2}},
     ]
-    config = config_of(states=states)
+    config = config_of(states=by_name(states))
     specimen = draw_specimen(config, 0)
     first, behind = gear_pair(specimen.gears), gear_pair(specimen.stages[0].gears)
     own = stage_config(config, specimen, 0)
@@ -63,7 +63,7 @@ def test_damage_grows_on_both_meshes_whatever_state_adds_to_which() -> None:
 
 
 def test_a_further_stage_leaves_the_draws_of_the_first_mesh_alone() -> None:
-    made = {"manufacture": {"accuracy_class": 6}, "states": [{"name": "healthy"}]}
+    made = {"manufacture": {"accuracy_class": 6}, "states": {"healthy": {}}}
     both, alone = config_of(**made), config_of(**made, stages=[])
     one, other = (MadeGears(config, draw_specimen(config, 0)) for config in (both, alone))
     first, expected, behind = one.errors(0), other.errors(0), one.stages[0].errors(0)

@@ -12,7 +12,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 AXIAL = [
@@ -25,8 +25,8 @@ HELIX_DEG = 15.0
 def helical(helix_deg: float = HELIX_DEG, **changes: Any) -> Config:
     dynamics = {"model": "8dof", "mesh": {"law": "linear"}}
     own = minimal(
-        states=[{"name": "healthy"}],
-        sensors=AXIAL,
+        states={"healthy": {}},
+        sensors=by_name(AXIAL),
         dynamics=dynamics,
         duration_s=0.2,
         gears__helix_deg=helix_deg,
@@ -48,10 +48,10 @@ def test_the_thrust_is_that_of_the_torque_and_swings_with_the_mesh() -> None:
 def test_what_is_along_the_shafts_is_refused_where_nothing_pushes_or_moves_there() -> None:
     with pytest.raises(ConfigError) as refused:
         helical(0.0)
-    assert "sensors.0.axes" in str(refused.value)
-    assert "sensors.1.axes" in str(refused.value)
+    assert "sensors.accel.axes" in str(refused.value)
+    assert "sensors.thrust.axes" in str(refused.value)
     rigid = {"kind": "rigid", "mass_kg": 20.0, "inertia_kg_m2": 0.25, "bolts": {"positions_mm": [[90, 0], [-90, 0]]}}
     with pytest.raises(ConfigError) as refused:  # a rigid casing does not move along the shafts, but bears the force
         helical(dynamics={"model": "casing"}, housing=rigid)
-    assert "sensors.0.axes" in str(refused.value)
-    assert "sensors.1" not in str(refused.value)
+    assert "sensors.accel.axes" in str(refused.value)
+    assert "sensors.thrust" not in str(refused.value)

@@ -29,7 +29,7 @@ from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background import ChannelWay, SpecimenBackground, drawn_background, specimen_background
 from siggen.specimen.background_numbers import BaseNumbers, BearingNumbers, RubbingNumbers
 from siggen.specimen.instrument import Instrument, specimen_instrument
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 from tests.specimen.fixed_numbers import fix
 
@@ -56,7 +56,7 @@ def quick_mounts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     changes = {"dynamics__model": "casing", "duration_s": 0.1, "specimens": 2, **changes}
-    return load_config(minimal(sensors=list(sensors or (ON_LID, PLAIN)), **changes))
+    return load_config(minimal(sensors=by_name(sensors or (ON_LID, PLAIN)), **changes))
 
 
 def record(config: Config, record_id: int = 0) -> SimulatedRecord:
@@ -285,7 +285,7 @@ def test_the_replayed_share_of_the_rubbing_returns_every_turn() -> None:
 
 
 def test_a_base_needs_a_casing() -> None:
-    plain = {"sensors": [PLAIN]}
+    plain = {"sensors": by_name([PLAIN])}
     with pytest.raises(ConfigError) as refused:
         load_config(minimal(**{**plain, "dynamics__model": "8dof", "background": {"base": {}}}))
     assert "background.base" in {problem.path for problem in refused.value.problems}

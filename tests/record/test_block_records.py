@@ -21,7 +21,7 @@ from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import MOTION
 from siggen.specimen.background_numbers import BaseNumbers, BurstNumbers
 from siggen.specimen.instrument import specimen_instrument
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 from tests.specimen.fixed_numbers import fix
 
@@ -43,7 +43,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     changes = {"dynamics__model": "casing", "duration_s": 0.4, "specimens": 2, "fs_hz": 25600.0, **changes}
     changes = {"variation": VARYING, **changes}
-    return load_config(minimal(sensors=list(sensors or (LID, PLAIN)), **changes))
+    return load_config(minimal(sensors=by_name(sensors or (LID, PLAIN)), **changes))
 
 
 def record(config: Config, record_id: int = 0) -> SimulatedRecord:

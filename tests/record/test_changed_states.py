@@ -12,7 +12,7 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 SPREAD = [0.05, 0.10]
@@ -23,7 +23,7 @@ def config(*states: dict[str, Any], **more: Any) -> Config:
     dynamics = {"model": "8dof", "mesh_damping_ratio": SPREAD, "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     raw = minimal(specimens=2, duration_s=0.05, fs_hz=20480.0, mesh_harmonics=3, dynamics=dynamics)
     sensors = [{"name": "bearing", "gain": [0.95, 1.05]}, {"name": "other"}]
-    return load_config(raw | {"sensors": sensors, "states": [{"name": "healthy"}, *states]} | more)
+    return load_config(raw | {"sensors": by_name(sensors), "states": by_name([{"name": "healthy"}, *states])} | more)
 
 
 def changed(changes: dict[str, Any], **more: Any) -> dict[str, Any]:
@@ -59,7 +59,7 @@ def test_a_patch_is_the_set_whose_healthy_gearbox_has_these_numbers() -> None:
         "pinion": {"mass_kg": 2},
     }  # fmt: skip
     sensors = [{"name": "bearing", "gain": 0.5}, {"name": "other"}]
-    same = config({"name": "again"}, {"name": "last"}, dynamics=dynamics, sensors=sensors)
+    same = config({"name": "again"}, {"name": "last"}, dynamics=dynamics, sensors=by_name(sensors))
     for patched in (1, 4):  # both gearboxes
         assert signals(record(found, patched)) == signals(record(same, patched))
     # and the healthy states beside it are those of the set without a patch
@@ -128,5 +128,5 @@ def test_what_may_not_change_is_refused_by_its_key(path: str, change: object, sa
     with pytest.raises(ConfigError) as refused:
         config(changed({path: change}))
     text = str(refused.value)
-    assert f"states.1.changes{'' if 'columns' in said else f'.{path}'}" in text
+    assert f"states.hot.changes{'' if 'columns' in said else f'.{path}'}" in text
     assert said in text

@@ -12,7 +12,7 @@ from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.record.simulation import damage_rows
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 SIZE = {"face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.3}
@@ -27,7 +27,7 @@ def config(*states: dict[str, Any]) -> Config:
     dynamics = {"model": "8dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     small = {"specimens": 1, "duration_s": 0.2, "fs_hz": 20480.0, "mesh_harmonics": 3, "dynamics": dynamics}
     sensors = [{"name": "bearing", "noise": None, "bits": None}]
-    return load_config(minimal(**small, sensors=sensors, states=[{"name": "healthy"}, *states]))
+    return load_config(minimal(**small, sensors=by_name(sensors), states=by_name([{"name": "healthy"}, *states])))
 
 
 def state(*damage: dict[str, Any], **more: Any) -> dict[str, Any]:
@@ -96,14 +96,16 @@ def test_each_fault_has_its_rows_in_one_table() -> None:
     chosen = load_config(
         minimal(
             dynamics={"model": "8dof", "mesh": {"law": "pairs"}},
-            states=[
-                {"name": "healthy"},
-                state(
-                    {"kind": "wear", "depth_um": 5.0},
-                    {"kind": "chip", "gear": "gear", "teeth": [7], "height_mm": 1.0},
-                    {"kind": "bearing_spall", "element": "outer", "length_mm": 2.0},
-                ),
-            ],
+            states=by_name(
+                [
+                    {"name": "healthy"},
+                    state(
+                        {"kind": "wear", "depth_um": 5.0},
+                        {"kind": "chip", "gear": "gear", "teeth": [7], "height_mm": 1.0},
+                        {"kind": "bearing_spall", "element": "outer", "length_mm": 2.0},
+                    ),
+                ]
+            ),
         )
     )
     rows = damage_rows(chosen, 1)
@@ -126,11 +128,11 @@ def test_a_sham_may_have_several() -> None:
 @pytest.mark.parametrize(
     ("damage", "path"),
     [
-        ([], "states.1.damage"),
-        ([3], "states.1.damage.0"),
-        ([PITS, {"kind": "spal"}], "states.1.damage.1.kind"),
-        ([PITS, {**SPALL, "depth_mm": 90.0}], "states.1.damage.1.depth_mm"),
-        ([PITS, {**SPALL, "teeth": [90]}], "states.1.damage.1.teeth"),
+        ([], "states.severe.damage"),
+        ([3], "states.severe.damage.0"),
+        ([PITS, {"kind": "spal"}], "states.severe.damage.1.kind"),
+        ([PITS, {**SPALL, "depth_mm": 90.0}], "states.severe.damage.1.depth_mm"),
+        ([PITS, {**SPALL, "teeth": [90]}], "states.severe.damage.1.teeth"),
     ],
 )
 def test_a_mistake_in_one_is_told_with_its_place(damage: list[Any], path: str) -> None:

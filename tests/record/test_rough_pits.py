@@ -8,6 +8,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import read_yaml
+from tests.config.minimal import by_name
 from tests.simulated import simulate
 
 # Perfect gears on stiff shafts in the middle of the ranges of paper_b: only the damage is beside the mesh lines.
@@ -43,7 +44,7 @@ STATES = [
 def quantities(speed_hz: float, *overrides: str) -> list[dict[str, np.ndarray]]:
     """Internal quantities of the states, healthy to through."""
     points = [{"speed_hz": speed_hz, "torque_nm": 30.0}]
-    raw = {**read_yaml("configs/paper_b.yaml"), "states": STATES, "operating_points": points}
+    raw = {**read_yaml("configs/paper_b.yaml"), "states": by_name(STATES), "operating_points": points}
     config = load_config(raw, [*MIDDLE, *overrides])
     found = simulate(config, list(range(len(STATES))))
     assert all(isinstance(record, SimulatedRecord) for record in found)

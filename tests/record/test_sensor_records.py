@@ -18,7 +18,7 @@ from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.mode_table import seats_of
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 INPUTS = seats_of(PAIR)
@@ -32,7 +32,7 @@ def raw(*sensors: dict[str, Any], **changes: Any) -> dict[str, Any]:
     """Return a mapping; sensors on a casing have a rigid one."""
     housing = {"kind": "rigid"} if any(sensor["place"] == "casing" for sensor in sensors) else {}
     changes = {"duration_s": 0.1, "specimens": 2, "housing": housing, **changes}
-    return minimal(sensors=list(sensors), **changes)
+    return minimal(sensors=by_name(sensors), **changes)
 
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
@@ -117,7 +117,7 @@ def test_what_is_added_does_not_depend_on_the_state() -> None:
     """The same gearbox and levels, only the damage differs: disturbances of a record are drawn by its index alone."""
     damaged = loaded(DISTURBED)
     milder = raw(DISTURBED)
-    milder["states"][1]["damage"]["depth_mm"] = 0.1
+    milder["states"]["slight"]["damage"]["depth_mm"] = 0.1
     first, second = record(damaged, 1), record(load_config(milder), 1)
     drawn = [name for name in label_names(damaged) if name.startswith(PARTS)]
     assert len(drawn) == 6
@@ -131,13 +131,13 @@ def test_what_is_added_does_not_depend_on_the_state() -> None:
 @pytest.mark.parametrize(
     ("sensor", "changes", "path", "said"),
     [
-        (UP, {"dynamics__model": "8dof"}, "sensors.0.place", "pinion_bearing, gear_bearing (dynamics.model: 8dof)"),
-        (UP, {"housing": {"kind": "rigid"}}, "sensors.0.place", "casing, pinion_bearing, gear_bearing"),
-        ({**RIGID, "axes": ["axial"]}, {}, "sensors.0.axes", "axial needs housing.kind: plates or modal"),
-        (RIGID, {"housing": {}}, "sensors.0.place", "one of lid, wall"),
-        ({**LID, "path": {"kind": "modal"}}, {}, "sensors.0.path.kind", "needs no path"),
-        ({**LID, "mounting": {"frequency_hz": 0.0}}, {}, "sensors.0.mounting.frequency_hz", "above 0"),
-        ({**LID, "mains": {}}, {}, "sensors.0.mains.amplitude_m_s2", "needed"),
+        (UP, {"dynamics__model": "8dof"}, "sensors.lid.place", "pinion_bearing, gear_bearing (dynamics.model: 8dof)"),
+        (UP, {"housing": {"kind": "rigid"}}, "sensors.lid.place", "casing, pinion_bearing, gear_bearing"),
+        ({**RIGID, "axes": ["axial"]}, {}, "sensors.lid.axes", "axial needs housing.kind: plates or modal"),
+        (RIGID, {"housing": {}}, "sensors.lid.place", "one of lid, wall"),
+        ({**LID, "path": {"kind": "modal"}}, {}, "sensors.lid.path.kind", "needs no path"),
+        ({**LID, "mounting": {"frequency_hz": 0.0}}, {}, "sensors.lid.mounting.frequency_hz", "above 0"),
+        ({**LID, "mains": {}}, {}, "sensors.lid.mains.amplitude_m_s2", "needed"),
     ],
 )  # fmt: skip
 def test_contradictions_are_named(sensor: dict, changes: dict, path: str, said: str) -> None:

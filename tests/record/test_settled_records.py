@@ -28,7 +28,7 @@ def planetary() -> dict[str, Any]:
     return planets(
         dynamics={**dynamics, "input_coupling": soft},
         planetary={"ring_teeth": 77, "pin_error_um": 15.0},
-        states=[{"name": "healthy"}],
+        states={"healthy": {}},
     )
 
 
@@ -43,7 +43,8 @@ def signals(config: Config) -> dict[str, Any]:
 def test_a_motion_that_starts_earlier_gives_the_same_record(
     raw: Callable[[], dict[str, Any]], more: Sequence[str], bound: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    config = load_config(raw(), [SHORT, "sensors.0.bits=null", "sensors.0.noise=null", *more])
+    quiet = [f"sensors.{name}.{key}=null" for name in raw()["sensors"] for key in ("bits", "noise")]
+    config = load_config(raw(), [SHORT, *quiet, *more])
     found, settle_s = signals(config), simulation._settle_s
     monkeypatch.setattr(simulation, "_settle_s", lambda *given: settle_s(*given) + EARLIER_S)
     for name, expected in signals(config).items():

@@ -14,7 +14,7 @@ from siggen.faults.registry import BY_WORD
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import damage_rows
 from siggen.record.specimen_state import specimen_state
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 PIT = {"semi_axis_face_mm": 0.6, "semi_axis_profile_mm": 0.4, "depth_mm": 0.3}
@@ -35,7 +35,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
 def config(*states: dict[str, Any], law: str = "pairs") -> Config:
     small = {"specimens": 1, "duration_s": 0.05, "fs_hz": 20480.0, "mesh_harmonics": 3}
     dynamics = {"model": "8dof", "mesh": {"law": law}, "friction": {"model": "off"}}
-    return load_config(minimal(**small, dynamics=dynamics, states=[{"name": "healthy"}, *states]))
+    return load_config(minimal(**small, dynamics=dynamics, states=by_name([{"name": "healthy"}, *states])))
 
 
 def sham_of(kind: str) -> dict[str, Any]:
@@ -95,11 +95,14 @@ def test_it_shifts_no_other_state_and_nothing_grows_from_it() -> None:
 @pytest.mark.parametrize(
     ("state", "path"),
     [
-        ({"name": "sham", "sham": True}, "states.1.sham"),
-        ({**sham_of("spall"), "fault": "spalling"}, "states.1.fault"),
-        ({**sham_of("spall"), "severity": "slight"}, "states.1.severity"),
-        ({**sham_of("spall"), "sham": 1}, "states.1.sham"),
-        ({**sham_of("spall"), "damage": {"kind": "spall", **EXAMPLES["spall"], "depth_mm": 40.0}}, "states.1.damage"),
+        ({"name": "sham", "sham": True}, "states.sham.sham"),
+        ({**sham_of("spall"), "fault": "spalling"}, "states.sham.fault"),
+        ({**sham_of("spall"), "severity": "slight"}, "states.sham.severity"),
+        ({**sham_of("spall"), "sham": 1}, "states.sham.sham"),
+        (
+            {**sham_of("spall"), "damage": {"kind": "spall", **EXAMPLES["spall"], "depth_mm": 40.0}},
+            "states.sham.damage",
+        ),
     ],
 )
 def test_what_a_sham_cannot_be_is_refused_by_name(state: dict[str, Any], path: str) -> None:

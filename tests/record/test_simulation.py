@@ -79,7 +79,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
     # Wide pits cover the face together: no contact length is left, which only the draw can show.
     config = load_config(
         "tests/configs/linear_pits.yaml",
-        [*SMALL, "states.3.damage.semi_axis_face_mm=6.0"],
+        [*SMALL, "states.severe.damage.semi_axis_face_mm=6.0"],
     )
     results = list(simulate_specimen(config, range(config.records_per_specimen)))
     assert [type(r) for r in results[:6]] == [SimulatedRecord] * 6

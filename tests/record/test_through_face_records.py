@@ -11,6 +11,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
+from tests.config.minimal import by_name
 from tests.simulated import simulate
 
 SPALL = {
@@ -25,7 +26,7 @@ def config(damage: dict[str, Any] | None = None, *overrides: str) -> Config:
     states = [{"name": "healthy"}, {"name": "damaged", "fault": "spalling", "severity": "severe", "damage": spall}]
     from siggen.config import read_yaml
 
-    raw = {**read_yaml("tests/configs/casing.yaml"), "states": states, "specimens": 1, "duration_s": 0.1}
+    raw = {**read_yaml("tests/configs/casing.yaml"), "states": by_name(states), "specimens": 1, "duration_s": 0.1}
     return load_config(raw, overrides)
 
 

@@ -38,4 +38,4 @@ def test_it_holds_what_the_model_gives() -> None:
 
 
 def test_a_place_without_bearings_is_refused() -> None:
-    assert "pinion_bearing, gear_bearing" in problems({**PINION, "place": "lid"})["sensors.0.place"]
+    assert "pinion_bearing, gear_bearing" in problems({**PINION, "place": "lid"})["sensors.pinion.place"]

@@ -14,7 +14,7 @@ from siggen.config import Config
 from siggen.planning.state_config import state_config
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.converter import MOST_BITS, bits_of_noise
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 FLOOR = {"log": [0.003, 0.01]}
@@ -30,7 +30,7 @@ def config(**sensor: Any) -> Config:
         {"name": "loud", "fault": "sensor", "severity": "slight", "changes": {"sensors.bearing.noise.floor_m_s2": 2.0}},
     ]
     short = {"specimens": 2, "duration_s": 0.05, "fs_hz": 20480.0, "mesh_harmonics": 3}
-    return load_config(minimal(dynamics=dynamics, states=states, sensors=[bearing], **short))
+    return load_config(minimal(dynamics=dynamics, states=by_name(states), sensors=by_name([bearing]), **short))
 
 
 def step_of(signal: np.ndarray) -> float:

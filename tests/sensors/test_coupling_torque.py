@@ -49,4 +49,4 @@ def test_noise_range_and_bits_are_those_of_every_sensor() -> None:
 
 
 def test_a_coupling_that_the_model_has_not_is_refused() -> None:
-    assert "input_coupling, output_coupling" in problems({**INPUT, "place": "pinion"})["sensors.0.place"]
+    assert "input_coupling, output_coupling" in problems({**INPUT, "place": "pinion"})["sensors.input.place"]

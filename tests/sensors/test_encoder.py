@@ -84,10 +84,10 @@ def test_it_leaves_all_other_channels_as_they_were() -> None:
 
 def test_what_has_no_pulses_is_refused() -> None:
     found = problems({**PINION, "pulses_per_turn": 0})
-    assert found == {"sensors.0.pulses_per_turn": "0; allowed: a whole number from 1 to 100000"}
+    assert found == {"sensors.first.pulses_per_turn": "0; allowed: a whole number from 1 to 100000"}
     found = problems({**PINION, "pulses_per_turn": 1}, duration_s=0.05)
     said = "1; allowed: at least 2; in duration_s its shaft makes 1.5 turns"
-    assert found["sensors.0.pulses_per_turn"].startswith(said)
-    assert "one of motor, pinion" in problems({**PINION, "place": "lid"})["sensors.0.place"]
+    assert found["sensors.first.pulses_per_turn"].startswith(said)
+    assert "one of motor, pinion" in problems({**PINION, "place": "lid"})["sensors.first.place"]
     found = problems({**PINION, "eccentricity": [0.001, 3]})
-    assert found["sensors.0.eccentricity"].endswith("allowed: a number from 0 to 0.1")
+    assert found["sensors.first.eccentricity"].endswith("allowed: a number from 0 to 0.1")

@@ -29,11 +29,13 @@ duration_s: 0.2
 repeats: 1
 splits: {train: 10, validation: 5, test: 5}
 states:
-  - {name: healthy}
-  - {name: slight, damage: {kind: spall, face_length_mm: 4, profile_length_mm: 1, depth_mm: 0.1}}
-  - {name: severe, damage: {kind: spall, face_length_mm: 12, profile_length_mm: 2, depth_mm: 0.2}}
+  others: null
+  healthy: {}
+  slight: {damage: {kind: spall, face_length_mm: 4, profile_length_mm: 1, depth_mm: 0.1}}
+  severe: {damage: {kind: spall, face_length_mm: 12, profile_length_mm: 2, depth_mm: 0.2}}
 sensors:
-  - {kind: toy_strain_gauge, name: seat, range_um_m: 100, floor_um_m: [0.005, 0.02]}
+  others: null
+  seat: {kind: toy_strain_gauge, range_um_m: 100, floor_um_m: [0.005, 0.02]}
 """
 CLEAN = "internals: {quantities: [bearing_force_pinion_bearing_vertical_n]}"
 SIGNAL = "strain_seat_vertical_um_m"
@@ -41,12 +43,12 @@ OTHER_QUANTITY = re.compile(r"accelerat\w*|accelerometer|(?<!m)m/s(²|\^?2)|m_s2
 
 
 MISTAKES = {
-    "sensors.0.range_um_m=0.05": "allowed: at least 0.1",
-    "sensors.0.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
+    "sensors.seat.range_um_m=0.05": "allowed: at least 0.1",
+    "sensors.seat.kind=thermometer": "coupling_torque, bearing_force, motor_current, toy_strain_gauge",
 }
 LINES = {
     "generate": "siggen generate toy.yaml --out set --engine serial",
-    "doubted": "siggen plan toy.yaml --trial 0 --set sensors.0.range_um_m=0.5",
+    "doubted": "siggen plan toy.yaml --trial 0 --set sensors.seat.range_um_m=0.5",
     **{change: f"siggen plan toy.yaml --trial 0 --set {change}" for change in MISTAKES},
     "publish": "siggen publish set --facts publication.yaml --to published",
     "alone": "siggen generate alone.yaml --out alone --engine serial",
@@ -61,8 +63,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, str]
     """Return a folder with all that commands made there in one process, and what they said."""
     folder = tmp_path_factory.mktemp("toy")
     (folder / "toy.yaml").write_text(CONFIG)
-    lid = "  - {name: lid, place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
-    gauge = CONFIG.partition("sensors:\n")[2]
+    lid = "  lid: {place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
+    gauge = CONFIG.partition("sensors:\n  others: null\n")[2]
     for name, sensors in (("alone", lid), ("both", gauge + lid)):
         own = CONFIG.replace("specimens: 1", f"specimens: 1\nbackground: null\n{CLEAN}").replace(gauge, sensors)
         (folder / f"{name}.yaml").write_text(own)
@@ -171,9 +173,9 @@ def test_an_entry_without_a_kind_is_an_accelerometer_and_the_identity_stays() ->
                   "pinion": {"teeth": 20, "bore_radius_mm": 5.0},
                   "gear": {"teeth": 40, "bore_radius_mm": 5.0}},
         "operating_points": [{"speed_hz": 10.0, "torque_nm": 10.0}],
-        "states": [{"name": "healthy"}],
+        "states": {"healthy": {}},
     }  # fmt: skip
-    found = [parse({**raw, "sensors": [{"name": "a", **kind}]}) for kind in ({}, {"kind": "accelerometer"})]
+    found = [parse({**raw, "sensors": {"a": {**kind}}}) for kind in ({}, {"kind": "accelerometer"})]
     first, second = (one.config for one in found)
     assert first is not None, found[0].problems
     assert second is not None

@@ -15,6 +15,7 @@ from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.staged_structure import axis_places_m
+from tests.config.minimal import by_name
 from tests.config.staged import SLOW, staged
 from tests.simulated import simulate
 
@@ -30,8 +31,8 @@ ENCODER = {"kind": "encoder", "pulses_per_turn": 2_000, "pitch_error": 0, "eccen
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     """Return a configuration of two meshes without friction, errors of teeth or noise."""
     plain = {
-        "sensors": list(sensors), "stages": [{**SLOW, "direction_deg": DIRECTION_DEG}], "fs_hz": 12_800.0,
-        "states": [{"name": "healthy"}], "dynamics": {"model": "8dof", "friction": {"model": "off"}},
+        "sensors": by_name(sensors), "stages": [{**SLOW, "direction_deg": DIRECTION_DEG}], "fs_hz": 12_800.0,
+        "states": {"healthy": {}}, "dynamics": {"model": "8dof", "friction": {"model": "off"}},
     }  # fmt: skip
     return load_config(staged(**{**plain, **changes}))
 
@@ -109,14 +110,14 @@ def test_unknown_places_are_refused_with_those_of_this_gearbox() -> None:
         {**ENCODER, "name": "c", "place": "slow.gear"},
     )  # fmt: skip
     where = "(dynamics.model: 8dof)"
-    assert found["sensors.0.place"].startswith(
+    assert found["sensors.a.place"].startswith(
         f"'fast_bearing'; allowed: one of pinion_bearing, gear_bearing, slow_bearing {where}"
     )
-    assert "one of pinion_bearing, gear_bearing, slow_bearing" in found["sensors.1.place"]
+    assert "one of pinion_bearing, gear_bearing, slow_bearing" in found["sensors.b.place"]
     turning = "motor, pinion, gear, slow_pinion, slow_gear, load"
-    assert found["sensors.2.place"] == f"'slow.gear'; allowed: one of {turning} {where}; did you mean 'slow_gear'?"
-    one_mesh = refused({"name": "a", "place": "slow_bearing"}, stages=[], states=[{"name": "healthy"}])
-    assert "one of pinion_bearing, gear_bearing (dynamics.model: 8dof)" in one_mesh["sensors.0.place"]
+    assert found["sensors.c.place"] == f"'slow.gear'; allowed: one of {turning} {where}; did you mean 'slow_gear'?"
+    one_mesh = refused({"name": "a", "place": "slow_bearing"}, stages=[], states={"healthy": {}})
+    assert "one of pinion_bearing, gear_bearing (dynamics.model: 8dof)" in one_mesh["sensors.a.place"]
 
 
 def test_a_transmission_error_of_a_further_mesh_has_its_own_base_circles() -> None:
@@ -137,7 +138,7 @@ def test_encoders_of_a_transmission_error_sit_on_both_sides_of_one_mesh() -> Non
     places = {"in": "pinion", "out": "load", "middle": "slow_pinion"}
     encoders = [{**ENCODER, "name": name, "place": place} for name, place in places.items()]
     first = refused(*encoders, error)
-    assert first == {"sensors.3.gear_encoder": "'out'; allowed: an encoder at place gear: none there is; add one"}
+    assert first == {"sensors.te.gear_encoder": "'out'; allowed: an encoder at place gear: none there is; add one"}
     assert loaded(*encoders, {**error, "pinion_encoder": "middle"}).sensors
-    other = refused(*encoders, {**error, "pinion_encoder": "out"})["sensors.3.pinion_encoder"]
+    other = refused(*encoders, {**error, "pinion_encoder": "out"})["sensors.te.pinion_encoder"]
     assert other == "'out'; allowed: an encoder at place pinion or motor or slow_pinion: in, middle"

@@ -17,7 +17,7 @@ SPALL = {"kind": "spall", "gear": "pinion", "teeth": 18, "face_length_mm": 15, "
 SLOW: dict[str, Any] = {
     "dynamics__mesh": {"law": "pairs", "tip_relief_um": 15.0},
     "operating_points": [{"speed_hz": 0.5, "torque_nm": 60.0}],
-    "states": [{"name": "healthy"}, {"name": "severe", "damage": SPALL}],
+    "states": {"healthy": {}, "severe": {"damage": SPALL}},
     "fs_hz": 2000.0,
     "duration_s": 0.5,
     **OFF,
@@ -53,8 +53,8 @@ def test_a_disc_off_its_axis_adds_its_eccentricity_at_the_base_circle() -> None:
 
 def test_encoders_that_are_not_there_or_on_the_other_shaft_are_refused() -> None:
     found = problems(PINION, GEAR, {**ERROR, "gear_encoder": "first"})
-    assert found["sensors.2.gear_encoder"] == "'first'; allowed: an encoder at place gear or load: second"
+    assert found["sensors.error.gear_encoder"] == "'first'; allowed: an encoder at place gear or load: second"
     found = problems(PINION, {**ERROR, "gear_encoder": "third"})
-    assert found["sensors.1.gear_encoder"].endswith("gear or load: none there is; add one")
+    assert found["sensors.error.gear_encoder"].endswith("gear or load: none there is; add one")
     found = problems(PINION, {**GEAR, "pulses_per_turn": 0}, ERROR)
-    assert list(found) == ["sensors.1.pulses_per_turn"]
+    assert list(found) == ["sensors.second.pulses_per_turn"]

@@ -23,7 +23,7 @@ from siggen.planning.specimen import draw_specimen
 from siggen.publication.dataset_info import class_names
 from siggen.sets.extension import extend
 from siggen.specimen.gears import gear_pair
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 
 LIFE: dict[str, Any] = {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 1.2, "most": 6, "removed_share": 0.0}
 """Gearboxes of 30 Hz pit after 2 to 3 h and fail after 4 to 5."""
@@ -31,7 +31,7 @@ LIFE: dict[str, Any] = {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h"
 
 def lives(life: dict[str, Any] | None = None, **changes: Any) -> dict[str, Any]:
     """Return a small set of short records."""
-    return minimal(states=[], life={**LIFE, **(life or {})}, specimens=2, duration_s=0.05, fs_hz=20_000.0, **changes)
+    return minimal(states={}, life={**LIFE, **(life or {})}, specimens=2, duration_s=0.05, fs_hz=20_000.0, **changes)
 
 
 def run(*arguments: str) -> str:
@@ -113,7 +113,7 @@ def test_before_the_first_pit_records_are_those_of_a_healthy_gearbox(tmp_path: P
     names = [{"name": f"inspection_{number:03d}"} for number in range(3)]
     young = {"interval_h": 1e-3, "most": 3}
     siggen.generate(load_config(lives(young)), tmp_path / "young", workers=0)
-    siggen.generate(load_config({**lives(), "life": None, "states": names}), tmp_path / "healthy", workers=0)
+    siggen.generate(load_config({**lives(), "life": None, "states": by_name(names)}), tmp_path / "healthy", workers=0)
     first, second = (rows(tmp_path / name) for name in ("young", "healthy"))
     columns = set(first[0]) & set(second[0])
     assert [{c: row[c] for c in columns} for row in first] == [{c: row[c] for c in columns} for row in second]
@@ -160,11 +160,11 @@ def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: P
 @pytest.mark.parametrize(
     ("changes", "path", "said"),
     [
-        ({"states": [{"name": "healthy"}]}, "states", "states beside a section life"),
+        ({"states": {"healthy": {}}}, "states", "states beside a section life"),
         ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -60.0}]}, "operating_points.0.torque_nm", "-60"),
         ({"life": {**LIFE, "history": [[5.0, -1.0]]}}, "life.history.0", "torque from 0 to 100 over"),
         ({"life": {**LIFE, "history": [[5.0, 0.0]]}}, "life.history", "no block with torque and speed above 0"),
-        ({"life": None}, "states", "a list of 0"),
+        ({"life": None}, "states", "an empty mapping"),
     ],
 )
 def test_lives_that_cannot_be_are_refused(changes: dict[str, Any], path: str, said: str) -> None:
@@ -175,7 +175,7 @@ def test_lives_that_cannot_be_are_refused(changes: dict[str, Any], path: str, sa
 
 
 def test_neither_states_nor_a_life_is_refused_with_both_ways_on() -> None:
-    with pytest.raises(ConfigError, match=r"states: received a list of 0; .* or a section life in its place"):
+    with pytest.raises(ConfigError, match=r"states: received an empty mapping; .* or a section life in its place"):
         load_config({**lives(), "life": None})
 
 

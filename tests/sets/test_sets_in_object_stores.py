@@ -32,7 +32,7 @@ from tests.dataset.fake_set import (
 from tests.dataset.s3_server import BUCKET, digests, object_bytes, s3_server
 
 PLACE = f"s3://{BUCKET}/a/set"
-SHORT = ("duration_s=0.5", "specimens=1", "states=[{name: healthy}]", "repeats=1")
+SHORT = ("duration_s=0.5", "specimens=1", "states={healthy: {}}", "repeats=1")
 
 
 @pytest.fixture(autouse=True)

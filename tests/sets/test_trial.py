@@ -7,6 +7,7 @@ import pytest
 from siggen.planning.plan import planned_record
 from siggen.sets.record_cost import START_S, RecordTime, SetCost, set_cost
 from siggen.sets.trial import RECORDS, StateTrial, shortened, trial
+from tests.config.minimal import by_name
 from tests.config.minimal import config as minimal
 from tests.dataset.fake_set import fake_config, fake_physics, simulate_none, simulate_with_failures
 
@@ -46,7 +47,7 @@ def test_a_sample_takes_gearboxes_where_states_are_few_and_states_where_they_are
     with fake_physics():
         assert [one.tried for one in trial(fake_config()).states] == [1, 1, 1]
         states = [{"name": f"state_{i}"} for i in range(12)]
-        found = trial(fake_config(states=states)).states
+        found = trial(fake_config(states=by_name(states))).states
     assert [one.tried for one in found] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1]
     assert sum(one.tried for one in found) == RECORDS
     assert found[1].interval == (0.0, 1.0)

@@ -16,7 +16,7 @@ from tests.simulated import simulate
 
 CONFIG = "tests/configs/casing.yaml"
 SHORT = ["specimens=1", "duration_s=0.02", "operating_points=[{speed_hz: 30.0, torque_nm: 20.0}]"]
-HEALTHY = "states=[{name: healthy}]"
+HEALTHY = "states={healthy: {}}"
 # So much damping that nothing but rounding is left of the shaft; no stiffness alone makes the scheme run away.
 DAMPED = "dynamics.pinion.bearing_damping_x_n_s_per_m"
 

@@ -14,7 +14,7 @@ from siggen.planning.specimen import draw_specimen
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.structure import structure
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 
 LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "position_mm": [60.0, 50.0]}
 MESH = MeanMesh(3e8, 800.0)
@@ -22,7 +22,7 @@ MESH = MeanMesh(3e8, 800.0)
 
 def loaded(mass_kg: float) -> Config:
     housing = {"kind": "rigid", "mass_kg": mass_kg, "inertia_kg_m2": None}
-    return load_config(minimal(sensors=[LID], housing=housing))
+    return load_config(minimal(sensors=by_name([LID]), housing=housing))
 
 
 def assembled(mass_kg: float) -> Structure:

@@ -12,15 +12,16 @@ from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.specimen.errors import SpecimenErrors, specimen_errors
 from siggen.specimen.gears import gear_pair
+from tests.config.minimal import by_name
 from tests.sensors.runs import loaded, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION
 from tests.sensors.test_transmission_error import ERROR
 
-STATE = "{{name: off, fault: eccentricity, severity: severe, changes: {{dynamics.{}.eccentricity_um: {{add: {}}}}}}}"
+STATE = "off: {{fault: eccentricity, severity: severe, changes: {{dynamics.{}.eccentricity_um: {{add: {}}}}}}}"
 
 
 def config(which: str, added_um: float, manufacture: str = "{accuracy_class: 6}") -> Config:
-    states = f"states=[{{name: healthy}}, {STATE.format(which, added_um)}]"
+    states = f"states={{healthy: {{}}, {STATE.format(which, added_um)}}}"
     return load_config("tests/configs/casing.yaml", ["specimens=2", f"manufacture={manufacture}", states])
 
 
@@ -42,7 +43,7 @@ def test_two_encoders_see_a_circle_of_the_added_eccentricity_and_nothing_else(wh
         chosen = loaded(
             PINION, GEAR, ERROR, dynamics__mesh={"law": "pairs", "tip_relief_um": 15.0}, fs_hz=fs_hz, duration_s=1.0,
             manufacture={"accuracy_class": 6}, operating_points=[{"speed_hz": speed_hz, "torque_nm": 60.0}],
-            states=[{"name": "healthy"}, off], **OFF,
+            states=by_name([{"name": "healthy"}, off]), **OFF,
         )  # fmt: skip
         return record(chosen, 1).channels["error_line_of_action"].astype(np.float64)
 
@@ -72,5 +73,5 @@ def test_nothing_added_is_the_healthy_gear() -> None:
 
 
 def test_perfect_gears_have_no_place_for_it() -> None:
-    with pytest.raises(ConfigError, match=r"states\.1\.changes\.dynamics\.pinion\.eccentricity_um"):
+    with pytest.raises(ConfigError, match=r"states\.off\.changes\.dynamics\.pinion\.eccentricity_um"):
         config("pinion", 30.0, "null")

@@ -17,7 +17,7 @@ from siggen.specimen.bearing_spalls import mean_force_n
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 from siggen.specimen.structure import specimen_bearings, structure
-from tests.config.minimal import config, minimal
+from tests.config.minimal import by_name, config, minimal
 from tests.simulated import simulate
 
 CLEARANCE = "dynamics.pinion.bearing.clearance_um"
@@ -26,7 +26,12 @@ LOOSE = {"name": "loose", "fault": "clearance", "severity": "slight", "changes":
 
 
 def raw(clearance_um: float = 10.0, **changes: Any) -> dict[str, Any]:
-    short = {"fs_hz": 25600.0, "duration_s": 0.1, "states": [{"name": "healthy"}, LOOSE], "dynamics__model": "8dof"}
+    short = {
+        "fs_hz": 25600.0,
+        "duration_s": 0.1,
+        "states": by_name([{"name": "healthy"}, LOOSE]),
+        "dynamics__model": "8dof",
+    }
     bearings = {"dynamics__pinion__bearing__clearance_um": clearance_um, "dynamics__gear__bearing": {}}
     return minimal(**{**short, **bearings, **changes})
 
@@ -90,15 +95,15 @@ def test_a_shaft_that_hardly_bends_stands_on_its_bearings_as_without_shafts() ->
 
 
 def test_more_clearance_as_a_change_is_the_gearbox_that_has_it_and_moves_its_records() -> None:
-    changed, own = made(), made(40.0, states=[{"name": "healthy"}, {"name": "loose"}])
+    changed, own = made(), made(40.0, states={"healthy": {}, "loose": {}})
     np.testing.assert_array_equal(signal(changed, 1), signal(own, 1))
-    healthy = signal(made(states=[{"name": "healthy"}, {"name": "loose"}]), 1)
+    healthy = signal(made(states={"healthy": {}, "loose": {}}), 1)
     assert np.std(signal(changed, 1) - healthy) > 0.1 * np.std(healthy)
 
 
 def test_a_record_depends_on_its_own_load_alone() -> None:
     points = [{"speed_hz": 30.0, "torque_nm": torque} for torque in (20.0, 60.0)]
-    base = {"states": [{"name": "healthy"}], "background__bearings": {}}
+    base = {"states": {"healthy": {}}, "background__bearings": {}}
     both = made(operating_points=points, **base)
     stiffness = [
         specimen_bearings(draw_specimen(both, 0).under(draw_operating_point(both, 0, n)))["pinion"].along_n_per_m
@@ -112,7 +117,7 @@ def test_a_record_depends_on_its_own_load_alone() -> None:
 
 
 def test_a_stiffness_in_newtons_per_metre_stays_what_it_is() -> None:
-    plain = config(states=[{"name": "healthy"}])
+    plain = config(states={"healthy": {}})
     specimen = draw_specimen(plain, 0)
     assert specimen.under(OperatingPoint(1.0, 999.0)) is specimen
     assert specimen_bearings(specimen) == {}
@@ -137,12 +142,12 @@ def test_plan_says_which_given_stiffness_a_bearing_replaces_and_which_it_does_no
     ("path", "change"),
     [
         ("dynamics.pinion.bearing.clearance_um", {"clearance_um": -1.0}),
-        ("states.1.changes.dynamics.pinion.bearing.clearance_um", {
-            "states": [{"name": "healthy"}, {**LOOSE, "changes": {CLEARANCE: {"add": -30.0}}}]
+        ("states.loose.changes.dynamics.pinion.bearing.clearance_um", {
+            "states": by_name([{"name": "healthy"}, {**LOOSE, "changes": {CLEARANCE: {"add": -30.0}}}])
         }),
         ("dynamics.gear.bearing.ball_diameter_mm", {"dynamics__gear__bearing": {"ball_diameter_mm": 15.0}}),
-        (f"states.1.changes.{STIFFNESS}", {
-            "states": [{"name": "healthy"}, {**LOOSE, "changes": {STIFFNESS: {"times": 0.5}}}]
+        (f"states.loose.changes.{STIFFNESS}", {
+            "states": by_name([{"name": "healthy"}, {**LOOSE, "changes": {STIFFNESS: {"times": 0.5}}}])
         }),
     ],
 )  # fmt: skip
@@ -155,7 +160,7 @@ def test_what_no_bearing_is_is_refused_with_its_path(path: str, change: dict[str
 def test_a_spall_of_such_a_bearing_pushes_under_its_load_and_clearance() -> None:
     spall = {"kind": "bearing_spall", "element": "outer", "length_mm": 2.0}
     states = [{"name": "healthy"}, {"name": "spall", "severity": "slight", "damage": spall}]
-    pushed = {um: signal(made(um, states=states), 1) for um in (10.0, 30.0)}
+    pushed = {um: signal(made(um, states=by_name(states)), 1) for um in (10.0, 30.0)}
     assert np.std(pushed[10.0]) > 0.0
     assert np.std(pushed[10.0] - pushed[30.0]) > 0.05 * np.std(pushed[10.0])
 
@@ -167,10 +172,10 @@ def test_balls_that_pass_a_loaded_bearing_are_heard_at_their_order_though_nothin
     for um in (0.0, 40.0):
         short: dict[str, Any] = {
             "duration_s": 0.5,
-            "states": [{"name": "healthy"}],
+            "states": {"healthy": {}},
             "dynamics__mesh": {"law": "linear"},
         }
-        short["sensors"] = [{"name": "bearing", "bits": None, "range_m_s2": 1e6}]  # no steps of a converter
+        short["sensors"] = {"bearing": {"bits": None, "range_m_s2": 1e6}}  # no steps of a converter
         plain, heard = made(um, **short), made(um, **short, background__bearings=still)
         added = signal(heard, 0) - signal(plain, 0)
         power = np.abs(np.fft.rfft(added * np.hanning(added.size))) ** 2

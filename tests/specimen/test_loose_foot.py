@@ -15,7 +15,7 @@ from siggen.dynamics.structure.drivetrain import Drivetrain
 from siggen.dynamics.structure.gear_stage import Casing
 from siggen.dynamics.structure.makers import GROUND, rigid_housing
 from siggen.dynamics.structure.structure import matrices
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.dynamics.casing_stage import BOLT_PLACES, make_casing
 from tests.simulated import simulate
 
@@ -65,7 +65,7 @@ def changed(kind: str, share: float | None) -> np.ndarray:
     small = {"specimens": 1, "duration_s": 0.2, "fs_hz": 20480.0, "mesh_harmonics": 3, "dynamics": dynamics}
     sensors = [{"name": "bearing", "noise": None, "bits": None}]
     states = [{"name": "healthy"}, {"name": "second", **changes}]
-    config = load_config(minimal(**small, sensors=sensors, housing={"kind": kind}, states=states))
+    config = load_config(minimal(**small, sensors=by_name(sensors), housing={"kind": kind}, states=by_name(states)))
     (record,) = simulate(config, [1])
     assert isinstance(record, SimulatedRecord), record
     assert record.labels["state"] == "second"

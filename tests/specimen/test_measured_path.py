@@ -24,7 +24,7 @@ from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.mode_table import seats_of
 from tests.config.mill import mill
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.sensing.resonances import accelerance
 from tests.simulated import simulate
 
@@ -38,7 +38,7 @@ def written(folder: Path, path: dict[str, Any], **changes: Any) -> Path:
     sensor = {**SENSOR, "path": path}
     changes = {"dynamics__model": "casing", "duration_s": 0.1, "fs_hz": 25600.0, **changes}
     source = folder / "set.yaml"
-    source.write_text(yaml_text(minimal(sensors=[sensor], **changes)))
+    source.write_text(yaml_text(minimal(sensors=by_name([sensor]), **changes)))
     return source
 
 
@@ -118,7 +118,7 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
         found |= {f"vertical_from_{own}_{part}_m_s2_per_n": getattr(curve, part) for part in ("real", "imag")}
     save(found, tmp_path / "lid.npz")
     sensor = {**SENSOR, "path": {"file": "lid.npz"}}
-    (tmp_path / "set.yaml").write_text(yaml_text(mill(sensors=[sensor], fs_hz=25600.0, duration_s=0.1)))
+    (tmp_path / "set.yaml").write_text(yaml_text(mill(sensors=by_name([sensor]), fs_hz=25600.0, duration_s=0.1)))
     config = load_config(tmp_path / "set.yaml")
     specimen = draw_specimen(config, 0)
     response, _ = record_response(config, specimen, specimen_state(config, specimen, 0), planned_record(config, 0))
@@ -184,7 +184,7 @@ def test_a_file_that_is_no_response_is_refused_by_name(tmp_path: Path, mistake: 
     save(change(columns()), tmp_path / "lid.parquet")
     with pytest.raises(ConfigError) as refused:
         load_config(written(tmp_path, {"kind": "measured", "file": "lid.parquet"}))
-    assert {problem.path for problem in refused.value.problems} == {"sensors.0.path.file"}
+    assert {problem.path for problem in refused.value.problems} == {"sensors.lid.path.file"}
     assert said in str(refused.value)
 
 
@@ -206,11 +206,11 @@ def test_a_path_without_a_usable_file_is_refused_by_name(tmp_path: Path, path: d
         (tmp_path / name).write_text("a,b\n1,2\n")
     with pytest.raises(ConfigError, match=said) as refused:
         load_config(written(tmp_path, {"kind": "measured", **path}))
-    assert all(problem.path.startswith("sensors.0.path.") for problem in refused.value.problems)
+    assert all(problem.path.startswith("sensors.lid.path.") for problem in refused.value.problems)
 
 
 def test_a_measured_path_takes_no_more_cross_axis_sensitivity(tmp_path: Path) -> None:
     save(columns(), tmp_path / "lid.csv")
     source = written(tmp_path, {"kind": "measured", "file": "lid.csv"})
-    with pytest.raises(ConfigError, match=r"sensors\.0\.cross_axis"):
-        load_config(source, ["sensors.0.cross_axis=0.04"])
+    with pytest.raises(ConfigError, match=r"sensors\.lid\.cross_axis"):
+        load_config(source, ["sensors.lid.cross_axis=0.04"])

@@ -23,7 +23,7 @@ from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.mode_table import seats_of
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 INPUTS = seats_of(PAIR)
@@ -45,7 +45,7 @@ def written(folder: Path, text: str, **changes: Any) -> Path:
     """Write modes and a configuration that reads them, and return its file."""
     (folder / "modes.csv").write_text(text)
     housing = {"kind": "modal", "modes": "modes.csv"}
-    changes = {"dynamics__model": "casing", "duration_s": 0.1, "housing": housing, "sensors": [LID], **changes}
+    changes = {"dynamics__model": "casing", "duration_s": 0.1, "housing": housing, "sensors": by_name([LID]), **changes}
     source = folder / "set.yaml"
     source.write_text(yaml_text(minimal(**changes)))
     return source

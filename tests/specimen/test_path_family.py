@@ -14,7 +14,7 @@ from siggen.config import Config, parse, parse_yaml, yaml_text
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.instrument import specimen_instrument
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 FLAT = np.arange(0.0, 12_801.0, 25.0)
@@ -36,7 +36,7 @@ def with_paths(folder: Path, path: dict[str, Any], sensors: int = 1) -> Path:
     listed = [{**common, "name": f"s{k}"} for k in range(sensors)]
     source = folder / "set.yaml"
     changes = {"dynamics__model": "casing", "duration_s": 0.1, "fs_hz": 25600.0}
-    source.write_text(yaml_text(minimal(sensors=listed, **changes)))
+    source.write_text(yaml_text(minimal(sensors=by_name(listed), **changes)))
     return source
 
 
@@ -101,7 +101,7 @@ def test_the_table_of_siggen_path_is_read_again(tmp_path: Path) -> None:
     assert not out.exists()
     modal = load_config("quickstart", [*settings, "specimens=1"])
     raw = modal.canonical()
-    for sensor in raw["sensors"]:
+    for sensor in raw["sensors"].values():
         sensor |= {"place": "casing", "path": {"kind": "measured", "file": str(table)}}
         sensor["cross_axis"] = 0.0
     measured = load_config(raw)

@@ -27,6 +27,7 @@ from siggen.specimen.planetary_housing import set_in_housing
 from siggen.specimen.planetary_numbers import planetary_numbers
 from siggen.specimen.set_on_housing import forces_through_housing
 from siggen.specimen.structure import linear_structure, linear_train, specimen_body
+from tests.config.minimal import by_name
 from tests.config.planets import planets
 
 GRID = np.array([20.0, 150.0, 462.0, 924.0, 1700.0, 3200.0])
@@ -48,7 +49,7 @@ def modes(*high_hz: float) -> str:
 def machine(housing: dict[str, Any], **changes: Any) -> tuple[Config, Specimen]:
     dynamics = {**planets()["dynamics"], "model": "casing"}
     lid = {**LID, "position_mm": [60.0, 110.0]} if housing["kind"] == "rigid" else LID
-    config = load_config(planets(dynamics=dynamics, housing=housing, sensors=[lid], **changes))
+    config = load_config(planets(dynamics=dynamics, housing=housing, sensors=by_name([lid]), **changes))
     return config, draw_specimen(config, 0)
 
 

@@ -34,6 +34,7 @@ from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
 from siggen.specimen.shaft_forces import force_sources
 from siggen.specimen.structure import structure
+from tests.config.minimal import by_name
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -56,7 +57,7 @@ STEP_S = 1.0 / (51200 * 8)
 
 def two_stages() -> dict[str, Any]:
     """Return the gearbox of the tests on bearings in the ground, with a second stage, as in a file."""
-    raw = {**read_yaml(ROOT / "tests/configs/casing.yaml"), "stages": [SLOW], "sensors": [SENSOR]}
+    raw = {**read_yaml(ROOT / "tests/configs/casing.yaml"), "stages": [SLOW], "sensors": by_name([SENSOR])}
     dynamics = {**raw["dynamics"], "model": "8dof"}
     return {**raw, "dynamics": dynamics, "housing": {}, "duration_s": 0.2}
 
@@ -244,7 +245,7 @@ def test_every_shaft_is_out_of_balance_by_the_mass_of_its_gears_and_turns_agains
 @pytest.mark.parametrize(("gear", "order"), [("gear", -18 / 47), ("slow.pinion", -18 / 47), ("slow.gear", 306 / 2444)])
 def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -> None:
     """A missing tooth leaves a mass on the other side, which turns with its shaft and stands at its tooth's angle."""
-    damage = f"states.1.damage={{kind: chip, gear: {gear}, height_mm: whole}}"
+    damage = f"states.slight.damage={{kind: chip, gear: {gear}, height_mm: whole}}"
     found = config(damage)
     specimen, record = draw_specimen(found, 0), planned_record(found, 3)
     state = specimen_state(found, specimen, 1)

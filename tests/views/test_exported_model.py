@@ -27,6 +27,7 @@ from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import FORMAT_VERSION, exported_model
+from tests.config.minimal import by_name
 from tests.config.planets import SPALL as PLANET_SPALL
 from tests.config.planets import planets
 from tests.specimen.test_two_stages import two_stages
@@ -62,7 +63,7 @@ def test_scipy_integrates_the_exported_linear_model_to_the_same_motion() -> None
 
 
 STIFF = ("dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynamics.model=8dof", "housing={}")
-PINION = ("sensors.0.place=pinion_bearing", "sensors.0.position_mm=null")
+PINION = ("sensors.lid.place=pinion_bearing", "sensors.lid.position_mm=null")
 
 
 @pytest.mark.slow
@@ -170,7 +171,7 @@ that chooses its steps: the last bits decide where its steps pass those of the f
 under an impact of 250 N, by up to 5e-3 of the mesh force, with 1e-6 by 2e-4."""
 
 SLOW_SPALL = (
-    "states.4.damage={kind: spall, gear: slow.pinion, teeth: 17, centre_height_mm: pitch, face_length_mm: 30.0, "
+    "states.sham.damage={kind: spall, gear: slow.pinion, teeth: 17, centre_height_mm: pitch, face_length_mm: 30.0, "
     "depth_mm: 0.2, profile_length_mm: 1.0}"
 )
 
@@ -192,7 +193,7 @@ def planetary(**changes: object) -> dict:
     states = [{"name": "healthy"}, {"name": "severe", "grows_from": "none", "damage": damage}]
     friction = {**planets()["dynamics"], "friction": {"model": "mixed_ehl"}}
     section = {"ring_teeth": 77, "pin_error_um": 10}
-    made = {"manufacture": {"accuracy_class": 6}, "states": states, "dynamics": friction, "planetary": section}
+    made = {"manufacture": {"accuracy_class": 6}, "states": by_name(states), "dynamics": friction, "planetary": section}
     return planets(**{**made, **changes})
 
 

@@ -16,6 +16,7 @@ from siggen.planning.plan import planned_record
 from siggen.record.internals import record_internals
 from siggen.views.face_pressure import FacePressure, face_pressure
 from tests.config.mill import mill
+from tests.config.minimal import by_name
 from tests.config.staged import SPALL as SPALL_OF_STAGE
 
 CONFIG = "configs/quickstart.yaml"
@@ -25,7 +26,7 @@ LINEAR = (
     *("--set", "dynamics.friction.model=off", "--set", "manufacture=null"),
 )
 OVERRIDES = [
-    f"states=[{{name: healthy}}, {{name: severe, damage: {SPALL}}}]",
+    f"states={{healthy: {{}}, severe: {{damage: {SPALL}}}}}",
     "duration_s=0.2",
     "manufacture={accuracy_class: 6, lead_misalignment_um: 4}",
 ]
@@ -83,7 +84,7 @@ def test_a_healthy_tooth_of_the_gear_has_no_edges() -> None:
 def test_a_further_mesh_is_found_by_its_gear_and_its_damaged_tooth_alone_is_unloaded() -> None:
     damage = {**SPALL_OF_STAGE, "face_length_mm": 30.0, "profile_length_mm": 2.0, "gear": "eva", "teeth": [3]}
     states = [{"name": "healthy"}, {"name": "severe", "damage": damage}]
-    config = load_config(mill(duration_s=0.2, fs_hz=12_800.0, states=states))
+    config = load_config(mill(duration_s=0.2, fs_hz=12_800.0, states=by_name(states)))
     damaged, before = face_pressure(config, 1), face_pressure(config, 1, "eva", 0)
     assert (damaged.view.gear, damaged.view.tooth) == ("eva", 3)
     assert damaged.point.torque_nm == pytest.approx(20.0 * 47 / 18)

@@ -24,7 +24,7 @@ LISTED = {
 
 @pytest.fixture
 def views():
-    return flank_views(config(states__1__damage=LISTED))
+    return flank_views(config(states__slight__damage=LISTED))
 
 
 def test_one_view_per_damaged_tooth(views):

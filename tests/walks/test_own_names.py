@@ -25,6 +25,7 @@ from siggen.errors import UsageError
 from siggen.views.face_pressure import face_pressure
 from tests.command import command
 from tests.config.mill import mill
+from tests.config.minimal import by_name
 from tests.config.staged import SLOW, SPALL, staged
 from tests.diagnostics.explore.unpacked import held
 from tests.simulated import simulate
@@ -85,7 +86,9 @@ def said(folder: Path) -> dict[str, list[str]]:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("mill")
     sensors = [{"name": SENSOR, "place": "output_bearing"}, {"kind": "encoder", "name": "out", "place": "karl"}]
-    (folder / "mill.yaml").write_text(yaml_text(mill(**COMMON, sensors=sensors, states=states("eva"))))
+    (folder / "mill.yaml").write_text(
+        yaml_text(mill(**COMMON, sensors=by_name(sensors), states=by_name(states("eva"))))
+    )
     printed = run("siggen", "generate", folder / "mill.yaml", "--out", folder / "set", "--engine", "serial")
     assert "pinion" not in OF_THE_USER.sub("", printed)
     return folder
@@ -107,7 +110,9 @@ def test_plan_set_card_and_records_say_the_users_names_alone(made: Path) -> None
 def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: Path) -> None:
     sensors = [{"name": SENSOR, "place": "slow_bearing"}, {"kind": "encoder", "name": "out", "place": "slow_gear"}]
     stage = {**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}
-    short = siggen.load_config(staged(**COMMON, stages=[stage], sensors=sensors, states=states("slow.pinion")))
+    short = siggen.load_config(
+        staged(**COMMON, stages=[stage], sensors=by_name(sensors), states=by_name(states("slow.pinion")))
+    )
     (other,) = simulate(short, [1])
     assert isinstance(other, SimulatedRecord)
     record = siggen.open(made / "set").record(1)

@@ -140,7 +140,7 @@ def test_status_by_state_is_found(clean: MeasuredSet) -> None:
 
 
 def test_failures_that_gather_in_one_state_are_found_and_evenly_spread_ones_are_not(clean: MeasuredSet) -> None:
-    config = {"states": [{"name": name} for name in clean.states()]}
+    config = {"states": {name: {} for name in clean.states()}}
     # 2 operating points, 1 repeat: records 4 and 5 of every 6 are the third state
     gathered = [{"record_id": 6 * specimen + 4} for specimen in range(60)]
     spread = [{"record_id": record} for record in range(60)]
@@ -202,7 +202,7 @@ def test_a_gain_on_one_channel_is_found_beside_a_small_change_that_tells_as_well
 
 
 def test_solver_settings_of_a_state_are_found(clean: MeasuredSet) -> None:
-    states = [{"name": "healthy"}, {"name": "slight", "dynamics": {"steps_per_sample": 8}}]
+    states = {"healthy": {}, "slight": {"dynamics": {"steps_per_sample": 8}}}
     assert named(replace(clean, config={"states": states})) == ["solver_settings_by_state"]
 
 

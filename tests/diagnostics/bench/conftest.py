@@ -29,16 +29,17 @@ CONFIG = {
             "torque_nm": [30, 60],
         }
     ],
-    "states": [
-        {"name": "healthy"},
-        {"name": "healthy_again"},
-        {"name": "pits", "severity": "slight", "damage": PITS},
-        {"name": "sham", "sham": True, "damage": PITS},
-    ],
+    "states": {
+        "others": None,
+        "healthy": {},
+        "healthy_again": {},
+        "pits": {"severity": "slight", "damage": PITS},
+        "sham": {"sham": True, "damage": PITS},
+    },
 }
 OTHERS = {
     "other_fault": {
-        "states": [*CONFIG["states"][:2], {"name": "many", "severity": "slight", "damage": PITS | {"count": 20}}]
+        "states": {"healthy": {}, "healthy_again": {}, "many": {"severity": "slight", "damage": PITS | {"count": 20}}}
     }
 }
 GEARBOXES = 14

@@ -34,7 +34,7 @@ CONFIG: dict[str, Any] = {
     "duration_s": 0.12,
     "mesh_harmonics": 3,
     "operating_points": [{"speed_hz": 30.0, "torque_nm": 60.0}],
-    "states": [],
+    "states": None,
     "life": {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 0.5, "most": 11, "removed_share": 0.2},
 }
 """Gearboxes that fail after 2 to 6 h."""

@@ -17,7 +17,7 @@ HIDDEN: dict[str, Any] = {
     "seed": 4242,
     "specimens": 1,
     "repeats": 4,
-    "states": [{"name": "healthy"}],
+    "states": {"others": None, "healthy": {}},
     "operating_points": [{"speed_hz": 34.0, "torque_nm": 40.0}],
     # clear enough to be found: as strong as the range of the preset allows
     "background": {"second_stage": {"order": 27 * 18 / 47, "force_share": 0.05}},

@@ -31,7 +31,7 @@ def band_levels_db(signal: np.ndarray) -> np.ndarray:
 
 def distance_db(source: Path, held_out: list[Path]) -> np.ndarray:
     """Return the rms difference in band level between the median of some gearboxes and held-out recordings, (2,)."""
-    config = siggen.load_config(source, ["states=[{name: healthy}]", "specimens=8"])
+    config = siggen.load_config(source, ["states={healthy: {}}", "specimens=8"])
     records = [siggen.run(siggen.draw(config, k)) for k in range(GEARBOXES)]
     simulated = [[band_levels_db(x) for x in record.channels.values()] for record in records]
     real = [[band_levels_db(column) for column in channel_data(file).T] for file in held_out]
@@ -106,7 +106,7 @@ def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
 
 
 def test_every_gearbox_of_the_set_draws_its_own_path(calibrated: tuple[Path, Path, str]) -> None:
-    config = siggen.load_config(calibrated[1], ["states=[{name: healthy}]", "specimens=8", "duration_s=1.0"])
+    config = siggen.load_config(calibrated[1], ["states={healthy: {}}", "specimens=8", "duration_s=1.0"])
     records = [siggen.run(siggen.draw(config, k)) for k in range(3)]
     numbers = {record.labels["path_number_sensor_1_vertical"] for record in records}
     assert len(numbers) > 1

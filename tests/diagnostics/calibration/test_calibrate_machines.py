@@ -21,7 +21,7 @@ from diagnostics.cli.app import app
 from siggen.errors import SiggenError
 from tests.command import command
 from tests.config.mill import mill, with_machine
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 from tests.config.planets import planets
 from tests.sensing.resonances import accelerance
 
@@ -39,16 +39,16 @@ RIG: dict[str, Any] = {
     "mesh_harmonics": 4,
     "manufacture": {"accuracy_class": 6},
     "operating_points": [{"speed_hz": [29.0, 31.0], "torque_nm": 20.0}],
-    "sensors": [
-        {"name": "lid", "place": "input_bearing", "axes": ["vertical"]},
-        {"name": "end", "place": "output_bearing", "axes": ["horizontal"]},
-        {"kind": "encoder", "name": "turns", "place": "karl"},
-    ],
+    "sensors": {
+        "lid": {"place": "input_bearing", "axes": ["vertical"]},
+        "end": {"place": "output_bearing", "axes": ["horizontal"]},
+        "turns": {"kind": "encoder", "place": "karl"},
+    },
 }
 
 HIDDEN: dict[str, Any] = {
     "operating_points": [{"speed_hz": 30.0, "torque_nm": 20.0}],
-    "states": [{"name": "healthy"}],
+    "states": {"healthy": {}},
 }
 
 
@@ -88,7 +88,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     found = tmp_path_factory.mktemp("mill")
     (found / "mill.yaml").write_text(yaml.safe_dump(mill(**RIG)), encoding="utf-8")
     sensors = [hidden_path(found, name, axis, seed) for seed, (name, axis) in enumerate(CHANNELS.items())]
-    recorded(found, mill(**{**RIG, **HIDDEN, "sensors": sensors}))
+    recorded(found, mill(**{**RIG, **HIDDEN, "sensors": by_name(sensors)}))
     return found
 
 
@@ -159,11 +159,12 @@ def test_a_helical_pair_is_calibrated_with_its_forces_along_the_shafts_and_an_ax
     channels = {"lid": "vertical", "cap": "axial"}
     sensors = [{"name": name, "place": "pinion_bearing", "axes": [axis]} for name, axis in channels.items()]
     helical = {
-        **RIG, "gears__helix_deg": 15.0, "dynamics__model": "8dof", "sensors": sensors, "states": HIDDEN["states"]
+        **RIG, "gears__helix_deg": 15.0, "dynamics__model": "8dof", "sensors": by_name(sensors),
+        "states": HIDDEN["states"],
     }  # fmt: skip
     (tmp_path / "helix.yaml").write_text(yaml.safe_dump(minimal(**helical)), encoding="utf-8")
     hidden = [hidden_path(tmp_path, name, axis, k, HELICAL_FORCES) for k, (name, axis) in enumerate(channels.items())]
-    recorded(tmp_path, minimal(**{**helical, **HIDDEN, "sensors": hidden}))
+    recorded(tmp_path, minimal(**{**helical, **HIDDEN, "sensors": by_name(hidden)}))
     calibrate(tmp_path, "helix.yaml", "mine.yaml", "--held-out", tmp_path / "run3.npz", "--compared", 2)
     assert "axial_from_gear_bearing_axial_real_m_s2_per_n" in np.load(tmp_path / "mine_data" / "path_cap_00.npz")
     after, before = distances_db(tmp_path)
@@ -223,7 +224,11 @@ def test_the_result_generates_a_set(folder: Path, said: str) -> None:
             r"run0.npz: the input shaft turns at 30 Hz; .*wrong.yaml has operating_points.speed_hz from 50 to 50",
         ),
         ({}, ("--channel", "top=lid_vertical"), r"received top; the rig has the channels lid_vertical, end_horizontal"),
-        ({"sensors": RIG["sensors"][2:]}, (), "sensors: received turns; allowed: at least one accelerometer"),
+        (
+            {"sensors": {"turns": RIG["sensors"]["turns"]}},
+            (),
+            "sensors: received turns; allowed: at least one accelerometer",
+        ),
     ],
     ids=["other teeth of the second mesh", "another speed", "another sensor", "no accelerometer"],
 )

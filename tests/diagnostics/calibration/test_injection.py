@@ -24,6 +24,7 @@ from diagnostics.page.provenance import origin_sentence
 from siggen.errors import UsageError
 from siggen.publication.publish import publication
 from siggen.sets.verification import verify
+from tests.config.minimal import by_name
 
 SPEED_HZ, FS_HZ = 34.0, 25_600.0
 SPALL = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 1.5, "face_share": 1.0}
@@ -34,7 +35,7 @@ CONFIGURATION: dict[str, Any] = {
     "duration_s": 0.6,
     "background": None,
     "operating_points": [{"speed_hz": SPEED_HZ, "torque_nm": 40.0}],
-    "states": [{"name": "healthy"}, {"name": "severe", "damage": SPALL}],
+    "states": {"others": None, "healthy": {}, "severe": {"damage": SPALL}},
 }
 QUIET = {"variation": {}}
 
@@ -58,7 +59,7 @@ def simulated(mine: Path) -> tuple[Block, Difference]:
 
 def test_a_sensor_of_another_kind_is_refused_before_anything_is_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
     washer = {"kind": "force_washer", "name": "washer", "bits": 16}
-    config = SimpleNamespace(canonical=lambda: {"sensors": [washer]})
+    config = SimpleNamespace(canonical=lambda: {"sensors": by_name([washer])})
     monkeypatch.setattr(siggen, "load_config", lambda _: config)
     block: Any = SimpleNamespace(pulses_s=np.arange(3.0), speed_hz=1.0, fs_hz=100.0)
     with pytest.raises(UsageError, match=r"sensor washer: received kind force_washer, which has no noise_spectrum"):

@@ -22,10 +22,11 @@ duration_s: 0.5
 operating_points: [{speed_hz: 33.0, torque_nm: 40.0}]
 splits: {train: 10, validation: 5, test: 5}
 sensors:
-  - {kind: accelerometer, name: side}
-  - {kind: encoder, name: first, place: pinion, pulses_per_turn: 1800}
-  - {kind: encoder, name: second, place: gear, pulses_per_turn: 1800}
-  - {kind: transmission_error, name: error, pinion_encoder: first, gear_encoder: second}
+  others: null
+  side: {kind: accelerometer}
+  first: {kind: encoder, place: pinion, pulses_per_turn: 1800}
+  second: {kind: encoder, place: gear, pulses_per_turn: 1800}
+  error: {kind: transmission_error, pinion_encoder: first, gear_encoder: second}
 """
 
 

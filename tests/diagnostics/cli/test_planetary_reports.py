@@ -16,6 +16,7 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
+from tests.config.minimal import by_name
 from tests.config.planets import planets
 
 pytestmark = pytest.mark.slow
@@ -39,7 +40,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("planets")
     sensors = [{"name": "ring", "place": "ring", "axes": ["horizontal"], "noise": {"floor_m_s2": 0.5}}]
     split = {"train": 10, "validation": 5, "test": 5}
-    raw = planets(specimens=4, fs_hz=12_800.0, duration_s=2.0, sensors=sensors, splits=split)
+    raw = planets(specimens=4, fs_hz=12_800.0, duration_s=2.0, sensors=by_name(sensors), splits=split)
     (folder / "set.yaml").write_text(yaml.safe_dump(raw), encoding="utf-8")
     done = run("siggen", "generate", str(folder / "set.yaml"), "--out", str(folder / "set"), "--engine", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
