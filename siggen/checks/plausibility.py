@@ -12,16 +12,21 @@ from itertools import accumulate
 from math import pi, sqrt
 from operator import mul
 
-from siggen.config import Config, Housing, ModalHousing, RigidHousing
+from siggen.config import Config, Coupling, Housing, ModalHousing, Pair, PlainRotor, Planetary, RigidHousing
+from siggen.config.changes import SECTIONS, changed_sections
 from siggen.errors import counted
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, bounds
+from siggen.keys.usual import unusual
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
+from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 from siggen.sensors.sensor import SensorBase
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.modal_housing import given_modes
+from siggen.specimen.planetary_numbers import RIM_MODULES
 from siggen.specimen.rotors import disc_inertia_kg_m2, disc_mass_kg
 
 FORM_FACTOR = 2.5
@@ -71,7 +76,30 @@ def implausible(config: Config) -> tuple[str, ...]:
         return (*_of_pairs(config), *missing(config))
     outside = (quantity for quantity in quantities(config) if quantity.implausible)
     found = (str(replace(quantity, path=config.names.own_path(quantity.path))) for quantity in outside)
-    return (*found, *missing(config))
+    return (*found, *_outside_usual(config), *missing(config))
+
+
+def _outside_usual(config: Config) -> Iterator[str]:
+    """Yield numbers outside the usual range that their keys declare, and what states change to such a number."""
+    found = _unusual(config)
+    yield from (f"{config.names.own_path(path)}: {text}" for path, text in found.items())
+    for state_id, state in enumerate(config.states):
+        if state.changes:
+            sections = {name: getattr(config, name) for name in SECTIONS}
+            changed = changed_sections(sections, [change for _, change in config.changes_of(state_id)])
+            for path, text in _unusual(config.model_copy(update=changed)).items():
+                if found.get(path) != text:
+                    yield f"states.{state.name}.changes.{config.names.own_path(path)}: {text}"
+
+
+def _unusual(config: Config) -> dict[str, str]:
+    """Return the path of every number outside its usual range, and what is said of it."""
+    found = {}
+    for path, ends, usual in unusual(config):
+        if not path.startswith("machine."):  # whose numbers stand in the other sections
+            shown = " to ".join(dict.fromkeys(f"{end:.3g}" for end in ends))
+            found[path] = f"{shown}; usual: {usual.least:.3g} to {usual.most:.3g}"
+    return found
 
 
 def _of_pairs(config: Config) -> Iterator[str]:
@@ -90,10 +118,22 @@ def _of_pairs(config: Config) -> Iterator[str]:
 def quantities(config: Config) -> Iterator[Quantity]:
     """Yield what is compared."""
     pair = gear_pair(next(corners(config.gears)))
-    yield from _gears(config, pair)
+    yield from _gears("gears", config.gears, pair)
+    for index, stage in enumerate(config.stages):
+        own = gear_pair(next(corners(stage.gears)))
+        yield from _gears(f"stages.{index}.gears", stage.gears, own)
+        yield from _rotor(f"stages.{index}.gear", stage.gear, own.gear, own)
     yield from _load(config, pair)
-    yield from _rotors(config, pair)
+    for name, rotor, gear in (
+        ("pinion", config.dynamics.pinion, pair.pinion),
+        ("gear", config.dynamics.gear, pair.gear),
+    ):
+        yield from _rotor(f"dynamics.{name}", rotor, gear, pair)
     yield from _supports(config, pair)
+    if config.planetary is not None and config.planetary.ring_mass_kg is not None:
+        mass, what = config.planetary.ring_mass_kg, "mass over that of a steel rim"
+        yield _of("planetary.ring_mass_kg", what, mass, 0.2, 20.0, "is it in kg?", _rim_kg(config.planetary, pair))
+    yield from _torques(config, pair)
     yield from _teeth(config, pair)
     yield from _record(config)
 
@@ -128,19 +168,18 @@ def _empty_splits(config: Config) -> Iterator[str]:
         )
 
 
-def _gears(config: Config, pair: GearPair) -> Iterator[Quantity]:
-    gears = config.gears
+def _gears(at: str, gears: Pair, pair: GearPair) -> Iterator[Quantity]:
     module = 1e3 * pair.pinion.module_m
-    yield _of("gears.module_mm", "module [mm]", gears.module_mm, 0.3, 30.0, "is it in mm?")
+    yield _of(f"{at}.module_mm", "module [mm]", gears.module_mm, 0.3, 30.0, "is it in mm?")
     yield _of(
-        "gears.youngs_modulus_gpa", "Young's modulus [GPa]", gears.youngs_modulus_gpa, 1.0, 230.0, "is it in GPa?"
+        f"{at}.youngs_modulus_gpa", "Young's modulus [GPa]", gears.youngs_modulus_gpa, 1.0, 230.0, "is it in GPa?"
     )
-    yield _of("gears.face_width_mm", "face width over module", gears.face_width_mm, 1.5, 40.0, "is it in mm?", module)
+    yield _of(f"{at}.face_width_mm", "face width over module", gears.face_width_mm, 1.5, 40.0, "is it in mm?", module)
     for name, wheel, gear in (("pinion", gears.pinion, pair.pinion), ("gear", gears.gear, pair.gear)):
         root_mm = 1e3 * gear.root_radius_m
         hint = "a radius, in mm"
         yield _of(
-            f"gears.{name}.bore_radius_mm", "bore over root circle", wheel.bore_radius_mm, 0.08, 0.95, hint, root_mm
+            f"{at}.{name}.bore_radius_mm", "bore over root circle", wheel.bore_radius_mm, 0.08, 0.95, hint, root_mm
         )
 
 
@@ -174,23 +213,53 @@ def _hertz_pa(pair: GearPair, force_n: float) -> float:
     return sqrt(force_n * modulus / (pi * pair.face_width_m * radius))
 
 
-def _rotors(config: Config, pair: GearPair) -> Iterator[Quantity]:
-    dynamics = config.dynamics
-    for name, rotor, gear in (("pinion", dynamics.pinion, pair.pinion), ("gear", dynamics.gear, pair.gear)):
-        at = f"dynamics.{name}"
-        hint = "null takes the disc; a value left from other teeth?"
-        disc = disc_mass_kg(gear, pair.face_width_m)
-        if rotor.mass_kg is not None:
-            yield _of(f"{at}.mass_kg", "mass over that of a steel disc", rotor.mass_kg, 0.3, 12.0, hint, disc)
-        disc = disc_inertia_kg_m2(gear, pair.face_width_m)
-        if rotor.inertia_kg_m2 is not None:
-            what = "inertia over that of a steel disc"
-            yield _of(f"{at}.inertia_kg_m2", what, rotor.inertia_kg_m2, 0.3, 5.0, hint, disc)
-        for axis in "xy":
-            key = f"bearing_stiffness_{axis}_n_per_m"
-            yield _of(f"{at}.{key}", "stiffness [N/m]", getattr(rotor, key), 2e6, 2e10, "is it in N/m, not N/mm?")
-            key = f"bearing_damping_{axis}_n_s_per_m"
-            yield _of(f"{at}.{key}", "damping [N s/m]", getattr(rotor, key), 0.0, 1e6, "is it in N s/m?")
+def _rotor(at: str, rotor: PlainRotor, gear: SpurGear, pair: GearPair) -> Iterator[Quantity]:
+    hint = "null takes the disc; a value left from other teeth?"
+    disc = disc_mass_kg(gear, pair.face_width_m)
+    if rotor.mass_kg is not None:
+        yield _of(f"{at}.mass_kg", "mass over that of a steel disc", rotor.mass_kg, 0.3, 12.0, hint, disc)
+    disc = disc_inertia_kg_m2(gear, pair.face_width_m)
+    if rotor.inertia_kg_m2 is not None:
+        yield _of(f"{at}.inertia_kg_m2", "inertia over that of a steel disc", rotor.inertia_kg_m2, 0.3, 5.0, hint, disc)
+    for axis in "xy":
+        key, stiffness = (
+            f"bearing_damping_{axis}_n_s_per_m",
+            bounds(getattr(rotor, f"bearing_stiffness_{axis}_n_per_m")),
+        )
+        (low, high), hint = bounds(getattr(rotor, key)), "is it in N s/m?"
+        if high > 0.0:
+            found = max(low, 1e-3 * high) / stiffness[0], high / stiffness[1]
+            yield Quantity(f"{at}.{key}", "damping over stiffness [s]", _ends(list(found)), 5e-7, 2e-4, hint)
+
+
+def _rim_kg(section: Planetary, pair: GearPair) -> float:
+    """Return the mass of a ring of steel, four modules thick behind its teeth."""
+    module = pair.pinion.module_m
+    inner = 0.5 * module * section.ring_teeth
+    return STEEL_DENSITY_KG_M3 * pi * ((inner + RIM_MODULES * module) ** 2 - inner**2) * pair.face_width_m
+
+
+def _torques(config: Config, pair: GearPair) -> Iterator[Quantity]:
+    """Yield torques and ranges that belong to the largest torque of the operating points."""
+    largest = max(max(map(abs, bounds(point.torque_nm))) for point in config.operating_points)
+    rated: dict[str, Number] = {}
+    if bounds(config.variation.speed.slip)[1] > 0.0:
+        rated["variation.speed.rated_torque_nm"] = config.variation.speed.rated_torque_nm
+    for sensor in config.sensors:
+        if (torque := getattr(sensor, "rated_torque_nm", None)) is not None:
+            rated[f"sensors.{sensor.name}.rated_torque_nm"] = torque
+    if config.life is not None:
+        rated["life.reference_torque_nm"] = config.life.reference_torque_nm
+    if largest == 0.0:
+        return
+    force, ratio = largest / pair.pinion.base_radius_m, pair.gear.teeth / pair.pinion.teeth
+    for sensor in config.sensors:
+        for key, least, most in (("range_nm", largest, largest * ratio), ("range_n", force, force)):
+            if (limit := getattr(sensor, key, None)) is not None:
+                found, what = (limit / most, limit / least), "range over what the largest torque makes"
+                yield Quantity(f"sensors.{sensor.name}.{key}", what, found, 0.2, 300.0, "is its unit that of the key?")
+    for path, torque in rated.items():
+        yield _of(path, "torque over the largest of the operating points", torque, 0.1, 20.0, "is it in N m?", largest)
 
 
 def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
@@ -204,12 +273,15 @@ def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
         twist = [torque / value for value in reversed(bounds(coupling.stiffness_nm_per_rad))]
         hint = "is the stiffness in N m/rad?"
         yield Quantity(
-            f"dynamics.{name}.stiffness_nm_per_rad", "twist at full load [rad]", _ends(twist), 1e-5, 1.0, hint
+            f"dynamics.{name}.stiffness_nm_per_rad", "twist at full load [rad]", _ends(twist), 3e-4, 1.0, hint
         )
+    first, last = _inertia(dynamics.pinion, pair.pinion, pair), _inertia(dynamics.gear, pair.gear, pair)
+    yield from _coupling("input_coupling", dynamics.input_coupling, dynamics.motor_inertia_kg_m2, first)
+    yield from _coupling("output_coupling", dynamics.output_coupling, dynamics.load_inertia_kg_m2, last)
     disc = disc_inertia_kg_m2(pair.pinion, pair.face_width_m)
-    for name in ("motor_inertia_kg_m2", "load_inertia_kg_m2"):
+    for name, most in (("motor_inertia_kg_m2", 1.5e3), ("load_inertia_kg_m2", 1e5)):  # a mill turns behind its gears
         what, hint = "inertia over the disc of the first gear", "is it in kg m²?"
-        yield _of(f"dynamics.{name}", what, getattr(dynamics, name), 0.1, 1e5, hint, disc)
+        yield _of(f"dynamics.{name}", what, getattr(dynamics, name), 0.3, most, hint, disc)
     if dynamics.model == "casing":
         yield from _housing(config.housing, pair)
     approach = 1e6 * highest / radius / (pair.face_width_m * 14e9)
@@ -218,6 +290,21 @@ def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
         yield _of(
             "dynamics.mesh.tip_relief_um", "relief [µm]", dynamics.mesh.tip_relief_um, 0.1, 3 * approach + 20, hint
         )
+
+
+def _inertia(rotor: PlainRotor, gear: SpurGear, pair: GearPair) -> float:
+    if rotor.inertia_kg_m2 is None:
+        return disc_inertia_kg_m2(gear, pair.face_width_m)
+    return bounds(rotor.inertia_kg_m2)[0]
+
+
+def _coupling(name: str, coupling: Coupling, machine: Number, inertia_kg_m2: float) -> Iterator[Quantity]:
+    """Yield the damping of a coupling over the critical one, between its gear and its machine."""
+    reduced = 1.0 / (1.0 / inertia_kg_m2 + 1.0 / bounds(machine)[0])
+    critical, number = 2.0 * sqrt(bounds(coupling.stiffness_nm_per_rad)[0] * reduced), coupling.damping_nm_s_per_rad
+    if bounds(number)[1] > 0.0:
+        path, hint = f"dynamics.{name}.damping_nm_s_per_rad", "is the damping in N m s/rad?"
+        yield _of(path, "damping over the critical one", number, 2e-3, 2.0, hint, critical)
 
 
 def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
@@ -230,8 +317,10 @@ def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
     if isinstance(housing, RigidHousing):
         yield _of("housing.mass_kg", "mass over both discs", housing.mass_kg, 0.5, 500.0, "is it in kg?", gears)
         for key in ("shear_stiffness_n_per_m", "axial_stiffness_n_per_m"):
-            stiffness = getattr(housing.bolts, key)
-            yield _of(f"housing.bolts.{key}", "stiffness [N/m]", stiffness, 1e5, 1e11, "is it in N/m, not N/mm?")
+            stiffness, masses = bounds(getattr(housing.bolts, key)), reversed(bounds(housing.mass_kg))
+            count, what = len(housing.bolts.positions_mm), "housing on its bolts [Hz]"
+            natural = [sqrt(count * k / mass) / (2.0 * pi) for k, mass in zip(stiffness, masses, strict=True)]
+            yield Quantity(f"housing.bolts.{key}", what, _ends(natural), 20.0, 2500.0, "is it in N/m, not N/mm?")
     elif housing.wall_mm is not None:
         what, centre_mm = "thickness over the centre distance", 1e3 * pair.working_centre_distance_m
         yield _of("housing.wall_mm", what, housing.wall_mm, 0.01, 0.4, "is it in mm?", centre_mm)

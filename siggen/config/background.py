@@ -15,15 +15,16 @@ from pydantic import Field
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
+from siggen.keys.usual import Usual
 
 
 class Base(Section):
     """A rigid base under the bolts, on soft mounts; the machines beside the gearbox stand on it too."""
 
-    mass_kg: Annotated[Number, Within(above=0, most=1_000_000)] = Field(
+    mass_kg: Annotated[Number, Within(above=0, most=1_000_000), Usual(5, 10000)] = Field(
         default=LogUniform(low=50.0, high=300.0), description="of the base with what stands on it (assumed)"
     )
-    gyration_m: Annotated[Number, Within(above=0, most=20)] = Field(
+    gyration_m: Annotated[Number, Within(above=0, most=20), Usual(0.02, 5)] = Field(
         default=Uniform(low=0.2, high=0.4), description="radius of gyration in rocking (assumed)"
     )
 
@@ -41,7 +42,7 @@ class Rubbing(Section):
 class Bearings(Section):
     """Waviness of rolling bearings and the passing of balls: displacements in series with each bearing's spring."""
 
-    velocity_um_s: Annotated[Number, Within(least=0, most=100_000)] = Field(
+    velocity_um_s: Annotated[Number, Within(least=0, most=100_000), Usual(1, 3000)] = Field(
         default=LogUniform(low=20.0, high=200.0),
         description="rms velocity of the outer ring at 1800 turns a minute, drawn for each band of ISO 15242: 50, 300, "
         "1800, 10000 Hz (memory)",
@@ -51,7 +52,7 @@ class Bearings(Section):
 class Machines(Section):
     """Noise of the motor and of what is driven; each presses on the base, or on its shaft without one."""
 
-    density_n_per_sqrt_hz: Annotated[Number, Within(least=0, most=10_000)] = Field(
+    density_n_per_sqrt_hz: Annotated[Number, Within(least=0, most=10_000), Usual(0.001, 50)] = Field(
         default=LogUniform(low=0.16, high=1.6),
         description="one-sided, of each machine (derived: measured 3 to 7 mm/s²/√Hz from 40 to 80 Hz, times 75 to 325 "
         "kg, over √2 for two machines)",
@@ -61,10 +62,10 @@ class Machines(Section):
 class ShaftLines(Section):
     """Lines of both shafts: misaligned couplings, which press on shaft and base, and machine rotors on the base."""
 
-    coupling_stiffness_n_per_um: Annotated[Number, Within(least=0, most=1000)] = Field(
+    coupling_stiffness_n_per_um: Annotated[Number, Within(least=0, most=1000), Usual(0.001, 30)] = Field(
         default=LogUniform(low=0.1, high=1.0), description="radial, per coupling (assumed)"
     )
-    rotor_mass_kg: Annotated[Number, Within(least=0, most=100_000)] = Field(
+    rotor_mass_kg: Annotated[Number, Within(least=0, most=100_000), Usual(0.05, 1000)] = Field(
         default=LogUniform(low=3.0, high=30.0), description="of the machine on each shaft (assumed)"
     )
 
@@ -72,15 +73,15 @@ class ShaftLines(Section):
 class ForeignMesh(Section):
     """Lines of an undamaged mesh that is not simulated, with sidebands of a shaft; presses on the housing."""
 
-    order: Annotated[Number, Within(above=0, most=10_000)] = Field(
+    order: Annotated[Number, Within(above=0, most=10_000), Usual(0.05, 500)] = Field(
         description="of the mesh, per turn of the input shaft"
     )
-    force_share: Annotated[Number, Within(least=0, most=2)] = Field(
+    force_share: Annotated[Number, Within(least=0, most=2), Usual(0.0001, 1)] = Field(
         default=LogUniform(low=0.005, high=0.05),
         description="first line over the mean mesh force (derived: mesh 1 is 1 to 4 % of it, others "
         "were measured 6 to 26 dB below mesh 1)",
     )
-    shaft_order: Annotated[Number | None, Within(above=0, most=10_000, words=(None,))] = Field(
+    shaft_order: Annotated[Number | None, Within(above=0, most=10_000, words=(None,)), Usual(0.005, 100)] = Field(
         default=None, description="turns of the sidebands' shaft per turn of the input shaft; null: the second shaft"
     )
 

@@ -31,6 +31,7 @@ from siggen.keys.by_name import ByName, written_by_name
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.life.pitting import EXAMPLE
 from siggen.names import Names
@@ -90,8 +91,10 @@ class Config(Section):
     specimens: Annotated[Whole, Field(ge=1, le=10_000_000)] = Field(
         description="number of gearboxes; not part of the identity"
     )
-    fs_hz: Annotated[Real, Field(gt=0, le=1e7)] = Field(default=51_200.0, description="sampling rate")
-    duration_s: Annotated[Real, Field(gt=0, le=86_400)] = Field(default=1.0, description="length of a record")
+    fs_hz: Annotated[Real, Field(gt=0, le=1e7), Usual(200, 5e5)] = Field(default=51_200.0, description="sampling rate")
+    duration_s: Annotated[Real, Field(gt=0, le=86_400), Usual(0.02, 600)] = Field(
+        default=1.0, description="length of a record"
+    )
     mesh_harmonics: Annotated[Whole, Field(ge=1)] = Field(
         default=5, description="highest mesh harmonic that the sampling rate must carry at the highest speed"
     )

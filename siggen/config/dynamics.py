@@ -10,6 +10,7 @@ from siggen.config.mesh import Friction, Mesh
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
+from siggen.keys.usual import Usual
 
 
 class Shaft(Section):
@@ -34,7 +35,7 @@ class Shafts(Section):
 class Unbalance(Section):
     """Residual unbalance of both shafts by balance quality grade; its phase is drawn per specimen."""
 
-    grade_mm_s: Annotated[Number, Within(least=0, most=100)] = Field(
+    grade_mm_s: Annotated[Number, Within(least=0, most=100), Usual(0.05, 100)] = Field(
         default=0.0,
         description="eccentricity times speed at 50 Hz of the input shaft; 2.5 and 6.3 are the grades G2.5 and G6.3",
     )
@@ -54,8 +55,12 @@ class PlainRotor(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0), Usual(2e06, 4e09)] = Field(
+        default=2e8, description=BEARINGS
+    )
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0), Usual(2e06, 4e09)] = Field(
+        default=2e8, description=BEARINGS
+    )
     bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
     bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
 
@@ -63,12 +68,14 @@ class PlainRotor(Section):
 class Rotor(PlainRotor):
     """The same with what makes it wobble, and with bearings that follow the load."""
 
-    eccentricity_um: Annotated[Number, Within(least=0, most=200)] = Field(
+    eccentricity_um: Annotated[Number, Within(least=0, most=200), Usual(0.5, 200)] = Field(
         default=0.0,
         description="of its gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
         "allows; needs manufacture",
     )
-    bearing_stiffness_z_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1e8, description=BEARINGS)
+    bearing_stiffness_z_n_per_m: Annotated[Number, Within(above=0), Usual(1e06, 2e09)] = Field(
+        default=1e8, description=BEARINGS
+    )
     bearing: BallGeometry | None = Field(
         default=None,
         description=(
@@ -106,7 +113,7 @@ class Dynamics(Section):
         description="relative rms error of the delivered signals that the steps of every record are chosen for with "
         "the law pairs",
     )
-    mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
+    mesh_damping_ratio: Annotated[Number, Within(least=0, below=1), Usual(0.005, 0.3)] = Field(
         default=0.07, description="damping of the teeth in contact, as a share of the critical one"
     )
     backlash_um: Annotated[Number, Within(least=0)] = Field(

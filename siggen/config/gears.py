@@ -11,6 +11,7 @@ from siggen.errors import Problem
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Section, Whole
+from siggen.keys.usual import Usual
 
 
 class Wheel(Section):
@@ -32,7 +33,7 @@ class ToothForm(Section):
     pressure_angle_deg: Annotated[Number, Within(least=10, most=35)] = Field(
         default=20.0, description="generating pressure angle"
     )
-    helix_deg: Annotated[Number, Within(least=-45, most=45)] = Field(
+    helix_deg: Annotated[Number, Within(least=-45, most=45), Usual(1, 45)] = Field(
         default=0.0,
         description="helix angle on the pitch cylinder, positive: right-handed driving gear; modules, coefficients and "
         "pressure angle stay those of the normal section",
@@ -41,7 +42,9 @@ class ToothForm(Section):
     youngs_modulus_gpa: Annotated[Number, Within(above=0)] = Field(
         default=206.0, description="Young's modulus of both gears"
     )
-    poisson_ratio: Annotated[Number, Within(least=0, below=0.5)] = Field(default=0.3, description="Poisson's ratio")
+    poisson_ratio: Annotated[Number, Within(least=0, below=0.5), Usual(0.15, 0.45)] = Field(
+        default=0.3, description="Poisson's ratio"
+    )
     centre_distance_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: the one at which the profile shifts mesh without backlash"
     )

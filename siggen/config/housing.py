@@ -16,6 +16,7 @@ from siggen.keys.distributions import LogUniform
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Position, Section
+from siggen.keys.usual import Usual
 
 Length = Annotated[Number | None, Within(above=0, most=10_000, words=(None,))]
 INSIDE = (
@@ -43,10 +44,10 @@ class PlateHousing(Section):
         description="of the plates with the bearings; null: 1.1 to 3 times 3 mm + 2.5 % of the centre distance, welded "
         "1.5 to 4.6 times",
     )
-    damping_ratio: Annotated[Number, Within(above=0, below=0.5)] = Field(
+    damping_ratio: Annotated[Number, Within(above=0, below=0.5), Usual(0.0005, 0.2)] = Field(
         default=LogUniform(low=0.003, high=0.05), description="of the plates, drawn for each mode"
     )
-    loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(default=1.0, description=FOOT)
+    loose_foot_share: Annotated[Number, Within(above=0, most=1), Usual(0.01, 1)] = Field(default=1.0, description=FOOT)
 
 
 class Bolts(Section):
@@ -54,7 +55,7 @@ class Bolts(Section):
 
     shear_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8e7, description=EACH)
     axial_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1.5e8, description=EACH)
-    damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
+    damping_ratio: Annotated[Number, Within(least=0, below=1), Usual(0.002, 0.5)] = Field(
         default=0.04, description="of a bolt that carries its share of the casing's mass"
     )
     positions_mm: Annotated[tuple[Position, ...], Field(min_length=2)] = Field(
@@ -82,7 +83,7 @@ class RigidHousing(Section):
         "rim's radius of a planetary set (derived)",
     )
     bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
-    loose_foot_share: Annotated[Number, Within(above=0, most=1)] = Field(default=1.0, description=FOOT)
+    loose_foot_share: Annotated[Number, Within(above=0, most=1), Usual(0.01, 1)] = Field(default=1.0, description=FOOT)
 
 
 class ModalHousing(Section):

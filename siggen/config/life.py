@@ -11,6 +11,7 @@ from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import received_text, refusal
 from siggen.keys.section import Real, Section, Whole
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.life.pitting import Pitting
 
@@ -49,16 +50,18 @@ class Life(Section):
     reference_torque_nm: Annotated[Real, Field(gt=0, le=1e8)] = Field(
         description="torque on the input shaft to which the law's turns belong"
     )
-    scale: Annotated[Number, Within(above=0, most=1e6)] = Field(
+    scale: Annotated[Number, Within(above=0, most=1e6), Usual(0.01, 20)] = Field(
         default=1.0, description="all times of the law are this much longer; drawn for each gearbox"
     )
     history: tuple[Block, ...] = Field(
         default=(),
         description="blocks of load that repeat; empty: the first operating point",
     )
-    interval_h: Hours = Field(description="from one inspection to the next, the first at age 0")
+    interval_h: Annotated[Hours, Usual(0.05, 200)] = Field(
+        description="from one inspection to the next, the first at age 0"
+    )
     most: Annotated[Whole, Field(ge=2, le=1000)] = Field(description="inspections of a gearbox at most")
-    removed_share: Annotated[Real, Field(ge=0, le=1)] = Field(
+    removed_share: Annotated[Real, Field(ge=0, le=1), Usual(0.005, 1)] = Field(
         default=0.15,
         description="chance that a gearbox is taken out at an age drawn between 0 and the last inspection",
     )

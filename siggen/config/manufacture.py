@@ -11,6 +11,7 @@ from siggen.keys.distributions import Choice, Uniform
 from siggen.keys.number import Number, Within, bounds
 from siggen.keys.problems import refusal
 from siggen.keys.section import Section
+from siggen.keys.usual import Usual
 
 CLASS = (
     "flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or {one_of: [a, b]}; of the driven gear, null: "
@@ -31,25 +32,27 @@ class Manufacture(Section):
     )
     # Real gears use 30 to 70 % of their tolerance. Running in takes the peaks first, and gears at their full tolerance
     # lose contact at light loads even while they are healthy: the lower part stands for gears that have run in.
-    tolerance_share: Annotated[Number, Within(least=0, most=1)] = Field(
+    tolerance_share: Annotated[Number, Within(least=0, most=1), Usual(0.02, 1)] = Field(
         default=Uniform(low=0.3, high=0.5), description="deviations over what the class allows, for each gear"
     )
-    crowning_um: Annotated[Number, Within(least=0, most=200)] = Field(
+    crowning_um: Annotated[Number, Within(least=0, most=200), Usual(0.1, 100)] = Field(
         default=0.0,
         description=CROWNING,
     )
-    crowning_gear_um: Annotated[Number | None, Within(least=0, most=200, words=(None,))] = Field(
+    crowning_gear_um: Annotated[Number | None, Within(least=0, most=200, words=(None,)), Usual(0.1, 100)] = Field(
         default=None, description=CROWNING
     )
     helix: Literal["off", "iso_1328"] = Field(
         default="off",
         description="iso_1328: helix slope and form of each gear within tolerance_share of its class",
     )
-    lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",))] = Field(
-        default=0.0,
-        description=(
-            "by how much the flanks are apart at one end of the face, either end; iso_1328: what both helix slopes make"
-        ),
+    lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",)), Usual(0.1, 100)] = (
+        Field(
+            default=0.0,
+            description=(
+                "by how much the flanks are apart at one end of the face, either end; iso_1328: what helix slopes make"
+            ),
+        )
     )
     flank_waves: Literal["off", "on"] = Field(
         default="off",

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real, Section, Whole
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 
 ROLES = {"sun": "pinion", "planet": "gear"}
@@ -37,14 +38,22 @@ class Planetary(Section):
         description="where the planets stand on the carrier, in its sense of turning; rounded ones count as the place "
         "nearby at which teeth fit",
     )
-    pin_error_um: Annotated[Number, Within(least=0, most=200)] = Field(
+    pin_error_um: Annotated[Number, Within(least=0, most=200), Usual(0.1, 200)] = Field(
         default=0.0,
         description="standard deviation of the place of each planet's pin along the tangent, drawn per gearbox",
     )
-    sun_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e7, description=SUPPORTS)
-    planet_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=SUPPORTS)
-    ring_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=5e8, description=SUPPORTS)
-    carrier_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=SUPPORTS)
+    sun_stiffness_n_per_m: Annotated[Number, Within(above=0), Usual(100000, 1e09)] = Field(
+        default=2e7, description=SUPPORTS
+    )
+    planet_stiffness_n_per_m: Annotated[Number, Within(above=0), Usual(1e06, 1e10)] = Field(
+        default=2e8, description=SUPPORTS
+    )
+    ring_stiffness_n_per_m: Annotated[Number, Within(above=0), Usual(1e06, 2e10)] = Field(
+        default=5e8, description=SUPPORTS
+    )
+    carrier_stiffness_n_per_m: Annotated[Number, Within(above=0), Usual(1e06, 1e10)] = Field(
+        default=2e8, description=SUPPORTS
+    )
     ring_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: steel, four modules thick behind the roots (assumed)"
     )

@@ -13,13 +13,16 @@ from siggen.config.dynamics import PlainRotor
 from siggen.config.gears import Pair
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 
 STAGE_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
 
 
 IDLER = "idler"
-Span: TypeAlias = Annotated[Number | Literal["idler"] | None, Within(above=0, most=2000, words=(IDLER, None))]
+Span: TypeAlias = Annotated[
+    Number | Literal["idler"] | None, Within(above=0, most=2000, words=(IDLER, None)), Usual(5, 3000)
+]
 SPAN = (
     "distance of the bearings of the shaft with two gears; idler: one gear in two meshes; null: twice both face "
     "widths (assumed)"

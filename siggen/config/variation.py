@@ -8,6 +8,7 @@ from pydantic import Field
 
 from siggen.keys.number import Number, Within, bounds
 from siggen.keys.section import Section
+from siggen.keys.usual import Usual
 
 RARE = 4.0
 """Standard deviations that a slow random part hardly ever leaves; the band must carry the speed up to there."""
@@ -22,12 +23,18 @@ SLOW_CORNER_HZ = 0.5
 class SpeedVariation(Section):
     """Rotation of the pinion; numbers are drawn per specimen and operating point, random courses per record."""
 
-    start_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(default=1.0, description=RAMP)
-    end_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(default=1.0, description=RAMP)
-    random_rms: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RANDOM)
-    ripple_once: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RIPPLE)
-    ripple_twice: Annotated[Number, Within(least=0, most=0.05)] = Field(default=0.0, description=RIPPLE)
-    slip: Annotated[Number, Within(least=0, most=0.2)] = Field(
+    start_ratio: Annotated[Number, Within(least=0.01, most=10), Usual(0.05, 5)] = Field(default=1.0, description=RAMP)
+    end_ratio: Annotated[Number, Within(least=0.01, most=10), Usual(0.05, 5)] = Field(default=1.0, description=RAMP)
+    random_rms: Annotated[Number, Within(least=0, most=0.05), Usual(1e-05, 0.02)] = Field(
+        default=0.0, description=RANDOM
+    )
+    ripple_once: Annotated[Number, Within(least=0, most=0.05), Usual(1e-05, 0.02)] = Field(
+        default=0.0, description=RIPPLE
+    )
+    ripple_twice: Annotated[Number, Within(least=0, most=0.05), Usual(1e-05, 0.01)] = Field(
+        default=0.0, description=RIPPLE
+    )
+    slip: Annotated[Number, Within(least=0, most=0.2), Usual(0.001, 0.2)] = Field(
         default=0.0,
         description="share of the speed that the motor loses at its rated torque, in proportion to the torque",
     )
@@ -37,11 +44,13 @@ class SpeedVariation(Section):
 class TorqueVariation(Section):
     """Torque about that of the operating point; motor and load balance on the mean."""
 
-    random_rms: Annotated[Number, Within(least=0, most=0.1)] = Field(default=0.0, description=RANDOM)
-    load_once: Annotated[Number, Within(least=0, most=2)] = Field(
+    random_rms: Annotated[Number, Within(least=0, most=0.1), Usual(0.0002, 0.1)] = Field(
+        default=0.0, description=RANDOM
+    )
+    load_once: Annotated[Number, Within(least=0, most=2), Usual(0.0002, 0.4)] = Field(
         default=0.0, description="amplitude of the load torque once per revolution of its shaft, relative"
     )
-    line_ripple: Annotated[Number, Within(least=0, most=2)] = Field(
+    line_ripple: Annotated[Number, Within(least=0, most=2), Usual(0.0002, 0.5)] = Field(
         default=0.0, description="amplitude of the motor torque at twice the line frequency of 50 Hz, relative"
     )
 

@@ -9,6 +9,7 @@ from pydantic import Field
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.keys.number import Number, Within, constant
 from siggen.keys.section import Section, Whole
+from siggen.keys.usual import Usual
 
 DIAMETERS = "of a ball; of the circle of the balls' centres"
 
@@ -17,9 +18,9 @@ class BallGeometry(Section):
     """Numbers of a ball bearing: those of a 6205, with the clearance of its normal class (memory: ISO 5753-1)."""
 
     balls: Annotated[Whole, Field(ge=3, le=100)] = Field(default=9, description="number of balls")
-    ball_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=7.94, description=DIAMETERS)
-    pitch_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=39.04, description=DIAMETERS)
-    clearance_um: Annotated[Number, Within(least=0, most=1000)] = Field(
+    ball_diameter_mm: Annotated[Number, Within(above=0), Usual(0.5, 150)] = Field(default=7.94, description=DIAMETERS)
+    pitch_diameter_mm: Annotated[Number, Within(above=0), Usual(3, 1500)] = Field(default=39.04, description=DIAMETERS)
+    clearance_um: Annotated[Number, Within(least=0, most=1000), Usual(0.5, 200)] = Field(
         default=10.0, description="radial play from side to side in running; it narrows the zone of load"
     )
 

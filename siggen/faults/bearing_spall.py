@@ -22,6 +22,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.column import MILLIMETRE, Column
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant
+from siggen.keys.usual import Usual
 from siggen.seeding import Stage, named_uniforms
 
 KEYS = {"length_m": "length_mm", "depth_m": "depth_mm"}
@@ -55,8 +56,8 @@ class BearingSpalls(Fault):
         description="one of the two on that shaft (dynamics.<shaft>.bearing)",
     )
     element: Literal["outer", "inner", "ball"] = Field(description="the spalled race, or a ball")
-    length_mm: Annotated[Number, Within(above=0)] = Field(description="along the path of the balls")
-    depth_mm: Annotated[Number, Within(above=0)] = Field(
+    length_mm: Annotated[Number, Within(above=0), Usual(0.1, 30)] = Field(description="along the path of the balls")
+    depth_mm: Annotated[Number, Within(above=0), Usual(0.005, 1)] = Field(
         default=0.1, description="how far a ball may sink in (memory: 0.05 to 0.3)"
     )
 

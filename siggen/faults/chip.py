@@ -23,6 +23,7 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, bounds, number_text
 from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth, most_teeth
+from siggen.keys.usual import Usual
 
 WHOLE = "whole"
 HEIGHT = Column(
@@ -51,10 +52,10 @@ class ChippedTeeth(Fault):
     kind: Literal["chip"] = "chip"
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
-    height_mm: Annotated[Number | Literal["whole"], Within(above=0, words=(WHOLE,)), Grows(MODULE)] = Field(
-        description="height lost from the tip down, along the radius; whole: the tooth is gone"
+    height_mm: Annotated[Number | Literal["whole"], Within(above=0, words=(WHOLE,)), Usual(0.05, 30), Grows(MODULE)] = (
+        Field(description="height lost from the tip down, along the radius; whole: the tooth is gone")
     )
-    face_share: Annotated[Number | None, Within(above=0, most=1, words=(None,))] = Field(
+    face_share: Annotated[Number | None, Within(above=0, most=1, words=(None,)), Usual(0.01, 1)] = Field(
         default=None, description="share of the face that has lost it, from one end; null: the whole face"
     )
 

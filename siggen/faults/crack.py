@@ -22,6 +22,7 @@ from siggen.keys.column import MILLIMETRE, Column
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant, number_text
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth, TeethValue
+from siggen.keys.usual import Usual
 
 LEAST_DEG, MOST_DEG = (round(degrees(angle)) for angle in ANGLE_RANGE_RAD)
 LONGEST_RUN = 1e3
@@ -50,14 +51,14 @@ class RootCracks(Fault):
     kind: Literal["crack"] = "crack"
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
-    depth_share: Annotated[Number, Within(above=0, most=DEEPEST_SHARE)] = Field(
+    depth_share: Annotated[Number, Within(above=0, most=DEEPEST_SHARE), Usual(0.02, 0.5)] = Field(
         description="largest depth along the crack over the chord of the root, whose ends have tangents at 30 degrees "
         "to the tooth's centre line (ISO 6336-3)"
     )
     angle_deg: Annotated[Number, Within(least=LEAST_DEG, most=MOST_DEG)] = Field(
         default=45.0, description="between the crack and the tooth's centre line; it runs straight into the body"
     )
-    face_share: Annotated[Number | None, Within(above=0, most=LONGEST_RUN, words=(None,))] = Field(
+    face_share: Annotated[Number | None, Within(above=0, most=LONGEST_RUN, words=(None,)), Usual(0.01, 1)] = Field(
         default=None, description=(
             "where the depth, which falls from one end, comes to 0, over the face width; null: the same depth "
             "everywhere"

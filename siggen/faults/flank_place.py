@@ -21,6 +21,7 @@ from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Section
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 
 GearName: TypeAlias = Literal["pinion", "gear"]
@@ -52,9 +53,9 @@ MODULE, FACE_WIDTH, SKEW = "module", "face width", "module over face width"
 """What lengths of damage grow with, so that it takes the same share of the flank of another gear pair. Pits keep their
 outline, so both of their axes grow with the module; an edge rises by the same share of a spall's length."""
 
-Length = Annotated[Number, Within(above=0), Grows(MODULE)]
-OptionalLength = Annotated[Number | None, Within(above=0, words=(None,)), Grows(MODULE)]
-LengthAcross = Annotated[Number, Within(above=0), Grows(FACE_WIDTH)]
+Length = Annotated[Number, Within(above=0), Usual(0.01, 30), Grows(MODULE)]
+OptionalLength = Annotated[Number | None, Within(above=0, words=(None,)), Usual(0.002, 30), Grows(MODULE)]
+LengthAcross = Annotated[Number, Within(above=0), Usual(0.02, 300), Grows(FACE_WIDTH)]
 Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",)), Grows(MODULE)]
 PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FACE_WIDTH)]
 

@@ -57,6 +57,7 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, at, bounds, constant, number_text
 from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
+from siggen.keys.usual import Usual
 
 FLOOR_ROUGHNESS = 0.15
 """Rms of the depth from strip to strip across the face, over it (assumed)."""
@@ -70,8 +71,8 @@ DEPTH_SHARE = 0.05
 SIZES = ("profile_length_mm", "face_share", "depth_mm")
 START: Literal["below_pitch"] = "below_pitch"
 Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch")), Grows(MODULE)]
-Skew = Annotated[Number, Within(least=-5, most=5), Grows(SKEW)]
-Share = Annotated[Number, Within(above=0, most=1)]
+Skew = Annotated[Number, Within(least=-5, most=5), Usual(0.005, 5), Grows(SKEW)]
+Share = Annotated[Number, Within(above=0, most=1), Usual(0.01, 1)]
 
 
 class IrregularSpalls(Fault):
@@ -98,10 +99,10 @@ class IrregularSpalls(Fault):
         description="rise of an edge towards the tip over 10 mm of face, in mm of arc, drawn for each edge by itself; "
         "the default is assumed",
     )
-    waviness: Annotated[Number, Within(least=0, most=0.2)] = Field(
+    waviness: Annotated[Number, Within(least=0, most=0.2), Usual(0.002, 0.2)] = Field(
         default=0.1, description="rms of either edge's waves over the profile length; the default is assumed"
     )
-    edge_radius_mm: Annotated[Number, Within(least=0, most=1), Grows(MODULE)] = Field(
+    edge_radius_mm: Annotated[Number, Within(least=0, most=1), Usual(0.002, 1), Grows(MODULE)] = Field(
         default=Uniform(low=0.02, high=0.2), description="radius of the edges; the default is assumed"
     )
     depth_mm: OptionalLength = Field(

@@ -20,6 +20,7 @@ from siggen.keys.column import MICROMETRE, Column, list_of
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, bounds, constant, number_text
 from siggen.keys.scaling import Grows
+from siggen.keys.usual import Usual
 
 DEEPEST_SHARE = 0.1
 """Of the module: beyond, a tooth is no involute with some wear any more (severe wear: 0.02 to 0.05, from memory)."""
@@ -48,7 +49,7 @@ class FlankWear(Fault):
     needs_pairs: ClassVar[bool] = True
 
     kind: Literal["wear"] = "wear"
-    depth_um: Annotated[Number, Within(above=0), Grows(MODULE)] = Field(
+    depth_um: Annotated[Number, Within(above=0), Usual(0.5, 500), Grows(MODULE)] = Field(
         description="largest depth on any flank, usually at the root of the pinion"
     )
 

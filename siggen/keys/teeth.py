@@ -15,6 +15,7 @@ from siggen.keys.distributions import Choice, distribution
 from siggen.keys.number import Each, Number, Within
 from siggen.keys.parser import Parser
 from siggen.keys.problems import received_text, refusal
+from siggen.keys.usual import Usual
 
 TeethValue = int | tuple[int, ...] | Choice
 DAMAGED_TEETH = (
@@ -69,7 +70,7 @@ def drawn_teeth(teeth: TeethValue, u: float) -> int | tuple[int, ...]:
 
 Teeth = Annotated[TeethValue, TeethParser()]
 
-Stages: TypeAlias = Annotated[Number | Each, Within(above=0, most=1, each=True)]
+Stages: TypeAlias = Annotated[Number | Each, Within(above=0, most=1, each=True), Usual(0.02, 1)]
 
 STAGES = "lengths and depth of a tooth's spall over those given here, drawn for each; {each: [a, b]}: one for each"
 

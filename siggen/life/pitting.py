@@ -18,6 +18,7 @@ from siggen.arrays import FloatArray
 from siggen.faults.listed import ListedPits
 from siggen.faults.listed_irregular import ListedIrregular
 from siggen.keys.section import Real
+from siggen.keys.usual import Usual
 from siggen.life.flank import Flank
 from siggen.life.growth import STEP, Grown, Seeds, grown
 from siggen.life.initiation import Begun, begun, tooth_scale
@@ -50,13 +51,13 @@ class Pitting(Law):
     """Pits that begin one by one and grow."""
 
     kind: Literal["pitting"] = "pitting"
-    slope: Annotated[Real, Field(ge=0.5, le=100)] = Field(
+    slope: Annotated[Real, Field(ge=0.5, le=100), Usual(0.5, 20)] = Field(
         default=2.5, description="Weibull slope of the first pit, of a tooth and of a gearbox"
     )
-    torque_exponent: Annotated[Real, Field(ge=0, le=20)] = Field(
+    torque_exponent: Annotated[Real, Field(ge=0, le=20), Usual(1, 20)] = Field(
         default=10.0, description="life falls with the torque to this power, until the first pit and after it"
     )
-    rate_sd: Annotated[Real, Field(ge=0, le=2)] = Field(
+    rate_sd: Annotated[Real, Field(ge=0, le=2), Usual(0.02, 2)] = Field(
         default=0.35, description="standard deviation of the rate's logarithm from pit to pit"
     )
 

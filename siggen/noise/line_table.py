@@ -13,6 +13,7 @@ from siggen.errors import Problem
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real
+from siggen.keys.usual import Usual
 from siggen.noise.source import Draws, MeasuredPart, NoisyChannel, Part, Source
 
 MOST_LINES = 400
@@ -35,7 +36,7 @@ class LineTable(Source):
     order: Annotated[tuple[Real, ...], Field(min_length=1)] = Field(description="turns per pinion turn; 0 for a tone")
     frequency_hz: Annotated[tuple[Real, ...], Field(min_length=1)] = Field(description="of a tone; 0 for an order")
     amplitude_m_s2: Annotated[tuple[Real, ...], Field(min_length=1)] = Field(description="one for each")
-    factor: Annotated[Number, Within(least=0, most=1_000)] = Field(
+    factor: Annotated[Number, Within(least=0, most=1_000), Usual(0.02, 50)] = Field(
         default=1.0, description="on each line, drawn per record, axis and line"
     )
 

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from siggen.keys.number import Number, Within, at
+from siggen.keys.usual import Usual
 from siggen.noise.lines import LinesPart
 from siggen.noise.source import Draws, NoisyChannel, Part, Source
 from siggen.sensing.tones import harmonic_lines
@@ -22,10 +23,10 @@ class Mains(Source):
     about: ClassVar[str] = ""
     meaning: ClassVar[str] = "RMS of mains hum in"
 
-    amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
+    amplitude_m_s2: Annotated[Number, Within(least=0), Usual(1e-05, 0.5)] = Field(
         description="amplitude of the first line, drawn per record and axis; with `background` per gearbox"
     )
-    frequency_hz: Annotated[Number, Within(above=0)] = Field(
+    frequency_hz: Annotated[Number, Within(above=0), Usual(15, 450)] = Field(
         default=50.0, description="frequency, drawn per gearbox for every line"
     )
 

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from siggen.arrays import FloatArray
 from siggen.keys.number import Number, Within, at
+from siggen.keys.usual import Usual
 from siggen.noise.source import Draws, NoisyChannel, Part, Source
 from siggen.sensing.pink_noise import PinkStream
 
@@ -24,7 +25,7 @@ class PinkNoise(Source):
     broad: ClassVar[bool] = True
     per: ClassVar[tuple[str, str]] = ("_per_sqrt_hz", "/sqrt(Hz)")
 
-    density_m_s2_per_sqrt_hz: Annotated[Number, Within(least=0)] = Field(
+    density_m_s2_per_sqrt_hz: Annotated[Number, Within(least=0), Usual(1e-07, 0.01)] = Field(
         description="one-sided density at 100 Hz, drawn per record and axis; with `background` per gearbox"
     )
 

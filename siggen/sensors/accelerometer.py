@@ -15,6 +15,7 @@ from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import received_text
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Real, Section
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import MOTION, Input
@@ -28,8 +29,8 @@ from siggen.sensors.sensor import SIZE, AxisDraws, SensorBase
 class Resonance(Section):
     """A second-order low-pass with a peak: a mass on a spring."""
 
-    frequency_hz: Annotated[Number, Within(above=0)] = Field(description="natural frequency")
-    damping_ratio: Annotated[Number, Within(above=0, most=1)] = Field(
+    frequency_hz: Annotated[Number, Within(above=0), Usual(300, 100000)] = Field(description="natural frequency")
+    damping_ratio: Annotated[Number, Within(above=0, most=1), Usual(0.002, 1)] = Field(
         default=0.05, description="the peak is 1 / (2 damping_ratio) high"
     )
 
@@ -37,7 +38,7 @@ class Resonance(Section):
 class NoiseFloor(Section):
     """White noise of a given size; a distribution is drawn for every record and axis."""
 
-    floor_m_s2: Annotated[Number, Within(least=0)] = Field(
+    floor_m_s2: Annotated[Number, Within(least=0), Usual(0.0001, 0.5)] = Field(
         description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox"
     )
 
@@ -52,7 +53,7 @@ class Accelerometer(SourceKeys, SensorBase):
 
     quantity: ClassVar[Quantity] = ACCELERATION
     noun: ClassVar[str] = "accelerometer"
-    plausible: ClassVar[tuple[float, float, str]] = (1.0, 1e5, "is it in m/s², not g?")
+    plausible: ClassVar[tuple[float, float, str]] = (1.0, 2e4, "is it in m/s², not g?")
     understood_kind: ClassVar[bool] = True
 
     kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
@@ -78,12 +79,12 @@ class Accelerometer(SourceKeys, SensorBase):
     path: Annotated[MeasuredPath | None, PATH] = Field(
         default=None, description="measured from the bearing forces to the sensor (place: casing)"
     )
-    high_pass_hz: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+    high_pass_hz: Annotated[Number | None, Within(above=0, words=(None,)), Usual(0.01, 50)] = Field(
         default=None, description="corner of the coupling capacitor (first order); null: none"
     )
     mounting: Resonance | None = Field(default=None, description="of the sensor on its stud or magnet; null: rigid")
     resonance: Resonance | None = Field(default=None, description="of the sensor itself; null: none")
-    cross_axis: Annotated[Number, Within(least=0, most=0.2)] = Field(
+    cross_axis: Annotated[Number, Within(least=0, most=0.2), Usual(0.002, 0.2)] = Field(
         default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
     )
 

@@ -14,6 +14,7 @@ from siggen.arrays import FloatArray
 from siggen.errors import Problem, SolverFailure
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Whole
+from siggen.keys.usual import Usual
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
 from siggen.sensors.converter import BITS_TEXT, Bits
@@ -51,10 +52,10 @@ class Encoder(SensorBase):
     pulses_per_turn: Annotated[Whole, Field(ge=1, le=100_000)] = Field(
         default=1024, description="marks of the disc, as the counter counts them"
     )
-    pitch_error: Annotated[Number, Within(least=0, most=0.1)] = Field(
+    pitch_error: Annotated[Number, Within(least=0, most=0.1), Usual(0.0002, 0.1)] = Field(
         default=0.01, description="standard deviation of a mark's place over the pitch; each mark keeps its own"
     )
-    eccentricity: Annotated[Number, Within(least=0, most=0.1)] = Field(
+    eccentricity: Annotated[Number, Within(least=0, most=0.1), Usual(1e-05, 0.02)] = Field(
         default=5e-4, description="of the disc over the radius of its marks, in a direction drawn per gearbox"
     )
     bits: Bits = Field(default=None, description=BITS_TEXT)

@@ -41,7 +41,7 @@ class MotorCurrent(SensorBase):
         "Current clamps show the phases of an induction motor: the line frequency is that at which it turns as it does "
         "under its torque, and uneven rotation moves the active current by its slip."
     )
-    plausible: ClassVar[tuple[float, float, str]] = (0.1, 1e5, "is it in A?")
+    plausible: ClassVar[tuple[float, float, str]] = (1.0, 5e3, "is it in A?")
 
     kind: Literal["motor_current"] = Field(description="current of a phase of the induction motor that drives")
     place: Literal["motor"] = Field(default="motor", description="the motor")

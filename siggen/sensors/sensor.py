@@ -21,6 +21,7 @@ from siggen.keys.distributions import DRAWN
 from siggen.keys.number import Each, Number, Within, at, bounds
 from siggen.keys.problems import BRANCHES, refusal
 from siggen.keys.section import Section
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.noise.source import Source
 from siggen.seeding import Stage, generator
@@ -88,7 +89,7 @@ class SensorBase(Section):
     )
     place: str = Field(description="where it is mounted")
     axes: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="what it measures, one channel each")
-    gain: Annotated[Number | Each, Within(above=0, each=True)] = Field(
+    gain: Annotated[Number | Each, Within(above=0, each=True), Usual(0.05, 20)] = Field(
         default=1.0,
         description="reading per true value, drawn per specimen and axis; {each: [a, b]}: a number per axis",
     )
