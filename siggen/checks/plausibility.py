@@ -317,10 +317,10 @@ def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
     if isinstance(housing, RigidHousing):
         yield _of("housing.mass_kg", "mass over both discs", housing.mass_kg, 0.5, 500.0, "is it in kg?", gears)
         for key in ("shear_stiffness_n_per_m", "axial_stiffness_n_per_m"):
-            stiffness, masses = bounds(getattr(housing.bolts, key)), reversed(bounds(housing.mass_kg))
+            stiffness, heaviest_first = bounds(getattr(housing.bolts, key)), bounds(housing.mass_kg)[::-1]
             count, what = len(housing.bolts.positions_mm), "housing on its bolts [Hz]"
-            natural = [sqrt(count * k / mass) / (2.0 * pi) for k, mass in zip(stiffness, masses, strict=True)]
-            yield Quantity(f"housing.bolts.{key}", what, _ends(natural), 20.0, 2500.0, "is it in N/m, not N/mm?")
+            natural = [sqrt(count * k / mass) / (2.0 * pi) for k, mass in zip(stiffness, heaviest_first, strict=True)]
+            yield Quantity(f"housing.bolts.{key}", what, _ends(natural), 40.0, 2500.0, "is it in N/m, not N/mm?")
     elif housing.wall_mm is not None:
         what, centre_mm = "thickness over the centre distance", 1e3 * pair.working_centre_distance_m
         yield _of("housing.wall_mm", what, housing.wall_mm, 0.01, 0.4, "is it in mm?", centre_mm)

@@ -14,7 +14,16 @@ from siggen.sources import CHARACTERS, installed_version, sources_digest
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "pyarrow")
 MAKES_RECORDS = (
-    *("arrays.py", "compiled.py", "seeding.py", "uniform_spline.py", "lanes/**/*.py", "keys/**/*.py", "faults/**/*.py"),
+    *(
+        "arrays.py",
+        "compiled.py",
+        "names.py",
+        "seeding.py",
+        "uniform_spline.py",
+        "lanes/**/*.py",
+        "keys/**/*.py",
+        "faults/**/*.py",
+    ),
     *("noise/**/*.py", "sensors/**/*.py", "life/**/*.py", "config/**/*.py", "rig/**/*.py"),
     *("planning/**/*.py", "checks/quantity_names.py"),
     *("gears/**/*.py", "dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py"),

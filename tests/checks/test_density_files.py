@@ -20,7 +20,7 @@ PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 
 def loaded(folder: Path, table: dict[str, object]) -> Config:
     raw = minimal(sensors=by_name([{**PLAIN, "noise_spectrum": table}]), duration_s=1.0)
-    (folder / "set.yaml").write_text(yaml.safe_dump(raw))
+    (folder / "set.yaml").write_text(yaml.safe_dump(raw, sort_keys=False))
     return load_config(folder / "set.yaml")
 
 

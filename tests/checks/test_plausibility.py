@@ -72,7 +72,7 @@ def test_idealised_sets_say_what_they_lack() -> None:
 
 
 def test_pink_noise_alone_is_noise() -> None:
-    pink = "sensors.bearing.pink_noise={density_m_s2_per_sqrt_hz: 0.001}"
+    pink = "sensors.lid.pink_noise={density_m_s2_per_sqrt_hz: 0.001}"
     assert "no noise at all" not in "\n".join(implausible(load_config("tests/configs/ideal.yaml", [pink])))
 
 

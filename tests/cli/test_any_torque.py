@@ -25,7 +25,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
         operating_points=[{"speed_hz": 30.0, "torque_nm": torque} for torque in TORQUES_NM],
     )
     file = folder / "torques.yaml"
-    file.write_text(yaml.safe_dump(raw), encoding="utf-8")
+    file.write_text(yaml.safe_dump(raw, sort_keys=False), encoding="utf-8")
     run("generate", str(file), "--out", str(folder / "set"), "--engine", "serial")
     return file, folder / "set"
 

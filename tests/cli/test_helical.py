@@ -21,7 +21,7 @@ def healthy_set(folder: Path) -> Path:
     content["splits"] = {"train": 20, "validation": 0, "test": 0}
     content["mesh_harmonics"] = 8
     path = folder / "helical.yaml"
-    path.write_text(yaml.safe_dump(content))
+    path.write_text(yaml.safe_dump(content, sort_keys=False))
     return path
 
 

@@ -31,7 +31,7 @@ MODES = "frequency_hz,damping_ratio,ring_turning_per_sqrt_kg_m,lid_vertical_per_
 
 def written(folder: Path, **changes: Any) -> str:
     file = folder / "set.yaml"
-    file.write_text(yaml.safe_dump(planets(**changes)), encoding="utf-8")
+    file.write_text(yaml.safe_dump(planets(**changes), sort_keys=False), encoding="utf-8")
     return str(file)
 
 

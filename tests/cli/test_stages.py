@@ -34,7 +34,7 @@ def run(*arguments: str) -> Ended:
 
 def written(folder: Path, **changes: Any) -> str:
     file = folder / "two.yaml"
-    file.write_text(yaml.safe_dump(staged(**changes)), encoding="utf-8")
+    file.write_text(yaml.safe_dump(staged(**changes), sort_keys=False), encoding="utf-8")
     return str(file)
 
 
@@ -161,7 +161,7 @@ def test_modes_are_those_of_all_shafts_and_call_a_machines_gears_by_name(tmp_pat
     assert done.returncode == 0, done.stderr
     assert "shape_theta_slow_gear" in done.stdout
     file = tmp_path / "mill.yaml"
-    file.write_text(yaml.safe_dump(mill()), encoding="utf-8")
+    file.write_text(yaml.safe_dump(mill(), sort_keys=False), encoding="utf-8")
     found = json.loads(run("inspect", "modes", str(file), "--json").stdout)
     assert list(found["mesh_stiffness_n_per_m"]) == ["fast", "slow"]
     moving = {name.partition("shape_theta_")[2] for name in found["modes"][0] if "theta" in name}

@@ -55,7 +55,7 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_record_of_a_life_is_the_static_record_of_its_damage(fleet: Path, tmp_path: Path) -> None:
-    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives()))
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(), sort_keys=False))
     run("inspect", "life", str(tmp_path / "lives.yaml"), "--as-states", str(tmp_path / "states.yaml"))
     siggen.generate(load_config(tmp_path / "states.yaml", ["specimens=1"]), tmp_path / "set", workers=0)
     own = [{**row, "record_id": 0} for row in rows(fleet) if row["specimen_id"] == 0]
@@ -147,7 +147,7 @@ def test_pits_begin_where_flanks_slide_against_their_rolling(gear: str) -> None:
 
 
 def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
-    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives()))
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(), sort_keys=False))
     count = len(gearbox_life(load_config(lives()), 0).ages_h)
     assert count < 6
     result = CliRunner().invoke(
@@ -180,7 +180,7 @@ def test_neither_states_nor_a_life_is_refused_with_both_ways_on() -> None:
 
 
 def test_a_file_of_states_is_never_overwritten(tmp_path: Path) -> None:
-    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives()))
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(), sort_keys=False))
     command = ["inspect", "life", str(tmp_path / "lives.yaml"), "--as-states", str(tmp_path / "states.yaml")]
     assert "wrote" in run(*command)
     with pytest.raises(UsageError, match="is there already"):
@@ -195,12 +195,12 @@ def test_a_file_of_states_is_never_overwritten(tmp_path: Path) -> None:
     ],
 )
 def test_plan_tells_a_schedule_that_sees_no_end(tmp_path: Path, life: dict[str, Any], said: str) -> None:
-    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(life)))
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(life), sort_keys=False))
     assert said in " ".join(run("plan", str(tmp_path / "lives.yaml"), "--trial", "0").split())
 
 
 def test_plan_tells_cpu_hours_in_proportion_to_records(tmp_path: Path) -> None:
-    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives({"history": [[0.5, 1.0], [0.5, 0.0]]})))
+    (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives({"history": [[0.5, 1.0], [0.5, 0.0]]}), sort_keys=False))
     found = json.loads(run("plan", str(tmp_path / "lives.yaml"), "--json"))
     cost, pitted = found["cost"], round(found["records"] * found["life"]["pitted_inspections"])
     of_records = found["records"] * (cost["record_s"] + found["duration_s"] * cost["signal_s"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ from hypothesis import strategies as st
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
-from siggen.config import Config
+from siggen.config import Config, parse
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import specimen_state
@@ -68,9 +70,15 @@ def test_classes_of_a_choice_all_occur_and_gears_draw_their_own() -> None:
     assert any(one.pinion.accuracy_class != one.gear.accuracy_class for one in found)
 
 
+def parsed(raw: dict[str, Any]) -> Config:
+    config = parse(raw).config
+    assert config is not None
+    return config
+
+
 def misaligned(value: object) -> Config:
     section = {"accuracy_class": 6, "lead_misalignment_um": value}
-    return Config.model_validate({**CLASS_6.canonical(), "manufacture": section})
+    return parsed({**CLASS_6.canonical(), "manufacture": section})
 
 
 def test_misalignment_is_linear_across_the_face_and_drawn_with_either_sign() -> None:
@@ -120,7 +128,7 @@ def test_no_share_of_the_tolerance_gives_the_bytes_of_perfect_gears() -> None:
 
 def with_helix(config: Config, **keys: object) -> Config:
     section = {"accuracy_class": 6, **keys}
-    return Config.model_validate({**config.canonical(), "manufacture": section})
+    return parsed({**config.canonical(), "manufacture": section})
 
 
 def test_helix_slopes_are_those_of_misaligned_by_the_standard_and_forms_are_one_per_gear() -> None:

@@ -128,7 +128,7 @@ def _made(name: str, factory: pytest.TempPathFactory) -> Path:
 
 
 def _yaml(raw: dict[str, Any]) -> Callable[[Path, object], object]:
-    return lambda file, _: file.write_text(yaml.safe_dump(raw))
+    return lambda file, _: file.write_text(yaml.safe_dump(raw, sort_keys=False))
 
 
 def _recording(seed: int, depth: float = 0.0) -> Callable[[Path, object], object]:

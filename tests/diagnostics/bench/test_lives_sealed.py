@@ -29,7 +29,7 @@ from tests.shared import shared_folder
 
 CONFIG: dict[str, Any] = {
     "extends": str(Path(__file__).parents[2] / "configs" / "linear_pits.yaml"),
-    "name": "short_lives",
+    "name": "brief_lives",
     "fs_hz": 12_800,
     "duration_s": 0.12,
     "mesh_harmonics": 3,
@@ -59,7 +59,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
         hidden, config = folder / "hidden", folder / "lives.yaml"
         hidden.mkdir(parents=True)
         (hidden / SECRET_FILE).write_bytes(SECRET)
-        config.write_text(yaml.safe_dump(CONFIG))
+        config.write_text(yaml.safe_dump(CONFIG, sort_keys=False))
         size = ("--learn", "5", "--test", str(GEARBOXES), "--workers", "0")
         bench("bench", "make", str(folder / "bench"), "--config", str(config), "--secret", str(hidden), *size)
         bench("bench", "commit", str(folder / "bench"), "--labels", str(hidden / SEALED))

@@ -76,7 +76,9 @@ def run(*arguments: object) -> str:
 
 def recorded(folder: Path, hidden: dict[str, Any]) -> None:
     """Write four recordings of one gearbox."""
-    (folder / "hidden.yaml").write_text(yaml.safe_dump({**hidden, "seed": 4711, "specimens": 1, "repeats": 4}))
+    (folder / "hidden.yaml").write_text(
+        yaml.safe_dump({**hidden, "seed": 4711, "specimens": 1, "repeats": 4}, sort_keys=False)
+    )
     gearbox = siggen.draw(siggen.load_config(folder / "hidden.yaml"))
     for k, record in enumerate(siggen.runs(gearbox, gearbox.cases)):
         np.savez(folder / f"run{k}.npz", **record.channels, tacho_s=record.tacho_s)
@@ -86,7 +88,7 @@ def recorded(folder: Path, hidden: dict[str, Any]) -> None:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with a rig, and recordings of one gearbox of it that nobody knows, behind hidden paths."""
     found = tmp_path_factory.mktemp("mill")
-    (found / "mill.yaml").write_text(yaml.safe_dump(mill(**RIG)), encoding="utf-8")
+    (found / "mill.yaml").write_text(yaml.safe_dump(mill(**RIG), sort_keys=False), encoding="utf-8")
     sensors = [hidden_path(found, name, axis, seed) for seed, (name, axis) in enumerate(CHANNELS.items())]
     recorded(found, mill(**{**RIG, **HIDDEN, "sensors": by_name(sensors)}))
     return found
@@ -162,7 +164,7 @@ def test_a_helical_pair_is_calibrated_with_its_forces_along_the_shafts_and_an_ax
         **RIG, "gears__helix_deg": 15.0, "dynamics__model": "8dof", "sensors": by_name(sensors),
         "states": HIDDEN["states"],
     }  # fmt: skip
-    (tmp_path / "helix.yaml").write_text(yaml.safe_dump(minimal(**helical)), encoding="utf-8")
+    (tmp_path / "helix.yaml").write_text(yaml.safe_dump(minimal(**helical), sort_keys=False), encoding="utf-8")
     hidden = [hidden_path(tmp_path, name, axis, k, HELICAL_FORCES) for k, (name, axis) in enumerate(channels.items())]
     recorded(tmp_path, minimal(**{**helical, **HIDDEN, "sensors": by_name(hidden)}))
     calibrate(tmp_path, "helix.yaml", "mine.yaml", "--held-out", tmp_path / "run3.npz", "--compared", 2)
@@ -235,13 +237,13 @@ def test_the_result_generates_a_set(folder: Path, said: str) -> None:
 def test_a_machine_that_the_recordings_are_not_of_is_refused_by_name(
     folder: Path, changes: dict[str, Any], more: tuple[str, ...], words: str
 ) -> None:
-    (folder / "wrong.yaml").write_text(yaml.safe_dump(mill(**{**RIG, **changes})), encoding="utf-8")
+    (folder / "wrong.yaml").write_text(yaml.safe_dump(mill(**{**RIG, **changes}), sort_keys=False), encoding="utf-8")
     with pytest.raises(SiggenError, match=words):
         calibrate(folder, "wrong.yaml", "none.yaml", *more)
     assert not (folder / "none.yaml").exists()
 
 
 def test_a_planetary_set_is_refused_with_what_watches_it(folder: Path) -> None:
-    (folder / "set.yaml").write_text(yaml.safe_dump(planets()), encoding="utf-8")
+    (folder / "set.yaml").write_text(yaml.safe_dump(planets(), sort_keys=False), encoding="utf-8")
     with pytest.raises(SiggenError, match=r"planetary: received a planetary set; .*baseline --config"):
         calibrate(folder, "set.yaml", "none.yaml")

@@ -41,7 +41,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sensors = [{"name": "ring", "place": "ring", "axes": ["horizontal"], "noise": {"floor_m_s2": 0.5}}]
     split = {"train": 10, "validation": 5, "test": 5}
     raw = planets(specimens=4, fs_hz=12_800.0, duration_s=2.0, sensors=by_name(sensors), splits=split)
-    (folder / "set.yaml").write_text(yaml.safe_dump(raw), encoding="utf-8")
+    (folder / "set.yaml").write_text(yaml.safe_dump(raw, sort_keys=False), encoding="utf-8")
     done = run("siggen", "generate", str(folder / "set.yaml"), "--out", str(folder / "set"), "--engine", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
     done = run("diagnostics", "report", str(folder / "set"), "--out", str(folder / "report"), "--no-cnn")

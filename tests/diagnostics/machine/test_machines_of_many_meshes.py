@@ -68,7 +68,7 @@ def test_a_knock_is_named_by_the_shaft_that_has_it(
     tmp_path: Path, made: Callable[..., np.ndarray], config: Callable[[], dict[str, Any]], shaft: str, named: str
 ) -> None:
     """The gear in front and the second pinion stand on one shaft: both have the knock once per turn."""
-    (tmp_path / "gearbox.yaml").write_text(yaml.safe_dump(config()), encoding="utf-8")
+    (tmp_path / "gearbox.yaml").write_text(yaml.safe_dump(config(), sort_keys=False), encoding="utf-8")
     files = [recording(tmp_path / f"healthy_{k}.npz", made, seed=k) for k in range(8)]
     facts = ("--fs", FS_HZ, "--tacho", "tacho_s", "--config", tmp_path / "gearbox.yaml")
     code, said = run("baseline", *files, *facts, "--out", tmp_path / "rig")
@@ -85,14 +85,14 @@ def test_a_knock_is_named_by_the_shaft_that_has_it(
 
 def test_a_machine_in_own_names_has_the_meshes_of_its_short_form(tmp_path: Path) -> None:
     own, short = tmp_path / "mill.yaml", tmp_path / "staged.yaml"
-    own.write_text(yaml.safe_dump(mill()), encoding="utf-8")
-    short.write_text(yaml.safe_dump(staged()), encoding="utf-8")
+    own.write_text(yaml.safe_dump(mill(), sort_keys=False), encoding="utf-8")
+    short.write_text(yaml.safe_dump(staged(), sort_keys=False), encoding="utf-8")
     assert configured_train(own) == configured_train(short)
 
 
 def test_gears_are_told_once_and_planets_need_a_tacho(tmp_path: Path) -> None:
     file = recording(tmp_path / "one.npz", of_planets, seed=1)
-    (tmp_path / "gearbox.yaml").write_text(yaml.safe_dump(planets()), encoding="utf-8")
+    (tmp_path / "gearbox.yaml").write_text(yaml.safe_dump(planets(), sort_keys=False), encoding="utf-8")
     told = ("--fs", FS_HZ, "--unit", "m/s2", "--config", tmp_path / "gearbox.yaml", "--out", tmp_path / "out")
     for more, words in (
         (("--teeth", "25,26"), "received --teeth and --config"),
