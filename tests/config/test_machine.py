@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import label_names
+from siggen.columns.record import label_columns, label_names
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.stages import first_mesh, stage_config
+from siggen.specimen.structure import structure
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler
 from tests.config.mill import MACHINE, mill, with_machine
@@ -32,6 +33,24 @@ def test_a_machine_is_its_short_form_with_other_words() -> None:
     for section in ("gears", "stages", "dynamics", "states"):
         assert getattr(own, section) == getattr(short, section), section
     assert own.identity != short.identity, "their columns have other names"
+
+
+def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and_the_graph() -> None:
+    """The driver is called gear and runs on a shaft gear, what it drives is called pinion."""
+    called = {"ida": "gear", "otto": "pinion", "input": "gear", "middle": "pinion"}
+    renamed = {
+        part: [{key: called.get(str(value), value) for key, value in one.items()} for one in MACHINE[part]]
+        for part in MACHINE
+    }
+    damage = {**SPALL, "gear": "gear", "teeth": [3]}
+    states = by_name([{"name": "healthy"}, {"name": "severe", "damage": damage}])
+    config = load_config(mill(machine=renamed, sensors={"at": {"place": "gear_bearing"}}, states=states))
+    of = {(column.quantity, column.of): column for column in label_columns(config) if column.of}
+    assert of["teeth", "gear"].name == "teeth_gear"
+    assert of["teeth", "gear"].filled_by == "teeth_pinion"  # which the driver of a mesh is inside
+    assert of["shaft_hz", "pinion"].name == "pinion_shaft_hz"
+    assert config.names.gear(config.states[1].damages[0].hit_gear) == "gear"
+    assert structure(config, draw_specimen(config, 0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
 
 
 def test_its_own_file_reads_the_same_and_never_says_pinion() -> None:
