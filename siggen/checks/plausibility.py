@@ -129,6 +129,10 @@ def quantities(config: Config) -> Iterator[Quantity]:
         ("gear", config.dynamics.gear, pair.gear),
     ):
         yield from _rotor(f"dynamics.{name}", rotor, gear, pair)
+    yield from _bearings(config, pair)
+    if config.background is not None and config.background.base is not None:
+        mass, what = config.background.base.mass_kg, "mass over both discs"
+        yield _of("background.base.mass_kg", what, mass, 1.0, 2500.0, "is it in kg?", _discs_kg(pair))
     yield from _supports(config, pair)
     if config.planetary is not None and config.planetary.ring_mass_kg is not None:
         mass, what = config.planetary.ring_mass_kg, "mass over that of a steel rim"
@@ -239,6 +243,30 @@ def _rim_kg(section: Planetary, pair: GearPair) -> float:
     return STEEL_DENSITY_KG_M3 * pi * ((inner + RIM_MODULES * module) ** 2 - inner**2) * pair.face_width_m
 
 
+def _discs_kg(pair: GearPair) -> float:
+    return sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
+
+
+def _bearings(config: Config, pair: GearPair) -> Iterator[Quantity]:
+    """Yield how far bearings give way under the teeth at the largest torque; a planetary set has none of them."""
+    torque = max(max(map(abs, bounds(point.torque_nm))) for point in config.operating_points)
+    rotors = {"dynamics.pinion": config.dynamics.pinion, "dynamics.gear": config.dynamics.gear}
+    forces = dict.fromkeys(rotors, torque / pair.pinion.base_radius_m)
+    ratio = pair.gear.teeth / pair.pinion.teeth
+    stages: dict[str, PlainRotor] = dict(rotors)
+    for index, stage in enumerate(config.stages):
+        own = gear_pair(next(corners(stage.gears)))
+        stages[f"stages.{index}.gear"] = stage.gear
+        forces[f"stages.{index}.gear"] = torque * ratio / own.pinion.base_radius_m
+        ratio *= own.gear.teeth / own.pinion.teeth
+    for at, rotor in stages.items() if torque > 0.0 and config.planetary is None else ():
+        for axis in "xy":
+            key = f"bearing_stiffness_{axis}_n_per_m"
+            given = [1e6 * forces[at] / stiffness for stiffness in bounds(getattr(rotor, key))]
+            hint = "is it in N/m, not N/mm?"
+            yield Quantity(f"{at}.{key}", "gives way at full load by [µm]", _ends(given), 0.3, 1000.0, hint)
+
+
 def _torques(config: Config, pair: GearPair) -> Iterator[Quantity]:
     """Yield torques and ranges that belong to the largest torque of the operating points."""
     largest = max(max(map(abs, bounds(point.torque_nm))) for point in config.operating_points)
@@ -308,7 +336,7 @@ def _coupling(name: str, coupling: Coupling, machine: Number, inertia_kg_m2: flo
 
 
 def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
-    gears = sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
+    gears = _discs_kg(pair)
     if isinstance(housing, ModalHousing):
         what, hint = "mass that a seat feels over both discs", "are shapes in 1/sqrt(kg), not of unit length?"
         masses = [mass / gears for mass in given_modes(housing).seat_masses_kg]

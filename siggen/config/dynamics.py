@@ -55,12 +55,8 @@ class PlainRotor(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0), Usual(2e06, 4e09)] = Field(
-        default=2e8, description=BEARINGS
-    )
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0), Usual(2e06, 4e09)] = Field(
-        default=2e8, description=BEARINGS
-    )
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
     bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
     bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
 
