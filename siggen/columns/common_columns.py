@@ -9,10 +9,10 @@ import pyarrow as pa
 
 from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.manufacture_columns import manufacture_columns
-from siggen.columns.of_parts import frequency_of, of_gear, of_shaft
+from siggen.columns.of_parts import FAULTY_TEETH, TEETH, frequency_of, of_gear, of_shaft
 from siggen.columns.planetary_columns import SET_COLUMNS, manufacture_of_others, planetary_operating_columns
 from siggen.columns.state_columns import state_columns
-from siggen.keys.column import HERTZ, MILLIMETRE, Column, Role, in_role, list_of
+from siggen.keys.column import HERTZ, MILLIMETRE, Column, Role, in_role
 from siggen.names import Names
 from siggen.sensors.quantity import STILL_M_S2
 
@@ -23,7 +23,6 @@ STATE_COLUMNS = (
     Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
     Column("severity", pa.string(), "", "healthy, slight, moderate, severe, or a name of the configuration"),
 )
-FAULTY_TEETH = Column("faulty_teeth_{}", list_of(pa.int32()), "", "indices of {}'s damaged teeth", Role.TARGET)
 DAMAGE_COLUMNS = (
     Column("damage_count", pa.int32(), "", "number of single damages on all teeth"),
     Column(
@@ -68,7 +67,6 @@ DAMAGE_COLUMNS = (
         Role.CONSEQUENCE,
     ),
 )
-TEETH = Column("teeth_{}", pa.int32(), "", "number of teeth of {}", section="gears")
 SHAFT_HZ = Column("{}_shaft_hz", pa.float64(), HERTZ, "rotation frequency of {}")
 TORQUE = Column("torque_nm", pa.float64(), "N m", "torque at the input shaft")
 
@@ -88,7 +86,7 @@ def operating_columns(names: Names) -> tuple[Column, ...]:
     start = Column("start_angle_rad", pa.float64(), "rad", at_start, Role.PROVENANCE)
     return in_role(
         Role.CONDITION,
-        *(of_gear(TEETH, gear) for gear in names.first.gears),
+        *(replace(of_gear(TEETH, gear), section="gears") for gear in names.first.gears),
         Column("speed_hz", pa.float64(), HERTZ, f"nominal speed of the input shaft, that of {driver.called}"),
         TORQUE,
         *(of_shaft(SHAFT_HZ, shaft) for shaft in shafts),
@@ -103,7 +101,7 @@ def columns_behind(names: Names) -> tuple[Column, ...]:
     found: list[Column] = []
     for mesh, shaft in zip(names.meshes[1:], names.shafts[2:], strict=True):
         found += [of_gear(FAULTY_TEETH, gear) for gear in mesh.gears]
-        found += [of_gear(replace(TEETH, section=""), gear) for gear in mesh.gears]
+        found += [of_gear(TEETH, gear) for gear in mesh.gears]
         found += [frequency_of(mesh), of_shaft(SHAFT_HZ, shaft)]
     return in_role(Role.CONDITION, *found, section="stages")
 

@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import pyarrow as pa
 
-from siggen.keys.column import HERTZ, Column
+from siggen.keys.column import HERTZ, Column, Role, list_of
 from siggen.names import GearName, MeshName, ShaftName
 
+FAULTY_TEETH = Column("faulty_teeth_{}", list_of(pa.int32()), "", "indices of {}'s damaged teeth", Role.TARGET)
+TEETH = Column("teeth_{}", pa.int32(), "", "number of teeth of {}")
 MESH_HZ = Column("mesh_hz", pa.float64(), HERTZ, "tooth mesh frequency", quantity="mesh_hz")
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.manufacture_columns import error_columns, wave_columns
-from siggen.columns.of_parts import frequency_of, of_gear, of_shaft, quantity_of
+from siggen.columns.of_parts import FAULTY_TEETH, TEETH, frequency_of, of_gear, of_shaft, quantity_of
 from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
 from siggen.names import PLANETARY
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 EACH = "each_planet"
+RING = PLANETARY.meshes[1].driven
 SET_COLUMNS = in_role(
     Role.CONDITION,
-    Column("faulty_teeth_ring", list_of(pa.int32()), "", "indices of the ring's damaged teeth", Role.TARGET),
-    Column("teeth_ring", pa.int32(), "", "number of teeth of the ring"),
+    *(replace(of_gear(column, RING), label="") for column in (FAULTY_TEETH, TEETH)),
     Column("planet_positions_deg", list_of(pa.float64()), "deg", "where the planets stand on the carrier"),
     Column("carrier_hz", pa.float64(), HERTZ, "rotation frequency of the carrier"),
     Column(
@@ -39,7 +39,7 @@ def planetary_operating_columns() -> tuple[Column, ...]:
     return in_role(
         Role.CONDITION,
         *(
-            replace(of_gear(Column("teeth_{}", pa.int32(), "", "", section="gears"), gear), meaning=meaning)
+            replace(of_gear(TEETH, gear), meaning=meaning, section="gears")
             for gear, meaning in zip((sun, planet), teeth, strict=True)
         ),
         Column("speed_hz", pa.float64(), HERTZ, "nominal speed of the input shaft, that of the sun"),

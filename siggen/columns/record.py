@@ -193,10 +193,11 @@ def _signal_field(config: Config, channel: ChannelColumn) -> pa.Field:
 
 
 def listed_columns(schema: pa.Schema) -> list[dict[str, str]]:
-    """Return name, role and section of every column of `data/*.parquet` that has a role, as the manifest lists them."""
+    """Return what the manifest lists of every column of `data/*.parquet` that has a role, as of `ListedColumn`."""
     facts = {field.name: field.metadata or {} for field in schema}
+    kept = ("role", "section", "quantity", "of")
     return [
-        {"name": name, "role": own[b"role"].decode(), "section": own.get(b"section", b"").decode()}
+        {"name": name} | {key: own[key.encode()].decode() for key in kept if key.encode() in own}
         for name, own in facts.items()
         if b"role" in own
     ]

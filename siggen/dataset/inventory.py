@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, SkipValidation
 
+from siggen.columns.drivetrain import GearTrain
 from siggen.columns.record import ChannelColumn, RecordFailure
 from siggen.dataset.id_ranges import Range
 from siggen.dataset.object_name import object_name
@@ -90,11 +91,13 @@ class ListedQuantity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ListedColumn:
-    """Role of a column of records, and the section of the configuration that says how it is drawn."""
+    """Role of a column of records, and its `section`, `quantity` and `of` as of `Column`."""
 
     name: ColumnName
     role: Role
     section: Text = ""
+    quantity: Text = ""
+    of: Text = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,6 +147,7 @@ class Inventory:
     splits: dict[Split, ListedSplit]
     rows_per_group: Annotated[int, Field(ge=1, le=LARGEST)]
     channels: tuple[ChannelColumn, ...]
+    drivetrain: GearTrain
     environments: tuple[Environment, ...]
     failures: tuple[RecordFailure, ...]
     columns: tuple[ListedColumn, ...] = ()

@@ -14,6 +14,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import yaml
 
+from siggen.columns.drivetrain import GearTrain
 from siggen.columns.record import TACHO_COLUMN, ChannelColumn, signal_channels, signal_matrix
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
 from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
@@ -63,6 +64,8 @@ class Dataset:
     splits : tuple of str
         Splits that have records, in the order train, validation, test.
     channels : tuple of Channel
+    drivetrain : GearTrain
+        Shafts, gears and meshes of its gearboxes.
     fs_hz, duration_s : float
     internal_columns : tuple of Column
         Quantities that no sensor sees, in sets that store some (`internals` in the configuration).
@@ -86,6 +89,7 @@ class Dataset:
         self.config: dict[str, Any] = self._read_config()
         self.splits: tuple[str, ...] = tuple(s for s in SPLITS if s in self.inventory.splits)
         self.channels: tuple[ChannelColumn, ...] = self.inventory.channels
+        self.drivetrain: GearTrain = self.inventory.drivetrain
         self.fs_hz: float = self.inventory.fs_hz
         self.duration_s: float = self.inventory.duration_s
         self.internal_columns: tuple[Column, ...] = tuple(
@@ -128,6 +132,10 @@ class Dataset:
     def section(self, name: str) -> str:
         """Return the section of the configuration that says how a column is drawn; empty where none does."""
         return self._listed[name].section if name in self._listed else ""
+
+    def columns_of(self, quantity: str) -> dict[str, str]:
+        """Return the columns of records that hold a quantity, by the gear, shaft or mesh that they are about."""
+        return {column.of: name for name, column in self._listed.items() if column.quantity == quantity}
 
     @cached_property
     def _listed(self) -> dict[str, ListedColumn]:

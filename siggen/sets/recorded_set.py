@@ -17,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from siggen.columns.drivetrain import gear_train
 from siggen.columns.record import (
     TACHO_COLUMN,
     channels,
@@ -56,8 +57,6 @@ LABELS = (
     *("fault", "severity", "faulty_gear", "damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm"),
     *("mesh_stiffness_loss", "speed_hz", "torque_nm"),
 )
-TEETH = "teeth_"
-"""Begins the labels of all gears' teeth."""
 GROUP_ROWS = 16
 
 Row = Mapping[str, Any]
@@ -128,6 +127,7 @@ def write_recorded_set(
         "rows_per_group": GROUP_ROWS,
         "channels": [asdict(channel) for channel in channels(heard)],
         "columns": listed_columns(schema),
+        "drivetrain": asdict(gear_train(config)),
     }
     storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, own_facts])))
     return folder
@@ -146,7 +146,8 @@ def _schema(config: Config, heard: Config, origin: pa.Schema, samples: int) -> p
     own, others = record_schema(config), record_schema(heard)
     signals = [others.field(channel.column).with_type(list_of(pa.float32(), samples)) for channel in channels(heard)]
     metadata = {**schema_metadata(config), "duration_s": repr(samples / float(config.fs_hz))}
-    labels = [own.field(name) for name in (*IDS, *LABELS, *(name for name in own.names if name.startswith(TEETH)))]
+    teeth = (field.name for field in own if (field.metadata or {}).get(b"quantity") == b"teeth")
+    labels = [own.field(name) for name in (*IDS, *LABELS, *teeth)]
     return pa.schema([*labels, *origin, *signals, TACHO_COLUMN.field()], metadata=metadata)
 
 

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
+from siggen.columns.drivetrain import gear_train
 from siggen.columns.record import RecordFailure, channels, listed_columns, record_schema
 from siggen.dataset.card import card
 from siggen.dataset.card_making import stated_tolerance
@@ -53,6 +54,7 @@ def manifest_facts(config: Config, quantities: Sequence[Column]) -> dict[str, An
         "rows_per_group": rows_per_group(config),
         "channels": [asdict(channel) for channel in channels(config)],
         "columns": listed_columns(record_schema(config)),
+        "drivetrain": asdict(gear_train(config)),
         **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
     }
 
