@@ -69,18 +69,18 @@ def timed(results: Iterator[Result], times: list[RecordTime]) -> Iterator[Result
         yield result
 
 
-def set_cost(times: Sequence[RecordTime], again: RecordTime | None, duration_s: float) -> SetCost:
+def set_cost(times: Sequence[RecordTime], fresh: int, duration_s: float) -> SetCost:
     """Return what a set costs of which records of a duration took these times.
 
     Parameters
     ----------
     times : sequence of RecordTime
         The first one is of a gearbox that nothing was known of, with all loading.
-    again : RecordTime or None
-        Of another gearbox, with nothing left to load; None where that was not tried.
+    fresh : int
+        Place of the first record of a second gearbox, with nothing left to load; 0 where only one was tried.
     duration_s : float
     """
-    first = again or times[0]
-    damaged = [one.prepared_s for one in times[1:] if one.damaged]
-    signal_s = mean(one.run_s for one in [*times[1:], first]) / (duration_s + START_S)
+    first = times[fresh]
+    damaged = [one.prepared_s for i, one in enumerate(times) if i not in (0, fresh) and one.damaged]
+    signal_s = mean(one.run_s for one in times[1:] or times) / (duration_s + START_S)
     return SetCost(first.prepared_s, mean(damaged or [first.prepared_s]), START_S * signal_s, signal_s)

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 RECORDS = 3
-"""That are tried unless told otherwise: of as many states, evenly spread, or of a new gearbox and a pitted one. Where
-gears are dear, one healthy record."""
+"""That are tried unless told otherwise: of as many states, evenly spread over two gearboxes, or of a new and a pitted
+one and a new other. Where gears are dear, one healthy record."""
 DEAR = 3
 """As many meshes take as long as three pairs of spur gears; one of helical gears does."""
 SIZES = 15
@@ -118,28 +118,25 @@ def trial(config: Config, gearboxes: int | None = None, progress: Callable[[int,
     """
     short, physics = shortened(config), contents.physics()
     meshes = _meshes(config)
-    first, picked = _sample(config, meshes) if gearboxes is None else (0, tuple(range(config.state_count)))
-    tried = range(first, first + min(1 if gearboxes is None else gearboxes, config.specimens))
+    sample = _sample(config, meshes) if gearboxes is None else _every_state(config, gearboxes)
     found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in config.state_names}
     times: list[RecordTime] = []
-    for specimen in tried:
+    fresh = 0  # place of the second gearbox's first record
+    for specimen, picked in sample:
+        fresh = fresh or len(times)
         ids = _record_ids(short, specimen)  # a gearbox may fail before its last inspection
         places = [i for i in picked if i < len(ids)]
         results = iter(physics.simulate(short, [ids[i] for i in places]))
         for i, result in zip(places, timed(results, times), strict=True):
             if progress is not None:
-                progress(len(times) - 1, len(tried) * len(picked))
+                progress(len(times) - 1, sum(len(picked) for _, picked in sample))
             found[config.state_names[i]].append(result)
-    again: list[RecordTime] = []
-    if meshes < DEAR:
-        other = _record_ids(short, (first + 1) % config.specimens)[:1]
-        list(timed(iter(physics.simulate(short, other)), again))
     count = 0 if config.life is not None else min(max(1, SIZES // (meshes * config.state_count)), config.specimens)
     sizes = [physics.damage_sizes(config, specimen) for specimen in range(count)]
     states = tuple(
         _state_trial(name, results, [one[name] for one in sizes if name in one]) for name, results in found.items()
     )
-    cost = set_cost(times, again[0] if again else None, short.duration_s)
+    cost = set_cost(times, fresh, short.duration_s)
     return SetTrial(tuple(one for one in states if one.tried or count), count, cost)
 
 
@@ -151,18 +148,35 @@ def _meshes(config: Config) -> int:
     return sum(1 if one.helix_deg == 0.0 else DEAR for one in pairs)
 
 
-def _sample(config: Config, meshes: int) -> tuple[int, tuple[int, ...]]:
-    """Return a gearbox and the states, or inspections, of it that stand for all."""
-    if config.life is not None:
-        from siggen.planning.gearbox import gearbox_life
+Sample = Sequence[tuple[int, Sequence[int]]]
+"""Gearboxes, each with the states, or inspections, of it that are tried."""
 
-        for specimen in range(min(config.specimens, LOOKED_THROUGH)):
-            found = gearbox_life(config, specimen)
-            pitted = [k for k, age in enumerate(found.ages_h) if found.clock.time(age) >= found.course.ends.first_pit]
-            if pitted and pitted[0] > 0:
-                return specimen, (0, pitted[len(pitted) // 2])
-        return 0, (0, len(gearbox_life(config, 0).ages_h) - 1)
-    return 0, tuple(_spread(config.state_count, RECORDS if meshes < DEAR else 1))
+
+def _every_state(config: Config, gearboxes: int) -> Sample:
+    return [(specimen, range(config.state_count)) for specimen in range(min(gearboxes, config.specimens))]
+
+
+def _sample(config: Config, meshes: int) -> Sample:
+    """Return what stands for all: the first record loads code, so a second gearbox tells what one costs."""
+    if config.life is not None:
+        specimen, inspections = _pitted(config)
+        return [(specimen, inspections), *([((specimen + 1) % config.specimens, (0,))] if config.specimens > 1 else [])]
+    if meshes >= DEAR:
+        return [(0, (0,))]
+    picked = _spread(config.state_count, RECORDS)
+    return [(0, picked[-1:]), (1, picked[: RECORDS - 1])] if config.specimens > 1 else [(0, picked)]
+
+
+def _pitted(config: Config) -> tuple[int, tuple[int, ...]]:
+    """Return a gearbox that shows both whole and pitted teeth, and an inspection of each."""
+    from siggen.planning.gearbox import gearbox_life
+
+    for specimen in range(min(config.specimens, LOOKED_THROUGH)):
+        found = gearbox_life(config, specimen)
+        pitted = [k for k, age in enumerate(found.ages_h) if found.clock.time(age) >= found.course.ends.first_pit]
+        if pitted and pitted[0] > 0:
+            return specimen, (0, pitted[len(pitted) // 2])
+    return 0, (0, len(gearbox_life(config, 0).ages_h) - 1)
 
 
 def _spread(count: int, most: int) -> list[int]:

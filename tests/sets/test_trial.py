@@ -56,14 +56,14 @@ def test_a_sample_takes_gearboxes_where_states_are_few_and_states_where_they_are
 def test_a_set_costs_by_its_gearboxes_damaged_states_and_seconds_of_signal() -> None:
     """Known: the first record loads 5 s of code, so the gearbox after it tells; 1.9 s of work are 1 s of signal."""
     times = [
-        RecordTime(6.0, 3.0, damaged=False),
+        RecordTime(6.0, 3.0, damaged=True),
+        RecordTime(1.0, 1.9, damaged=False),
         RecordTime(0.5, 1.9, damaged=True),
-        RecordTime(0.1, 1.9, damaged=False),
     ]
-    cost = set_cost(times, RecordTime(1.0, 1.9, damaged=False), 1.0)
+    cost = set_cost(times, 1, 1.0)
     assert cost == SetCost(gearbox_s=1.0, damage_s=0.5, record_s=START_S, signal_s=1.0)
     assert cost.hours(10, 20, 30, 2.0) * 3600 == pytest.approx(10 * 1.0 + 20 * 0.5 + 30 * (START_S + 2.0))
-    alone = set_cost(times[:1], None, 1.0)
+    alone = set_cost(times[:1], 0, 1.0)
     assert (alone.gearbox_s, alone.damage_s, alone.signal_s) == (6.0, 6.0, pytest.approx(3.0 / (1.0 + START_S)))
 
 
