@@ -17,7 +17,7 @@ import numpy as np
 
 from benchmarks.random_gearbox import TEETH, drawn_numbers, random_config
 from benchmarks.row import Row, duration_text
-from siggen.config import Config, by_reference
+from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.errors import SolverFailure
@@ -130,9 +130,9 @@ def measured(count: int) -> Iterator[Found]:
 def _found(config: Config, number: int) -> Found | None:
     """Return what is found of a gearbox, every second one healthy; None if its motion diverges."""
     case = drawn_case(config, number % 2)
-    dynamics, begin = case.specimen.dynamics, time.process_time()
+    law, sampling, begin = case.specimen.law, case.specimen.sampling, time.process_time()
     with refused_as("outside_model"):
-        grid, motion, label, _ = stepped_motion(config, dynamics, case.state.mesh, case.point, case.driven)
+        grid, motion, label, _ = stepped_motion(sampling, law, case.state.mesh, case.point, case.driven)
         chosen = time.process_time()
         response = case.response(motion, grid.per_sample)
         looped = time.process_time()
@@ -169,8 +169,8 @@ def _reference(case: Case, first: int) -> tuple[Response, float]:
 
 
 def _runge_kutta(case: Case, steps: int) -> Response:
-    dynamics, step_s = by_reference(case.specimen.dynamics), 1.0 / (case.config.fs_hz * steps)
-    return case.response(specimen_motion(dynamics, case.state.mesh, case.point, step_s, case.driven), steps)
+    law, step_s = case.specimen.law.by_reference(), 1.0 / (case.config.fs_hz * steps)
+    return case.response(specimen_motion(law, case.state.mesh, case.point, step_s, case.driven), steps)
 
 
 def worst_error(found: Response, wanted: Response) -> float:

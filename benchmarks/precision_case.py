@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.shipped import QUICKSTART, shipped
 from siggen.arrays import FloatArray
-from siggen.config import Config, by_reference
+from siggen.config import Config
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
@@ -37,21 +37,21 @@ class Case:
 
     def motion(self, integrator: str, steps: int) -> Motion:
         """Return a motion with so many steps of integration per sample."""
-        dynamics, grid = (
-            by_reference(self.specimen.dynamics) if integrator == "runge_kutta" else self.specimen.dynamics,
+        law, grid = (
+            self.specimen.law.by_reference() if integrator == "runge_kutta" else self.specimen.law,
             state_grid(integrator, steps),
         )
         step_s = 1.0 / (self.config.fs_hz * grid.per_sample)
-        return specimen_motion(dynamics, self.state.mesh, self.point, step_s, self.driven, stride=grid.stride)
+        return specimen_motion(law, self.state.mesh, self.point, step_s, self.driven, stride=grid.stride)
 
     @property
     def method(self) -> str:
         """The integrator of the configuration."""
-        return self.specimen.dynamics.method
+        return self.specimen.law.method
 
     def own_steps(self) -> int:
         """Return the steps of integration per sample that the rule takes."""
-        return rule_grid(self.config, self.specimen.dynamics, self.state.mesh, self.point).steps
+        return rule_grid(self.config.fs_hz, self.specimen.law, self.state.mesh, self.point).steps
 
     def response(self, integrator: str, steps: int, settle_s: float = 0.0) -> Response:
         """Return the response to SIGNAL_S, behind the transient or what is discarded if that is longer."""

@@ -82,7 +82,7 @@ def started(count: int) -> Iterator[Started]:
 def _started(config: Config, state_id: int) -> Started | None:
     case = drawn_case(config, state_id)
     with refused_as("outside_model"):
-        stepped = stepped_motion(config, case.specimen.dynamics, case.state.mesh, case.point, case.driven)
+        stepped = stepped_motion(case.specimen.sampling, case.specimen.law, case.state.mesh, case.point, case.driven)
         motion, steps = stepped.motion, stepped.grid.per_sample
         before_s = motion.transient_s + EARLIER * motion.decay_s
         own, earlier = (case.response(motion, steps, settle_s) for settle_s in (0.0, before_s))

@@ -7,11 +7,11 @@ from matplotlib.figure import Figure
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.tooth_damage import pits_of
 from siggen.gears.stiffness.sections import contact_length_loss
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage
-from siggen.specimen.gears import gear_pair
 from siggen.views.flank_figure import save_flank_figure
 from siggen.views.flank_views import flank_damage_table, flank_views
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves

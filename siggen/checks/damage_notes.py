@@ -9,7 +9,6 @@ from siggen.config.states import KNOWN_CHANGES
 from siggen.faults.registry import FAULT_WORDS
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
-from siggen.specimen.contact import solves_across_the_face
 
 
 def torque_notes(config: Config) -> tuple[str, ...]:
@@ -22,7 +21,7 @@ def _on_torques(config: Config) -> Iterator[str]:
     damaged = any(state.damaged for state in config.states)
     if any(low <= 0.0 <= high for low, high in torques):
         behind = "springs without tilt, on the line of action of the drive flanks"
-        also = f"; back flanks they meet are {behind}" if solves_across_the_face(config.dynamics) else ""
+        also = f"; back flanks they meet are {behind}" if config.dynamics.mesh.law == "pairs" else ""
         idle = "a torque of 0 N m is idle: flanks rattle within the backlash, and no two integrators agree for long"
         yield f"{idle}{also}"
     if any(low < 0.0 for low, _ in torques):

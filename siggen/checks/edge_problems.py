@@ -14,7 +14,6 @@ from siggen.config import Dynamics
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, bounds
-from siggen.specimen.contact import solves_across_the_face
 
 LARGEST_SHARE = 1.0 / 7.0
 """Radius of an edge over the relative radius of curvature at the pitch point."""
@@ -23,7 +22,7 @@ LARGEST_SHARE = 1.0 / 7.0
 def edge_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Iterator[Problem]:
     """Yield edge radii that are too large at the bounds of all numbers, for the gears that are possible."""
     dynamics: Dynamics | None = sections.get("dynamics")
-    if dynamics is None or not pairs or not solves_across_the_face(dynamics):
+    if dynamics is None or not pairs or dynamics.mesh.law != "pairs":
         return
     most_mm = 1e3 * LARGEST_SHARE * min(_pitch_radius_m(pair) for pair in pairs)
     damages = {

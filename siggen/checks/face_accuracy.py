@@ -8,10 +8,10 @@ parallelism of the shafts make at their largest; c_γβ = 0.85 c' (0.75 ε + 0.2
 from __future__ import annotations
 
 from siggen.config import Gears
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.errors.iso_1328 import flank_tolerances
 from siggen.rig.rig import Rig
 from siggen.rig.rig_numbers import rig_numbers, single_stiffness_n_um_mm
-from siggen.specimen.gears import gear_pair
 
 FINEST, COARSEST = 3, 7
 """Classes that are proposed: from gears ground with the greatest care to the preset's coarsest (assumed)."""

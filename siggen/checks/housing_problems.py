@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 from siggen.config import Dynamics, PlateHousing, Shafts
 from siggen.dynamics.housing.layout import Contents
 from siggen.errors import Problem
+from siggen.gearbox.housing_numbers import PlateNumbers
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, bounds
-from siggen.planning.housing_numbers import PlateNumbers
 from siggen.specimen.housing_layout import (
     ABOVE_SHARE,
     CLEARANCE_M,

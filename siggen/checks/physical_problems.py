@@ -27,6 +27,7 @@ from siggen.config.short_form import names_in
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import allowed_text, found_problems, in_mm
+from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
@@ -35,8 +36,6 @@ from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
 from siggen.planning.stages import first_sections, ring_sections, stage_of, stage_sections
-from siggen.specimen.contact import solves_across_the_face
-from siggen.specimen.gears import gear_pair, stiffness_options
 
 KEYS = {
     "teeth": "teeth",
@@ -85,7 +84,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     flanks = list({_without_bores(pair): pair for pair in sound}.values())
     dynamics: Dynamics | None = sections.get("dynamics")
     # A section dynamics that is refused for itself says nothing about damage: no second problem that follows from it.
-    through_face = dynamics is None or solves_across_the_face(dynamics)
+    through_face = dynamics is None or dynamics.mesh.law == "pairs"
     for index, state in (item for states in possible_states(sections.get("states", {})) for item in states.items()):
         for path, damage in state.placed(f"states.{index}"):
             problems += _state_problems(flanks, damage, path, through_face=through_face)

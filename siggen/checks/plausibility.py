@@ -14,7 +14,10 @@ from operator import mul
 
 from siggen.config import Config, Coupling, Housing, ModalHousing, Pair, PlainRotor, Planetary, RigidHousing
 from siggen.config.changes import SECTIONS, changed_sections
+from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
 from siggen.errors import counted
+from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.planetary import RIM_MODULES
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.drawing import corners
@@ -22,12 +25,8 @@ from siggen.keys.number import Number, bounds
 from siggen.keys.usual import unusual
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
-from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 from siggen.sensors.sensor import SensorBase
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.modal_housing import given_modes
-from siggen.specimen.planetary_numbers import RIM_MODULES
-from siggen.specimen.rotors import disc_inertia_kg_m2, disc_mass_kg
 
 FORM_FACTOR = 2.5
 """Of the nominal stress at the tooth root, F_t/(b m) Y; 2.1 to 3 for spur gears of 17 teeth and more (ISO 6336-3)."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import difflib
 from dataclasses import replace
 
-from siggen.config import Config, by_reference
+from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
@@ -15,9 +16,7 @@ from siggen.keys.drawing import corners
 from siggen.names import Names
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
-from siggen.planning.stages import turns
 from siggen.specimen.flank_waves import WavyTeeth
-from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.structure import structure
 
@@ -56,15 +55,15 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
     assembled = structure(own, specimen)
     behind = tuple(
-        MeshBehind(_tabulated(gear_pair(stage.gears), specimen, assembled), turning)
-        for stage, turning in zip(specimen.stages, turns(specimen), strict=True)
+        MeshBehind(_tabulated(one.pair, specimen, assembled), float(turning))
+        for one, turning in zip(specimen.behind, specimen.shaft_turns[1:-1], strict=True)
     )
     mesh = replace(_tabulated(pair, specimen, assembled, reach), behind=behind)
-    step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
-    dynamics = specimen.dynamics
-    if dynamics.mesh.law == "pairs":  # every integrator has the same quantities; this one starts no motion
-        dynamics = by_reference(dynamics)
-    motion = specimen_motion(dynamics, mesh, point, step_s)
+    step_s = 1.0 / (config.fs_hz * specimen.law.steps_per_sample)
+    law = specimen.law
+    if law.across_the_face:  # every integrator has the same quantities; this one starts no motion
+        law = law.by_reference()
+    motion = specimen_motion(law, mesh, point, step_s)
     return quantity_names(config.names, motion.structure, motion.internal_names)
 
 
@@ -72,8 +71,8 @@ def _tabulated(
     pair: GearPair, specimen: Specimen, assembled: Structure, reach: float = CORNER_REACH_PITCHES
 ) -> SpecimenMesh:
     """Return a healthy mesh of a gearbox, whose corners are followed for a reach."""
-    tables = mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=TABLE_POINTS)
-    teeth = WavyTeeth(teeth_missing(specimen.dynamics, pair, TABLE_POINTS, reach), pair)
+    tables = mesh_tables(pair, (), specimen.meshes[0].options, points=TABLE_POINTS)
+    teeth = WavyTeeth(teeth_missing(specimen.law, pair, TABLE_POINTS, reach), pair)
     return SpecimenMesh(pair, assembled, tables, teeth)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from siggen.checks.bearing_notes import bearing_notes
 from siggen.checks.tilt_problems import NEEDED, flank_tilts
 from siggen.config import Config
-from siggen.specimen.gears import gear_pair
+from siggen.gearbox.pair import gear_pair
 
 
 def shaft_notes(config: Config) -> tuple[str, ...]:

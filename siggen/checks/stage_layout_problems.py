@@ -21,12 +21,12 @@ from siggen.config import Gears, Stage
 from siggen.config.gears import Pair
 from siggen.config.short_form import names_in
 from siggen.errors import Problem
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import geometry_problems
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, bounds
 from siggen.names import Names
 from siggen.planning.stages import stage_sections
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.staged_structure import LEAST_SPAN
 
 ON_ONE_AXIS_MM = 0.02

@@ -25,13 +25,13 @@ from siggen.dynamics.bearings.loaded_bearing import loaded_bearing
 from siggen.dynamics.structure.gear_stage import Shaft as Beam
 from siggen.dynamics.structure.gear_stage import cantilever_compliance_m_per_n
 from siggen.errors import Problem
+from siggen.gearbox.pair import stiffness_options
 from siggen.gears.contact.table_columns import approach_under_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, at, bounds
 from siggen.specimen.contact import largest_force_n
-from siggen.specimen.gears import stiffness_options
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 
 NEEDED = ("dynamics", "operating_points", "stiffness")
@@ -143,7 +143,7 @@ def under_load(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float)
     rotor: Rotor = getattr(dynamics, which)
     if rotor.bearing is None:
         return rotor
-    load_n = shaft_load_n(dynamics, pair, which, torque_nm, 0.0) / BEARINGS
+    load_n = shaft_load_n(pair, which, torque_nm, 0.0, housed=dynamics.model == "casing") / BEARINGS
     each = [BEARINGS * loaded_bearing(one.bearing(), load_n).stiffness_n_per_m for one in corners(rotor.bearing)]
     ends = {axis: [float(k[i, i]) for k in each] for i, axis in enumerate("xy")}
     numbers = {

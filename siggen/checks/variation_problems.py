@@ -7,10 +7,10 @@ from math import pi
 from typing import Any
 
 from siggen.config import Dynamics, OperatingRange, Variation
+from siggen.dynamics.structure.steel_disc import disc_inertia_kg_m2
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import bounds
-from siggen.specimen.rotors import disc_inertia_kg_m2
 
 NEEDED = ("variation", "operating_points", "dynamics", "duration_s")
 

@@ -192,7 +192,7 @@ def _notes(config: Config) -> dict[str, Any]:
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.size_notes import size_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
-    from siggen.specimen.gears import model_notes
+    from siggen.gearbox.pair import model_notes
 
     notes = {
         "size_notes": size_notes(config),

@@ -83,7 +83,7 @@ def tvms(
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file
-    from siggen.specimen.gears import model_notes
+    from siggen.gearbox.pair import model_notes
     from siggen.views.key_variation import varied, varied_curves
     from siggen.views.stiffness_curves import (
         curve_table,
@@ -106,7 +106,7 @@ def tvms(
             curves = varied_curves(loaded, gearbox.specimen, torque)
         else:
             curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque)
-        meaning = stiffness_meaning(usable.dynamics, torque)
+        meaning = stiffness_meaning(across_the_face=usable.dynamics.mesh.law == "pairs", torque_nm=torque)
     if out is not None:
         table = curve_table(curves, **asdict(further))
         write_table_file(table, out)

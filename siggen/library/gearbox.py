@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from siggen.checks.loading import load_config
-from siggen.config import Config, Pair
+from siggen.config import Config
 from siggen.config.planetary import RING
 from siggen.errors import UsageError
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
@@ -17,13 +17,11 @@ from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entr
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
 from siggen.library.shape_fault import ShapeFault
 from siggen.names import ROLES, ShaftName
-from siggen.planning.gear_pair import gear_pair
 from siggen.planning.gearbox import inspection_count
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.labels import gearbox_labels
 from siggen.sensing.inputs import Input
 from siggen.sensors.places import PLATE_OF
-from siggen.specimen.planetary_numbers import planets_in_ring
 
 __all__ = ["Case", "Gearbox", "Point", "State", "draw"]
 
@@ -99,7 +97,7 @@ class Gearbox:
 
     def __repr__(self) -> str:
         """One line."""
-        pairs = ((one.pinion.teeth, one.gear.teeth) for one in self._pairs)
+        pairs = ((one.pair.pinion.teeth, one.pair.gear.teeth) for one in self._specimen.meshes)
         teeth = ", ".join(f"{first}/{second}" for first, second in pairs)
         return (
             f"Gearbox({teeth} teeth, number {self.number}; states: {', '.join(one.name for one in self.states)}; "
@@ -276,20 +274,20 @@ class Gearbox:
     def _seats(self) -> dict[str, DamagedPlace]:
         """Name of every gear -> where it is."""
         specimen, meshes = self._specimen, self._config.names.meshes
-        if specimen.planetary is not None:
-            outer, inner = planets_in_ring(specimen)
+        if specimen.planets is not None:
+            outer, inner = specimen.planets.pair, specimen.planets.ring
             seats = (("sun", outer, "pinion"), ("planet", outer, "gear"), (RING, inner, "gear"))
             return {name: DamagedPlace(one, which, name) for name, one, which in seats}
         return {
-            gear.word: DamagedPlace(gear_pair(pair), role, gear.word, gear.inner)
-            for mesh, pair in zip(meshes, self._pairs, strict=True)
+            gear.word: DamagedPlace(one.pair, role, gear.word, gear.inner)
+            for mesh, one in zip(meshes, specimen.meshes, strict=True)
             for role, gear in zip(ROLES, mesh.gears, strict=True)
         }
 
     @property
     def _bearings(self) -> dict[str, str]:
         """Bearing of each of the first two shafts -> its word in a file."""
-        if self._specimen.planetary is not None:
+        if self._specimen.planets is not None:
             return {}
         return {f"{called}.bearing": shaft.bearing for called, shaft in [*self._shafts.items()][:2]}
 
@@ -306,11 +304,6 @@ class Gearbox:
     @cached_property
     def _specimen(self) -> Specimen:
         return draw_specimen(self._config, self.number)
-
-    @property
-    def _pairs(self) -> tuple[Pair, ...]:
-        """The drawn pairs of all meshes, in the order of power."""
-        return (self._specimen.gears, *(stage.gears for stage in self._specimen.stages))
 
 
 def draw(config: Config, number: int = 0) -> Gearbox:

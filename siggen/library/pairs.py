@@ -17,6 +17,7 @@ from siggen.config.states import StateSection
 from siggen.errors import ConfigError, Problem
 from siggen.faults.growth import Growth
 from siggen.faults.registry import DamageSections
+from siggen.gearbox.tooth_law import tooth_law
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.lost_shape import POINTS, LostShape
@@ -154,7 +155,11 @@ def _of_gearbox(
         torque = static_torque_nm(config, gearbox.number)
         torque = torque if torque_nm is None else finite("torque_nm", torque_nm, "a number above 0", 1e-9)
         (curve,) = stiffness_curves(config, gearbox.number, points_per_pitch, torque_nm=torque, states=(name,))
-    return Curve(curve.angle_rad, curve.mesh_stiffness_n_per_m, stiffness_meaning(config.dynamics, torque))
+    return Curve(
+        curve.angle_rad,
+        curve.mesh_stiffness_n_per_m,
+        stiffness_meaning(across_the_face=config.dynamics.mesh.law == "pairs", torque_nm=torque),
+    )
 
 
 def _of_pair(
@@ -162,8 +167,8 @@ def _of_pair(
 ) -> Curve:
     one_of("law", law, LAWS)
     options = StiffnessOptions(one_of("tooth", tooth, TOOTH_MODELS), coupling="body" if law == "pairs" else "none")
-    dynamics = draw(Dynamics(), lambda _: 0.5, "dynamics")
-    parts = _parts(pair, damages, law, partial(load_at_rest, dynamics, pair, options))
+    teeth = tooth_law(draw(Dynamics(), lambda _: 0.5, "dynamics"))
+    parts = _parts(pair, damages, law, partial(load_at_rest, teeth, pair, options))
     on_tooth = on_teeth(parts)
     shown = damaged_engagements(pair, tuple(with_outlines(parts, pair)) or on_tooth)
     # in the middle of steps: at a whole pitch, where pairs come and go, rounding would decide how many there are
@@ -180,10 +185,10 @@ def _of_pair(
     torque = rated_torque_nm(*sizes) if torque_nm is None else torque_nm
     torque = finite("torque_nm", torque, f"above 0 up to {most:.4g}, which the teeth bear", 1e-9, most)
     force = torque / pair.pinion.base_radius_m
-    tables = tooth_tables(dynamics, pair, on_tooth, options, TABLE_POINTS, force)
-    static = static_mesh(dynamics, pair, tables, TABLE_POINTS, parts)
+    tables = tooth_tables(teeth, pair, on_tooth, options, TABLE_POINTS, force)
+    static = static_mesh(teeth, pair, tables, TABLE_POINTS, parts)
     stiffness = static.stiffness_n_per_m(torque, pitches + shown[0])
-    return Curve(angle, stiffness, stiffness_meaning(dynamics, torque))
+    return Curve(angle, stiffness, stiffness_meaning(across_the_face=True, torque_nm=torque))
 
 
 def flank_picture(pair: GearPair, damages: Iterable[Damage], ax: Any = None, *, on: str = "", tooth: int = -1) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
-from math import floor
+from math import degrees, floor
 
 import numpy as np
 
@@ -15,9 +15,7 @@ from siggen.config import Config
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
 from siggen.config.planetary import pitches_per_turn
 from siggen.config.stage_problems import most_teeth_per_turn
-from siggen.config.stages import turned
 from siggen.errors import SolverFailure
-from siggen.keys.number import constant
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.gearbox import Case, Gearbox, Point
 from siggen.library.record import LineOrders, Record
@@ -128,14 +126,15 @@ def _point(gearbox: Gearbox, point: Point | int) -> Point | int:
 
 def _bearable_nm(gearbox: Gearbox) -> float:
     """Return the largest torque on the first shaft that all teeth bear."""
-    specimen, turning = gearbox._specimen, 1.0
-    shared = 1 if specimen.planetary is None else len(specimen.planetary.positions_deg)
+    specimen = gearbox._specimen
+    meshes, shared = specimen.meshes, 1
+    if specimen.planets is not None:  # by the meshes of the sun
+        meshes, shared = meshes[:1], len(specimen.planets.teeth.places)
     found = []
-    for pair, behind in zip(gearbox._pairs, turned(specimen.gears, specimen.stages), strict=True):
-        teeth = (pair.pinion.teeth, pair.gear.teeth)
-        sizes = (constant(one) for one in (pair.module_mm, pair.face_width_mm, pair.pressure_angle_deg))
-        found.append(bearable_torque_nm(teeth, *sizes) * turning * shared)
-        turning = float(behind)
+    for mesh, turning in zip(meshes, specimen.shaft_turns, strict=False):
+        pair = mesh.pair
+        sizes = 1e3 * pair.driver.module_m, 1e3 * pair.face_width_m, degrees(pair.driver.pressure_angle_rad)
+        found.append(bearable_torque_nm((pair.pinion.teeth, pair.gear.teeth), *sizes) * float(turning) * shared)
     return min(found)
 
 
@@ -209,13 +208,12 @@ def _record(gearbox: Gearbox, config: Config, found: SimulatedRecord) -> Record:
 
 def _lines(gearbox: Gearbox) -> tuple[LineOrders, ...]:
     specimen, names = gearbox._specimen, gearbox._config.names
-    sun, planet = specimen.gears.pinion.teeth, specimen.gears.gear.teeth
-    if specimen.planetary is not None:
-        ring = specimen.planetary.ring_teeth
-        carrier = sun / (sun + ring)
-        return (LineOrders("", pitches_per_turn(sun, ring), {"carrier": carrier, "planet": carrier * ring / planet}),)
-    found, orders = [], [1.0, *map(float, turned(specimen.gears, specimen.stages))]
-    for place, (mesh, pair) in enumerate(zip(names.meshes, gearbox._pairs, strict=True)):
+    if specimen.planets is not None:
+        teeth, carrier = specimen.planets.teeth, float(specimen.planets.teeth.carrier_turns)
+        shafts = {"carrier": carrier, "planet": carrier * teeth.ring / teeth.planet}
+        return (LineOrders("", pitches_per_turn(teeth.sun, teeth.ring), shafts),)
+    found, orders = [], [float(turns) for turns in specimen.shaft_turns]
+    for place, (mesh, one) in enumerate(zip(names.meshes, specimen.meshes, strict=True)):
         shafts = {names.shafts[end].word: orders[end] for end in (place, place + 1)}
-        found.append(LineOrders(mesh.word, orders[place] * pair.pinion.teeth, shafts))
+        found.append(LineOrders(mesh.word, orders[place] * one.pair.pinion.teeth, shafts))
     return tuple(found)

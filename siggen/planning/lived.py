@@ -12,13 +12,13 @@ from typing import Literal
 from siggen.config import Config, Gears, StateSection
 from siggen.config.life import FUNCTIONAL_SHARE, JITTER, Life
 from siggen.faults.registry import HEALTHY
+from siggen.gearbox.pair import gear_pair
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.life.clock import Block, Clock
 from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
 from siggen.life.law import Course, Named, Wearing
-from siggen.planning.gear_pair import gear_pair
 from siggen.seeding import Stage, named_generator, named_uniforms
 
 Event = Literal["failed", "suspended"]

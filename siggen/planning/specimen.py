@@ -2,50 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from math import radians
 
-from siggen.config import Config, Dynamics, Gears, ModalHousing, Planetary, RigidHousing, Stage, Stiffness
-from siggen.config.stages import with_idlers
+from siggen.config import Config, Dynamics, Gears, Planetary
+from siggen.config.planetary import RING
+from siggen.config.planetary_problems import set_of
+from siggen.config.stages import Stage, with_idlers
+from siggen.dynamics.time.sampling import Sampling
+from siggen.gearbox.housing_numbers import drawn_housing
+from siggen.gearbox.pair import gear_pair, mesh_options, stiffness_options
+from siggen.gearbox.planetary import planetary_stage
+from siggen.gearbox.specimen import OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
+from siggen.gearbox.tooth_law import tooth_law
+from siggen.gearbox.train import ball_bearings, bending_shafts, gear_stage, next_stages
+from siggen.gears.geometry.internal_pair import ring_round
 from siggen.keys.drawing import draw
-from siggen.keys.number import at
-from siggen.names import PAIR, Names
+from siggen.keys.number import at, constant
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.housing_numbers import PlateNumbers, drawn_housing
 from siggen.seeding import Stage as Consumer
-from siggen.seeding import named_uniforms
-from siggen.sensors.sensor import SensorBase
+from siggen.seeding import named_generator, named_uniforms
 
-
-@dataclass(frozen=True, slots=True)
-class Specimen:
-    """A gearbox: sections of the configuration with every distribution replaced by a value.
-
-    `bearing_point` is the operating point under whose mean load its bearings stand; None where they have one stiffness.
-    `stages` are the meshes behind that of `gears`; with `planetary` those are sun and planets.
-    """
-
-    specimen_id: int
-    gears: Gears
-    stiffness: Stiffness
-    dynamics: Dynamics
-    housing: PlateNumbers | ModalHousing | RigidHousing
-    sensors: tuple[SensorBase, ...]
-    bearing_point: OperatingPoint | None = None
-    stages: tuple[Stage, ...] = ()
-    planetary: Planetary | None = None
-    names: Names = PAIR
-
-    def under(self, point: OperatingPoint) -> Specimen:
-        """Return the gearbox at an operating point; itself where its bearings have one stiffness."""
-        return self if self.bearing_point in (None, point) else replace(self, bearing_point=point)
-
-
-@dataclass(frozen=True, slots=True)
-class OperatingPoint:
-    """Speed and torque of the pinion shaft."""
-
-    speed_hz: float
-    torque_nm: float
+__all__ = ["OperatingPoint", "Specimen", "draw_operating_point", "draw_specimen"]
 
 
 def draw_specimen(config: Config, specimen_id: int) -> Specimen:
@@ -53,29 +30,68 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
 
     Noise of the sensors belongs to records and is left as it is. Bearings that follow the load stand at the first
     operating point; `Specimen.under` puts them at that of a record.
+
+    Raises
+    ------
+    ValueError
+        If the ring of a planetary set cannot be made round its planets.
     """
     own = gearbox_config(config, specimen_id)
     gears = named_uniforms(config.seed, Consumer.GEARS, specimen_id)
     supports = named_uniforms(config.seed, Consumer.SUPPORTS, specimen_id)
     sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
-    first = draw(own.gears, gears, "gears")
+    first, stiffness = draw(own.gears, gears, "gears"), draw(own.stiffness, gears, "stiffness")
+    dynamics = draw(own.dynamics, supports, "dynamics")
+    stages = tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages)))
+    section = None if own.planetary is None else draw(own.planetary, supports, "planetary")
+    pair = gear_pair(first)
+    planets = None if section is None else _planets(own, section, first, dynamics, specimen_id)
+    pairs = [("", pair), *((stage.name, gear_pair(stage.gears)) for stage in stages)]
+    pairs += [] if planets is None else [(RING, planets.ring)]
+    options = stiffness_options(stiffness)
+    meshes = tuple(
+        ToothMesh(name, one, mesh_options(one, options), stage is not None and stage.idler, _direction_rad(stage))
+        for (name, one), stage in zip(pairs, [None, *stages, *([None] if planets else [])], strict=True)
+    )
+    balls = ball_bearings(dynamics)
     return Specimen(
         specimen_id,
+        names=own.names,
+        sampling=Sampling(own.fs_hz, own.duration_s, own.samples),
+        meshes=meshes,
+        law=tooth_law(dynamics),
+        train=_train(dynamics, stages, meshes) if planets is None else None,
+        planets=planets,
+        housed=own.dynamics.model == "casing",
         gears=first,
-        stiffness=draw(own.stiffness, gears, "stiffness"),
-        dynamics=draw(own.dynamics, supports, "dynamics"),
+        stiffness=stiffness,
+        dynamics=dynamics,
         housing=drawn_housing(own.housing, supports),
         sensors=tuple(one.drawn(sensor) for one in own.sensors),
-        bearing_point=draw_operating_point(own, specimen_id, 0) if follows_load(own.dynamics) else None,
-        stages=tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages))),
-        planetary=None if own.planetary is None else draw(own.planetary, supports, "planetary"),
-        names=own.names,
+        bearing_point=draw_operating_point(own, specimen_id, 0) if balls else None,
+        stages=stages,
+        planetary=section,
     )
 
 
-def follows_load(dynamics: Dynamics) -> bool:
-    """Return whether the stiffness of any bearing follows its load."""
-    return dynamics.pinion.bearing is not None or dynamics.gear.bearing is not None
+def _direction_rad(stage: Stage | None) -> float:
+    return 0.0 if stage is None else radians(constant(stage.direction_deg))
+
+
+def _train(dynamics: Dynamics, stages: tuple[Stage, ...], meshes: tuple[ToothMesh, ...]) -> PairTrain:
+    pair = meshes[0].pair
+    first = gear_stage(dynamics, pair)
+    behind, bending = tuple(next_stages(dynamics, stages, meshes)), bending_shafts(dynamics, first, pair)
+    return PairTrain(first, behind, bending, ball_bearings(dynamics))
+
+
+def _planets(config: Config, section: Planetary, gears: Gears, dynamics: Dynamics, specimen_id: int) -> PlanetaryGears:
+    teeth, pair = set_of(gears, section), gear_pair(gears)
+    ring = ring_round(pair, teeth.ring)
+    rng = named_generator(config.seed, Consumer.GEARS, specimen_id, name="planetary.pin_error_um")
+    drawn = rng.standard_normal(len(section.positions_deg))
+    errors = tuple((1e-6 * constant(section.pin_error_um) * drawn).tolist())
+    return PlanetaryGears(teeth, pair, ring, planetary_stage(section, dynamics, pair, ring, teeth), errors)
 
 
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:

@@ -39,7 +39,7 @@ def stage_config(config: Config, specimen: Specimen, index: int) -> Config:
 
     Its operating points are those of its pinion, as ranges; speed and torque of a record come from the first pinion.
     """
-    own, turning = stage_specimen(specimen, index), turns(specimen)[index]
+    own, turning = stage_specimen(specimen, index), float(specimen.shaft_turns[index + 1])
     name = specimen.stages[index].name
     points = _points(config.operating_points, turning)
     return config.model_copy(
@@ -113,12 +113,8 @@ def stage_specimen(specimen: Specimen, index: int) -> Specimen:
     """Return a drawn gearbox with the pair of a further stage in place of the first one."""
     stage = specimen.stages[index]
     dynamics = specimen.dynamics.model_copy(update=_rotors(stage))
-    return replace(specimen, gears=_gears(stage), dynamics=dynamics, stages=(), names=specimen.names.alone(index + 1))
-
-
-def turns(specimen: Specimen) -> tuple[float, ...]:
-    """Return the turns of every further stage's pinion per turn of the first one."""
-    return tuple(float(one) for one in turned(specimen.gears, specimen.stages))[:-1]
+    alone = replace(specimen, meshes=(specimen.meshes[index + 1],), names=specimen.names.alone(index + 1), train=None)
+    return replace(alone, gears=_gears(stage), dynamics=dynamics, stages=())
 
 
 def stage_point(point: OperatingPoint, turning: float) -> OperatingPoint:

@@ -85,7 +85,7 @@ class BackgroundBlocks:
         if section.rubbing is not None:
             specimen = self._of_record[1]
             of_set = partial(SetRubbing, specimen=specimen)
-            self._rubbing = (RubbingForce if specimen.planetary is None else of_set)(
+            self._rubbing = (RubbingForce if specimen.planets is None else of_set)(
                 section.rubbing, course, self._length
             )
         if self._background.bearings:

@@ -19,8 +19,6 @@ from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
 from siggen.specimen.asperities import asperity_share
 from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
-from siggen.specimen.gears import gear_pair
-from siggen.specimen.planetary_numbers import of_one_mesh, planetary_teeth
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,15 +70,17 @@ class Course:
 
 def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: int, count: int) -> Course:
     """Return the course of one record over `count` samples from sample `first`, below 0 in the history."""
-    pair, point = gear_pair(specimen.gears), draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    pair, point = specimen.pair, draw_operating_point(config, record.specimen_id, record.operating_point_id)
     rotation = record_rotation(config, point, record, start_angle_rad(config, specimen, record))
     owner = record_owner(record)
     # a fast length may reach further back than any force is followed; there the shaft stands still
     time_s = np.maximum((np.arange(count) + first) / config.fs_hz, -TRANSIENT_CAP_S)
     angle_rad = rotation.angle_rad(time_s)
     orders = {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
-    if specimen.planetary is not None:
-        orders["gear"] = float(planetary_teeth(specimen).carrier_turns)
+    of_mesh = point
+    if specimen.planets is not None:
+        orders["gear"] = float(specimen.planets.teeth.carrier_turns)
+        of_mesh = specimen.planets.of_one_mesh(point)
     return Course(
         angle_rad,
         orders,
@@ -89,7 +89,7 @@ def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: 
         -first,
         pair,
         point,
-        asperity_share(specimen.dynamics.friction, pair, of_one_mesh(specimen, point)),
+        asperity_share(specimen.law.friction, pair, of_mesh),
         named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id),
         lambda name: named_generator(config.seed, Stage.BACKGROUND, record.specimen_id, name=name),
         lambda name: named_generator(config.seed, Stage.BACKGROUND_NOISE, *owner, name=name),

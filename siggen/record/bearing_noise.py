@@ -85,7 +85,7 @@ class BearingVelocities:
     def __init__(self, bearings: Mapping[str, BearingNumbers], course: Course, specimen: Specimen) -> None:
         self._bearings = bearings
         self._loaded = specimen_bearings(specimen)
-        self._sense = {shaft: cage_sense(specimen.dynamics, shaft) for shaft in bearings}
+        self._sense = {shaft: cage_sense(shaft, housed=specimen.housed) for shaft in bearings}
         shafts = specimen.names.shafts[: len(bearings)]
         self._seats = {f"{shaft.bearing}/{axis}": _Seat(shaft, axis) for shaft in shafts for axis in AXES[::-1]}
         taps = {shaft: _taps(numbers, course, shaft) for shaft, numbers in bearings.items()}

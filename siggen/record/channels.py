@@ -7,13 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
-from siggen.config.stages import shaft_orders
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
 from siggen.noise.source import Draws, NoisyChannel
@@ -26,7 +24,6 @@ from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.transducer import Running
 from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.instrument import ChannelInstrument, Instrument, specimen_instrument
 
 
@@ -112,11 +109,10 @@ def _running(
     config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation, instrument: Instrument
 ) -> Running:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    ratio = Fraction(specimen.gears.pinion.teeth, specimen.gears.gear.teeth)
     return Running(
         config.fs_hz,
         _angle_rad(rotation, config.fs_hz, 0, config.samples),
-        specimen.names.of_turning(shaft_orders(ratio, specimen.stages)),
+        specimen.names.of_turning(list(map(float, specimen.shaft_turns))),
         point.torque_nm,
         _base_radii_m(specimen),
         {channel.name: channel.sensor.place for channel in instrument.channels},
@@ -127,9 +123,8 @@ def _running(
 def _base_radii_m(specimen: Specimen) -> dict[str, float]:
     """Return what turns -> base radius of the gear that it turns with."""
     found: dict[str, float] = {}
-    every = (specimen.gears, *(stage.gears for stage in specimen.stages))
-    for mesh, gears in zip(specimen.names.meshes, every, strict=False):  # of a planetary set, which no encoder is on
-        pair = gear_pair(gears)
+    every = [mesh.pair for mesh in specimen.meshes]
+    for mesh, pair in zip(specimen.names.meshes, every, strict=True):
         found |= {mesh.driver.body: pair.pinion.base_radius_m, mesh.driven.body: pair.gear.base_radius_m}
     return {**found, "motor": found[specimen.names.first.driver.body], "load": pair.gear.base_radius_m}
 
@@ -144,7 +139,7 @@ def _disturbances(
 ) -> dict[str, ChannelDisturbance]:
     """Return channel -> what is added to it; its recorder learns its noise and its converter."""
     largest = _largest_step_rad(config, rotation)
-    gear_order = specimen.gears.pinion.teeth / specimen.gears.gear.teeth
+    gear_order = specimen.pair.pinion.teeth / specimen.pair.gear.teeth
     found = {}
     for channel in instrument.channels:
         draws = channel_draws(config, record, channel.name)

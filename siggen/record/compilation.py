@@ -93,6 +93,7 @@ def _damaged(config: Config) -> Sequence[int]:
 def _run_motion(config: Config) -> None:
     import numpy as np
 
+    from siggen.dynamics.mesh.tooth_law import LINEAR
     from siggen.planning.gearbox import gearbox_config
     from siggen.planning.plan import planned_record
     from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -106,8 +107,7 @@ def _run_motion(config: Config) -> None:
     short = config.model_copy(update={"dynamics": parallel, "states": states, "duration_s": SHORT_S})
     own, specimen = gearbox_config(short, 0), draw_specimen(short, 0)
     # Tables of the same types without solving any contact: springs, as the law linear has them.
-    mesh = specimen.dynamics.mesh.model_copy(update={"law": "linear"})
-    springs = replace(specimen, dynamics=specimen.dynamics.model_copy(update={"mesh": mesh}))
+    springs = replace(specimen, law=replace(specimen.law, kind=LINEAR))
     state = specimen_state(own, springs, 0)
     simulated(own, specimen, specimen_instrument(own, specimen), state, planned_record(own, 0))
     # what a label of damaged teeth needs besides

@@ -8,15 +8,12 @@ from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_
 from siggen.config import Config
 from siggen.config.planetary import RING
 from siggen.gears.damage.part import Part, Parts
-from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.stages import DOT, ring_config, stage_config
 from siggen.planning.state_config import state_config
 from siggen.specimen.bearing_spalls import drawn_labels
 from siggen.specimen.damage import state_damage
-from siggen.specimen.gears import gear_pair
-from siggen.specimen.planetary_numbers import planets_in_ring
 
 
 def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
@@ -43,13 +40,12 @@ def _row(config: Config, part: Part, stage: str) -> dict[str, object]:
 def _damage(config: Config, specimen_id: int, state_id: int) -> tuple[dict[str, Parts], dict[str, object]]:
     """Return the damage of a state by stage, and in sets that store edges those of damage that states none itself."""
     specimen = draw_specimen(state_config(config, specimen_id, state_id), specimen_id)
-    damage = {"": state_damage(config, specimen_id, gear_pair(specimen.gears), state_id)}
-    if specimen.planetary is not None:
-        _, inner = planets_in_ring(specimen)
-        damage[RING] = state_damage(ring_config(config), specimen_id, inner, state_id)
-    for index, stage in enumerate(specimen.stages):
+    damage = {"": state_damage(config, specimen_id, specimen.pair, state_id)}
+    if specimen.planets is not None:
+        damage[RING] = state_damage(ring_config(config), specimen_id, specimen.planets.ring, state_id)
+    for index, mesh in enumerate(specimen.behind):
         own = stage_config(config, specimen, index)
-        damage[stage.name] = state_damage(own, specimen_id, gear_pair(stage.gears), state_id)
+        damage[mesh.inner] = state_damage(own, specimen_id, mesh.pair, state_id)
     if not has_drawn_edges(config):
         return damage, {}
-    return damage, {"edge_radius_mm": constant(specimen.dynamics.mesh.pit_edge_radius_mm), "strip_depth_mm": []}
+    return damage, {"edge_radius_mm": 1e3 * specimen.law.edge_radius_m, "strip_depth_mm": []}

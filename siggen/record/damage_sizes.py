@@ -10,7 +10,6 @@ from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.labels import damage_labels
 from siggen.record.stage_labels import LARGEST
-from siggen.specimen.gears import mesh_options, stiffness_options
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.planetary_meshes import made_meshes
 
@@ -35,9 +34,8 @@ def damage_sizes(config: Config, specimen_id: int) -> dict[str, Mapping[str, obj
 
 def _made(config: Config, specimen_id: int) -> list[MadeGears]:
     made = MadeGears(config, draw_specimen(config, specimen_id))
-    return [made, *made.stages] if made.specimen.planetary is None else made_meshes(made, config)
+    return [made, *made.stages] if made.specimen.planets is None else made_meshes(made, config)
 
 
 def _labels(made: MadeGears, state_id: int) -> dict[str, object]:
-    options = mesh_options(made.pair, stiffness_options(made.specimen.stiffness))
-    return damage_labels(made.config.states[state_id], made.pair, made.damage(state_id), options)
+    return damage_labels(made.config.states[state_id], made.pair, made.damage(state_id), made.options)

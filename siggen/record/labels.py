@@ -23,7 +23,6 @@ from siggen.keys.number import constant
 from siggen.names import ROLES, SEVERAL
 from siggen.planning.gearbox import pair_of
 from siggen.planning.specimen import OperatingPoint, Specimen
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS
 from siggen.specimen.static_mesh import StaticMesh
@@ -79,7 +78,7 @@ def state_labels(config: Config, state_id: int) -> dict[str, object]:
 
 def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
     """Return what a gearbox draws as a whole: pair, oil, housing, places of sensors; nothing that all share."""
-    oil = {"oil": specimen.dynamics.friction.oil} if draws_oil(config) else {}
+    oil = {"oil": specimen.law.friction.oil} if draws_oil(config) else {}
     positions = {i: sensor.place_on_casing_mm for i, sensor in enumerate(specimen.sensors)}
     places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
     return {**_pair_labels(config, specimen), **oil, **_housing_labels(config, specimen), **places}
@@ -99,7 +98,7 @@ def _pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
     index = pair_of(config, specimen.specimen_id)
     if index is None:
         return {}
-    pair = gear_pair(specimen.gears)
+    pair = specimen.pair
     return {
         "pair": index,
         "module_mm": 1e3 * pair.pinion.module_m,

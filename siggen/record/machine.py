@@ -15,6 +15,7 @@ from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.labels import gearbox_labels
+from siggen.record.specimen_state import refused_as
 from siggen.record.stage_times import stage
 from siggen.specimen.instrument import Instrument, specimen_instrument
 from siggen.specimen.made_gears import MadeGears
@@ -48,7 +49,7 @@ def machines(whole: Config, specimen_id: int) -> Callable[[int], Machine]:
 
 
 def _machine(whole: Config, config: Config, specimen_id: int) -> Machine:
-    with stage("plan"):
+    with refused_as("outside_model"), stage("plan"):
         specimen = draw_specimen(config, specimen_id)
         labels = gearbox_labels(whole, specimen)
         gears = MadeGears(config, specimen)

@@ -12,7 +12,6 @@ from siggen.config.planetary import RING
 from siggen.names import DRIVEN, SEVERAL
 from siggen.planning.specimen import Specimen
 from siggen.record.stage_labels import ADDED, LARGEST, LOSS
-from siggen.specimen.planetary_numbers import pin_errors_m, planetary_teeth
 from siggen.specimen.static_mesh import StaticMesh
 
 
@@ -45,15 +44,15 @@ def _errors_of_others(config: Config, suns: Sequence[Mapping[str, Any]], ring: M
 
 
 def planetary_labels(
-    config: Config, specimen: Specimen, labels: Mapping[str, Any], meshes: tuple[StaticMesh, ...]
+    specimen: Specimen, labels: Mapping[str, Any], meshes: tuple[StaticMesh, ...]
 ) -> dict[str, object]:
     """Return the labels of a set by those of its sun and first planet as a pair; each planet carries its share.
 
     `meshes` are those of the first planet with the sun and with the ring, at rest.
     """
-    if specimen.planetary is None:
+    if specimen.planets is None:
         return dict(labels)
-    teeth, sun_hz = planetary_teeth(specimen), float(labels["pinion_shaft_hz"])
+    teeth, sun_hz = specimen.planets.teeth, float(labels["pinion_shaft_hz"])
     carrier_hz, of_each = sun_hz / (1.0 + teeth.ring / teeth.sun), float(labels["torque_nm"]) / len(teeth.places)
     torques = (of_each, of_each * teeth.planet / teeth.sun)
     return {
@@ -64,5 +63,5 @@ def planetary_labels(
         "teeth_ring": teeth.ring,
         "planet_positions_deg": [360.0 * float(place) for place in teeth.places],
         "carrier_hz": carrier_hz,
-        "pin_errors_um": [1e6 * float(error) for error in pin_errors_m(config, specimen)],
+        "pin_errors_um": [1e6 * error for error in specimen.planets.pin_errors_m],
     }

@@ -13,7 +13,6 @@ from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
 from siggen.keys.column import Column
-from siggen.keys.number import constant
 from siggen.names import Names
 from siggen.planning.specimen import Specimen
 
@@ -60,7 +59,7 @@ def internal_quantities(specimen: Specimen, response: Response) -> dict[str, Flo
 
 def approach_name(specimen: Specimen) -> str:
     """Return the name of the approach that the transmission error follows from, that of the first mesh."""
-    return specimen.names.quantity(specimen.names.first, APPROACH) if specimen.planetary is None else ""
+    return specimen.names.quantity(specimen.names.first, APPROACH) if specimen.planets is None else ""
 
 
 def is_asked_for(config: Config, name: str) -> bool:
@@ -101,7 +100,7 @@ def transmission_error_m(approach_m: FloatArray, specimen: Specimen) -> FloatArr
     literature). The linear mesh law counts the approach from the middle of the backlash, tooth pairs from the touching
     drive flank: there both are one quantity.
     """
-    if specimen.dynamics.mesh.law == "pairs":
+    if specimen.law.across_the_face:
         return approach_m
-    half_backlash_m = 0.5e-6 * constant(specimen.dynamics.backlash_um)
+    half_backlash_m = 0.5 * specimen.law.backlash_m
     return np.asarray(approach_m - np.sign(approach_m) * np.minimum(np.abs(approach_m), half_backlash_m))

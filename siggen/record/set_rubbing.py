@@ -20,20 +20,22 @@ from siggen.record.background_course import Course
 from siggen.record.rubbing import RubbingForce
 from siggen.specimen.background import AXES, EVEN, SET_MESHES
 from siggen.specimen.background_numbers import RubbingNumbers
-from siggen.specimen.planetary_numbers import of_one_mesh, planetary_teeth, planets_in_ring
 
 
 class SetRubbing:
     """The forces of one record from the first sample of `course` on, over `length` samples, and their labels."""
 
     def __init__(self, rubbing: RubbingNumbers, course: Course, length: int, specimen: Specimen) -> None:
-        teeth, (pair, inner) = planetary_teeth(specimen), planets_in_ring(specimen)
+        planets = specimen.planets
+        assert planets is not None
+        teeth = planets.teeth
         self._carrier = float(teeth.carrier_turns)
         self._places = 2.0 * pi * np.array([float(place) for place in teeth.places])
-        of_sun = of_one_mesh(specimen, course.point)
+        of_sun = planets.of_one_mesh(course.point)
         share = teeth.planet / teeth.sun
         of_planet = OperatingPoint(of_sun.speed_hz / share, of_sun.torque_nm * share)
-        self._meshes = dict(zip(SET_MESHES, ((pair, of_sun, 1.0), (inner, of_planet, 1.0 / share)), strict=True))
+        meshes = (planets.pair, of_sun, 1.0), (planets.ring, of_planet, 1.0 / share)
+        self._meshes = dict(zip(SET_MESHES, meshes, strict=True))
         self._forces = {
             mesh: [RubbingForce(rubbing, self._own(course, mesh, i), length) for i in range(len(teeth.places))]
             for mesh in SET_MESHES

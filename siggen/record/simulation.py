@@ -92,7 +92,7 @@ def _stream(
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     driven = _driven(config, specimen, state, record) if driven is None else driven
     with stage("loop"):
-        grid, motion, error, error_of = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
+        grid, motion, error, error_of = stepped_motion(specimen.sampling, specimen.law, state.mesh, point, driven)
         stream = response_stream(
             motion,
             driven.rotation,
@@ -153,7 +153,7 @@ def simulated(
     ends_rad = driven.rotation.angle_rad(np.array([0, config.samples - 1]) / config.fs_hz)
     with refused_as("outside_model"):
         operating = operating_labels(state.pair, point, ends_rad, config, state.static)
-    labels = planetary_labels(config, specimen, {
+    labels = planetary_labels(specimen, {
         **state.labels,
         **operating,
         **stage_operating_labels(specimen, operating, [one.static for one in state.behind]),
@@ -197,7 +197,6 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Simula
     machine_of = machines(whole, records[0].specimen_id)
     state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(machine_of(state_id), state_id))
     loaded = lru_cache(maxsize=2)(lambda state_id, point_id: machine_of(state_id).at_point(point_id))
-    machine_of(records[0].state_id)
     for record in records:
         try:
             machine = loaded(record.state_id if whole.changes_of(record.state_id) else 0, record.operating_point_id)

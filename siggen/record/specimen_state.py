@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import SolverFailure
+from siggen.gearbox.specimen import PlanetaryGears
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
-from siggen.planning.stages import turns
 from siggen.record.labels import damage_labels
 from siggen.record.planetary_state import with_ring_labels
 from siggen.record.stage_labels import stage_labels
@@ -26,7 +26,6 @@ from siggen.specimen.clocking import clocked_pitches
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
-from siggen.specimen.gears import mesh_options, stiffness_options
 from siggen.specimen.lost_mass import MeshPlace
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import MeshBehind, SpecimenMesh
@@ -91,13 +90,13 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
         If what was drawn cannot be built (named in the reason).
     """
     pair = made.pair
-    options = mesh_options(pair, stiffness_options(specimen.stiffness))
+    options = made.options
     with refused_as("impossible_damage"):
         parts = made.damage(state_id)
         damage = on_teeth(parts)
         errors = made.errors(state_id)
         tables = tooth_tables(
-            specimen.dynamics, pair, damage, options, TABLE_POINTS,
+            specimen.law, pair, damage, options, TABLE_POINTS,
             largest_force_n(config.operating_points, pair), lead_of(errors),
         )  # fmt: skip
         labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
@@ -115,19 +114,21 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     made = made or MadeGears(config, specimen)
     with refused_as("outside_model"):
         assembled = made.structure
-    if specimen.planetary is not None:
-        return _planetary_state(config, made, state_id, assembled)
+    if specimen.planets is not None:
+        return _planetary_state(config, made, specimen.planets, state_id, assembled)
     first = _mesh_state(made, state_id, assembled)
-    if not specimen.stages:
+    if not specimen.behind:
         return first
     return _with_stages(config, specimen, first, tuple(_mesh_state(one, state_id, assembled) for one in made.stages))
 
 
-def _planetary_state(config: Config, made: MadeGears, state_id: int, assembled: Structure) -> SpecimenState:
+def _planetary_state(
+    config: Config, made: MadeGears, planets: PlanetaryGears, state_id: int, assembled: Structure
+) -> SpecimenState:
     """Return the state of a planetary set: that of the sun with its first planet, with all meshes behind it."""
     states = [_mesh_state(one, state_id, assembled) for one in made_meshes(made, config)]
     suns, ring = states[: len(states) // 2], states[len(states) // 2]
-    mesh = with_planets(config, made.specimen, [one.mesh for one in states])
+    mesh = with_planets(planets, [one.mesh for one in states])
     labels = with_ring_labels(config, [one.labels for one in suns], ring.labels)
     return replace(suns[0], mesh=mesh, labels=labels, ring=ring)
 
@@ -137,11 +138,11 @@ def _with_stages(
 ) -> SpecimenState:
     """Return the state of the first mesh with those behind it; how their teeth stand is drawn for the gearbox."""
     uniform = named_uniforms(config.seed, Consumer.GEARS, specimen.specimen_id)
-    names = [stage.name for stage in specimen.stages]
+    names = [mesh.inner for mesh in specimen.behind]
     clockings = clocked_pitches([first.pair, *(one.pair for one in behind)], specimen, uniform)
     meshes = tuple(
-        MeshBehind(one.mesh, turning, turned)
-        for one, turning, turned in zip(behind, turns(specimen), clockings, strict=True)
+        MeshBehind(one.mesh, float(turning), turned)
+        for one, turning, turned in zip(behind, specimen.shaft_turns[1:-1], clockings, strict=True)
     )
     labels = stage_labels(first.labels, dict(zip(names, (one.labels for one in behind), strict=True)))
     return replace(first, mesh=replace(first.mesh, behind=meshes, back=None), labels=labels, behind=behind)
@@ -156,15 +157,15 @@ def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> Specime
         missing = made.missing(state_id)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
         loads = largest_force_n(config.operating_points, pair), lead_of(teeth.errors)
-        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS, teeth.parts)
-        static = with_static_back(static, specimen.dynamics, teeth.options, *loads, teeth.parts)
+        static = static_mesh(specimen.law, pair, tables, TABLE_POINTS, teeth.parts)
+        static = with_static_back(static, specimen.law, teeth.options, *loads, teeth.parts)
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
             made.shares(state_id), sham=config.states[state_id].sham,
         )  # fmt: skip
-        if specimen.planetary is None:  # which carries no torque below 0
+        if specimen.planets is None:  # which carries no torque below 0
             before = made.missing_before_chips(state_id)
-            mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, *loads, before, teeth.parts)
+            mesh = with_back_flanks(mesh, specimen.law, teeth.options, *loads, before, teeth.parts)
     return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
 
 

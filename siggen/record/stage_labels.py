@@ -7,7 +7,7 @@ from typing import Any
 
 from siggen.names import ROLES, SEVERAL
 from siggen.planning.specimen import Specimen
-from siggen.planning.stages import DOT, turns
+from siggen.planning.stages import DOT
 from siggen.specimen.static_mesh import StaticMesh
 
 ADDED = ("damage_count", "damaged_area_mm2")
@@ -42,15 +42,15 @@ def stage_operating_labels(
     Their first shaft is that of the first mesh's gear.
     """
     found: dict[str, object] = {}
-    shaft_hz, turning = float(first["gear_shaft_hz"]), turns(specimen)
+    shaft_hz = float(first["gear_shaft_hz"])
     losses = [float(first[LOSS])]
-    for stage, static, turned in zip(specimen.stages, behind, turning, strict=True):
+    for mesh, static, turned in zip(specimen.behind, behind, specimen.shaft_turns[1:], strict=False):
         pair = static.pair
-        losses.append(static.largest_loss(float(first["torque_nm"]) / turned))
-        found |= {f"teeth_{stage.name}_{gear}": pair.member(gear).teeth for gear in ROLES}
-        found[f"mesh_{stage.name}_hz"] = shaft_hz * pair.pinion.teeth
+        losses.append(static.largest_loss(float(first["torque_nm"]) / float(turned)))
+        found |= {f"teeth_{mesh.inner}_{gear}": pair.member(gear).teeth for gear in ROLES}
+        found[f"mesh_{mesh.inner}_hz"] = shaft_hz * pair.pinion.teeth
         shaft_hz *= pair.pinion.teeth / pair.gear.teeth
-        found[f"{stage.name}_shaft_hz"] = shaft_hz
+        found[f"{mesh.inner}_shaft_hz"] = shaft_hz
     return {**found, LOSS: max(losses)} if behind else {}
 
 

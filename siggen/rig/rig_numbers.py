@@ -10,13 +10,13 @@ from math import ceil, cos, pi, radians, sqrt
 from typing import NamedTuple
 
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
+from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3
 from siggen.errors import UsageError
 from siggen.rig.rig import Pair, Rig
 from siggen.rig.shafts import Shaft, shafts
 
 MESH_HARMONICS, SPEED_MARGIN = 10, 1.02
 """Carried where no sampling rate is given, at a speed that varies so much."""
-STEEL_DENSITY_KG_M3 = 7850.0
 RUNNING_IN_UM = 2.0
 """Relief by running in alone, C_ay of ISO 6336-1 for steel of 1500 N/mm²; the other end is the deflection."""
 BENCH_CENTRE_MM = 97.5

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Dynamics
+from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.structure import on_back_flanks as seen_from_behind
 from siggen.gears.damage.flank_loss import Losses, from_flanks, on_back_flanks, takes_from_flanks, turned
 from siggen.gears.damage.part import NO_TOOTH, Parts
@@ -44,7 +44,7 @@ def on_both_flanks(parts: Parts) -> Parts:
 
 def with_static_back(
     mesh: StaticMesh,
-    dynamics: Dynamics,
+    law: ToothLaw,
     options: StiffnessOptions,
     largest_force_n: float,
     lead_m: Lead,
@@ -65,8 +65,8 @@ def with_static_back(
     @cache
     def behind() -> StaticMesh:
         lead = _seen_from_behind(lead_m)
-        teeth = tooth_tables(dynamics, pair, on_teeth(mirrored), options, TABLE_POINTS, largest_force_n, lead)
-        return static_mesh(dynamics, pair, teeth, TABLE_POINTS, mirrored)
+        teeth = tooth_tables(law, pair, on_teeth(mirrored), options, TABLE_POINTS, largest_force_n, lead)
+        return static_mesh(law, pair, teeth, TABLE_POINTS, mirrored)
 
     return replace(mesh, behind=behind)
 
@@ -90,7 +90,7 @@ class BackTeeth:
 
 def with_back_flanks(
     mesh: SpecimenMesh,
-    dynamics: Dynamics,
+    law: ToothLaw,
     options: StiffnessOptions,
     largest_force_n: float,
     lead_m: Lead,
@@ -107,7 +107,7 @@ def with_back_flanks(
     def back() -> SpecimenMesh:
         driven = driven_pair(pair)
         gone = tuple(turned(one, driven) for one in on_teeth(on_both_flanks(parts)))
-        found = tooth_tables(dynamics, driven, gone, options, TABLE_POINTS, largest_force_n, _seen_from_behind(lead_m))
+        found = tooth_tables(law, driven, gone, options, TABLE_POINTS, largest_force_n, _seen_from_behind(lead_m))
         return SpecimenMesh(
             driven,
             seen_from_behind(mesh.structure, pitches_ahead(pair)),
@@ -116,7 +116,7 @@ def with_back_flanks(
             BackTeeth(teeth, pair, from_flanks(parts)),
             found.coupling_m_per_n,
             found.contact,
-            slice_shares(dynamics, driven, options, _seen_from_behind(lead_m)),
+            slice_shares(law, driven, options, _seen_from_behind(lead_m)),
         )
 
     return replace(mesh, back=back)

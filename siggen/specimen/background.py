@@ -13,13 +13,14 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, Dynamics
+from siggen.config import Config
 from siggen.dynamics.drive.external_forces import (
     bearing_direction,
     bearing_places,
     shaft_direction,
     shaft_directions,
 )
+from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.drivetrain import BASE, Place
 from siggen.dynamics.structure.forced_motion import MeanMesh
 from siggen.dynamics.structure.gear_stage import Base
@@ -42,8 +43,6 @@ from siggen.specimen.background_numbers import (
     background_numbers,
 )
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
-from siggen.specimen.gears import gear_pair
-from siggen.specimen.planetary_numbers import planets_in_ring
 from siggen.specimen.structure import linear_structure, linear_train
 
 DECAYS = 7.0
@@ -162,19 +161,15 @@ def _per_velocity(assembled: Structure, name: str, frequency_hz: FloatArray) -> 
 
 def mean_meshes(specimen: Specimen, assembled: Structure) -> list[MeanMesh]:
     """Return every mesh of a gearbox as a constant spring and damper."""
-    pairs = [gear_pair(specimen.gears), *(gear_pair(stage.gears) for stage in specimen.stages)]
-    if specimen.planetary is not None:
-        pairs = [pair for pair in planets_in_ring(specimen) for _ in specimen.planetary.positions_deg]
-    return [
-        mean_mesh(specimen.dynamics, pair, mesh.mass_kg) for pair, mesh in zip(pairs, assembled.meshes, strict=True)
-    ]
+    count = 1 if specimen.planets is None else len(specimen.planets.teeth.places)
+    pairs = [mesh.pair for mesh in specimen.meshes for _ in range(count)]
+    return [mean_mesh(specimen.law, pair, mesh.mass_kg) for pair, mesh in zip(pairs, assembled.meshes, strict=True)]
 
 
-def mean_mesh(dynamics: Dynamics, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:
+def mean_mesh(law: ToothLaw, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:
     """Return the mesh as a constant spring and damper; no state may show in it, so it knows no damage."""
     stiffness = 1e9 * MESH_STIFFNESS_N_PER_UM_MM * pair.face_width_m
-    ratio = constant(dynamics.mesh_damping_ratio)
-    return MeanMesh(stiffness, 2.0 * ratio * sqrt(stiffness * equivalent_mass_kg))
+    return MeanMesh(stiffness, 2.0 * law.damping_ratio * sqrt(stiffness * equivalent_mass_kg))
 
 
 def _base(section: BaseNumbers) -> Base:

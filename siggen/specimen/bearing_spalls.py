@@ -24,7 +24,6 @@ from siggen.gears.damage.part import Part, Parts
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, named_generator
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.loaded_bearings import BEARINGS
 from siggen.specimen.structure import specimen_bearings, supported_stage
 
@@ -58,7 +57,7 @@ def spall_sources(
     for drawn in in_bearings(parts):
         own = bearings.get(drawn.shaft)
         spall = drawn if own is None else replace(drawn, bearing=own.bearing)
-        order = 1.0 if spall.shaft == "pinion" else specimen.gears.pinion.teeth / specimen.gears.gear.teeth
+        order = 1.0 if spall.shaft == "pinion" else specimen.pair.pinion.teeth / specimen.pair.gear.teeth
         place = specimen.names.bearings[spall.place]
         force_n = mean_force_n(specimen, structure, point, place) / BEARINGS if own is None else own.force_n
         shares = _transmitted(specimen, structure, spall.shaft, place)
@@ -78,7 +77,7 @@ def spall_sources(
 
 def mean_force_n(specimen: Specimen, structure: Structure, point: OperatingPoint, place: str) -> FloatArray:
     """Return the mean force (2,) of a shaft on its seats, horizontal and vertical: that of the teeth."""
-    along = structure.mesh.vector * (point.torque_nm / gear_pair(specimen.gears).pinion.base_radius_m)
+    along = structure.mesh.vector * (point.torque_nm / specimen.pair.pinion.base_radius_m)
     return np.asarray(-shaft_directions(structure, place) @ along)
 
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from math import floor, pi, radians
+from math import floor, pi
 
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.idler import idler_ahead_pitches
-from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 
 
@@ -17,14 +16,14 @@ def clocked_pitches(pairs: Sequence[GearPair], specimen: Specimen, uniform: Call
 
     `pairs` are those of all meshes. Which tooth of the gear behind an idler is called 0 is drawn.
     """
-    turned, directions = 0.0, [0.0, *(radians(constant(stage.direction_deg)) for stage in specimen.stages)]
+    turned = 0.0
     for number, (front, own) in enumerate(pairwise(pairs)):
-        stage = specimen.stages[number]
-        drawn = uniform(f"stages.{stage.name}.clocking")
-        if stage.idler:
+        before, mesh = specimen.meshes[number : number + 2]
+        drawn = uniform(f"stages.{mesh.inner}.clocking")
+        if mesh.idler:
             # the first shaft turns forwards, every next one the other way
             sense = 1.0 if number % 2 else -1.0
-            between_rad = sense * (pi + directions[number] - directions[number + 1])
+            between_rad = sense * (pi + before.direction_rad - mesh.direction_rad)
             turned += idler_ahead_pitches(front, own, between_rad)
             turned += own.pinion.teeth * floor(drawn * own.gear.teeth)
         else:

@@ -9,7 +9,8 @@ from functools import lru_cache
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Dynamics, OperatingRange
+from siggen.config import OperatingRange
+from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.load_shares import load_shares
 from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
@@ -20,7 +21,7 @@ from siggen.gears.geometry.missing_material import TipRelief
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.keys.number import bounds, constant
+from siggen.keys.number import bounds
 
 RELIEF_LENGTH = 0.25
 """Length of the tip relief along the line of action, in base pitches (assumed)."""
@@ -46,13 +47,8 @@ class ToothTables:
         return 0.0 if self.contact is None else float((self.contact.touch_m - self.contact.touch_m[:1]).max())
 
 
-def solves_across_the_face(dynamics: Dynamics) -> bool:
-    """Whether the contact is solved across the face, so that damage is geometry and may take its whole length."""
-    return dynamics.mesh.law == "pairs"
-
-
 def tooth_tables(
-    dynamics: Dynamics,
+    law: ToothLaw,
     pair: GearPair,
     damage: Damage,
     options: StiffnessOptions,
@@ -60,7 +56,7 @@ def tooth_tables(
     largest_force_n: float,
     lead_m: Callable[[int], FloatArray] | None = None,
 ) -> ToothTables:
-    """Return the tables of a drawn `dynamics` section; contacts are tabulated up to the largest force.
+    """Return the tables of the teeth; contacts are tabulated up to the largest force.
 
     Raises
     ------
@@ -69,36 +65,36 @@ def tooth_tables(
     """
     along = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
     coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
-    if not solves_across_the_face(dynamics):
+    if not law.across_the_face:
         return ToothTables(mesh_tables(pair, damage, options, points=points), coupling)
-    face = face_options(dynamics, largest_force_n, pair)
+    face = face_options(law, largest_force_n, pair)
     lead = None if lead_m is None else lead_m(face_slices(pair, face))
     table = contact_table(pair, damage, options, face, points, lead)
     return ToothTables(whole_face(pair, damage, options, points), coupling, table)
 
 
 def slice_shares(
-    dynamics: Dynamics, pair: GearPair, options: StiffnessOptions, lead_m: Callable[[int], FloatArray] | None
+    law: ToothLaw, pair: GearPair, options: StiffnessOptions, lead_m: Callable[[int], FloatArray] | None
 ) -> FaceShares | None:
     """Return how slices of helical teeth share a typical load; None for spur teeth, and where no contact is solved."""
-    if pair.helix_rad == 0.0 or not solves_across_the_face(dynamics):
+    if pair.helix_rad == 0.0 or not law.across_the_face:
         return None
-    face = face_options(dynamics, 0.0, pair)
+    face = face_options(law, 0.0, pair)
     return load_shares(pair, options, face, None if lead_m is None else lead_m(face_slices(pair, face)))
 
 
-def face_options(dynamics: Dynamics, largest_force_n: float, pair: GearPair) -> TableOptions:
-    """Return how the contact of a drawn `dynamics` section is tabulated across the face, up to a force [N]."""
+def face_options(law: ToothLaw, largest_force_n: float, pair: GearPair) -> TableOptions:
+    """Return how the contact is tabulated across the face, up to a force [N]."""
     return TableOptions(
-        largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
-        section_loss=dynamics.mesh.damage == "all", tilts=dynamics.shafts is not None,
-        relief=tip_relief(dynamics, pair) if pair.helix_rad != 0.0 else None,
+        largest_force_n, edge_radius_m=law.edge_radius_m,
+        section_loss=law.section_loss, tilts=law.tilts,
+        relief=tip_relief(law, pair) if pair.helix_rad != 0.0 else None,
     )  # fmt: skip
 
 
-def tip_relief(dynamics: Dynamics, pair: GearPair) -> TipRelief:
-    """Return the relief of a drawn `dynamics` section."""
-    return TipRelief(1e-6 * constant(dynamics.mesh.tip_relief_um), RELIEF_LENGTH * pair.base_pitch_m)
+def tip_relief(law: ToothLaw, pair: GearPair) -> TipRelief:
+    """Return the relief of the teeth of a pair."""
+    return TipRelief(law.relief_m, RELIEF_LENGTH * pair.base_pitch_m)
 
 
 def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:

@@ -21,7 +21,6 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.stages import first_mesh
-from siggen.specimen.gears import stiffness_options
 from siggen.specimen.worn_loads import load_at_rest
 
 
@@ -61,7 +60,7 @@ def grown_damage(
 def _load_at_rest(config: Config, specimen_id: int, pair: GearPair, force_n: float) -> LoadAtRest:
     """Return how the gears of a specimen share a force; what is drawn for it waits until a kind of damage asks."""
     specimen = draw_specimen(config, specimen_id)
-    return load_at_rest(specimen.dynamics, pair, stiffness_options(specimen.stiffness), force_n)
+    return load_at_rest(specimen.law, pair, specimen.meshes[0].options, force_n)
 
 
 def _rank(section: Fault) -> str:

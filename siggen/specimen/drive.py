@@ -10,7 +10,6 @@ import numpy as np
 
 from siggen.config import Config, SpeedVariation, Variation
 from siggen.config import TorqueVariation as TorqueSection
-from siggen.config.stages import hunting_turns
 from siggen.config.variation import SLOW_CORNER_HZ
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation
@@ -30,9 +29,7 @@ from siggen.seeding import Stage, generator, named_generator, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread
 from siggen.specimen.bearing_spalls import spall_sources
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.lost_mass import MeshPlace, lost_mass_sources
-from siggen.specimen.planetary_numbers import hunting_turns_of_sun
 from siggen.specimen.shaft_forces import force_sources
 
 MARGIN_S = 1.0
@@ -74,7 +71,7 @@ def record_drive(
     rotation = record_rotation(config, point, record, start_angle_rad)
     forces = (
         *force_sources(config, specimen, structure),
-        *lost_mass_sources(gear_pair(specimen.gears), structure, parts),
+        *lost_mass_sources(specimen.pair, structure, parts),
         *(source for pair, own, place in behind for source in lost_mass_sources(pair, structure, own, place)),
         *spall_sources(config, specimen, structure, point, record, rotation, parts),
     )
@@ -88,9 +85,7 @@ def record_drive(
 
 def start_angle_rad(config: Config, specimen: Specimen, record: PlannedRecord) -> float:
     """Return the pinion angle at the first sample [rad], uniform over the hunting period of all gears."""
-    planetary = specimen.planetary is not None
-    revolutions = hunting_turns_of_sun(specimen) if planetary else hunting_turns(specimen.gears, specimen.stages)
-    return float(generator(config.seed, Stage.START, *record_owner(record)).random() * 2 * pi * revolutions)
+    return float(generator(config.seed, Stage.START, *record_owner(record)).random() * 2 * pi * specimen.hunting_turns)
 
 
 def record_rotation(config: Config, point: OperatingPoint, record: PlannedRecord, start_angle_rad: float) -> Rotation:

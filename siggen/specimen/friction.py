@@ -5,15 +5,14 @@ from __future__ import annotations
 from functools import lru_cache
 from math import copysign, hypot, pi
 
-from siggen.config import Friction
 from siggen.dynamics.friction.asperity_table import AsperityTable, asperity_table
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
 from siggen.dynamics.friction.friction import FrictionLaw, composite_friction, constant_friction
 from siggen.dynamics.friction.lubrication import LubricatedMesh
 from siggen.dynamics.friction.oil import MINERAL_OILS
 from siggen.dynamics.friction.reversal import PitchPoint, slip_speed
+from siggen.dynamics.mesh.tooth_law import CONSTANT, OFF, FlankFriction
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 
 LARGEST_FORCE = 10.0
@@ -23,15 +22,15 @@ LEAST_LINE_LOAD_N_PER_M = 1e3
 
 
 def specimen_friction(
-    section: Friction, pair: GearPair, point: OperatingPoint, *, rough_pits: bool = False
+    flanks: FlankFriction, pair: GearPair, point: OperatingPoint, *, rough_pits: bool = False
 ) -> FrictionLaw | None:
-    """Return the law of a drawn section, None where friction is off; with `rough_pits` it knows rough land."""
-    if section.model == "off":
+    """Return the law of a pair, None where friction is off; with `rough_pits` it knows rough land."""
+    if flanks.model == OFF:
         return None
-    if section.model == "constant":
-        return constant_friction(constant(section.coefficient))
-    mesh, force_n = lubricated_mesh(section, pair, point), mean_force_n(pair, point)
-    healthy_m, pitted_m = composite_roughness_m(section)
+    if flanks.model == CONSTANT:
+        return constant_friction(flanks.coefficient)
+    mesh, force_n = lubricated_mesh(flanks, pair, point), mean_force_n(pair, point)
+    healthy_m, pitted_m = composite_roughness_m(flanks)
     table = _table(
         mesh,
         (healthy_m, pitted_m) if rough_pits else (healthy_m,),
@@ -75,17 +74,17 @@ def pitch_point(pair: GearPair, mesh: LubricatedMesh) -> PitchPoint:
     )
 
 
-def composite_roughness_m(section: Friction) -> tuple[float, float]:
+def composite_roughness_m(flanks: FlankFriction) -> tuple[float, float]:
     """Return the composite rms roughness of two healthy flanks, and of a healthy one on rough land [m]."""
-    healthy_m = 1e-6 * constant(section.roughness_um)
+    healthy_m = flanks.roughness_m
     # Land beside damage is never smoother than the flank around it.
-    pitted_m = max(1e-6 * constant(section.pit_roughness_um), healthy_m)
+    pitted_m = max(flanks.pit_roughness_m, healthy_m)
     return hypot(healthy_m, healthy_m), hypot(pitted_m, healthy_m)
 
 
-def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) -> LubricatedMesh:
-    """Return the lubricated pair of a drawn section at an operating point."""
-    oil, temperature_c = MINERAL_OILS[str(section.oil)], constant(section.oil_temperature_c)
+def lubricated_mesh(flanks: FlankFriction, pair: GearPair, point: OperatingPoint) -> LubricatedMesh:
+    """Return a lubricated pair at an operating point."""
+    oil, temperature_c = MINERAL_OILS[flanks.oil], flanks.oil_temperature_c
     speed = 2.0 * pi * point.speed_hz
     return LubricatedMesh(
         line_m=pair.line_of_action_m,
@@ -98,5 +97,5 @@ def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) ->
         pressure_viscosity_per_pa=oil.pressure_viscosity_per_pa(temperature_c),
         viscosity_fall_per_k=oil.viscosity_fall_per_k(temperature_c),
         inlet_temperature_k=temperature_c + 273.15,
-        boundary_friction=constant(section.boundary_friction),
+        boundary_friction=flanks.boundary_friction,
     )

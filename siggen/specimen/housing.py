@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from siggen.config import Config, ModalHousing, RigidHousing
-from siggen.planning.housing_numbers import PlateNumbers
+from siggen.gearbox.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
 from siggen.specimen.modal_housing import given_modes, modal_housing
 from siggen.specimen.planetary_housing import rigid_housing_of_set, slowest_decay_per_s
@@ -36,10 +36,10 @@ def housing_settle_s(config: Config, specimen: Specimen) -> float:
         case ModalHousing():
             table = given_modes(numbers)
             return modes_settle_s(table.frequency_hz, table.damping_ratio)
-        case RigidHousing() if specimen.planetary is not None:  # others move with the gears
+        case RigidHousing() if specimen.planets is not None:  # others move with the gears
             return settle_s(slowest_decay_per_s(rigid_housing_of_set(specimen)))
     return 0.0
 
 
 def _giving_way(specimen: Specimen) -> object:
-    return specimen.housing if specimen.dynamics.model == "casing" else None
+    return specimen.housing if specimen.housed else None

@@ -1,4 +1,4 @@
-"""The box of one specimen, from gears, shafts and `siggen.planning.housing_numbers`: its lengths and its material.
+"""The box of one specimen, from gears, shafts and `siggen.gearbox.housing_numbers`: its lengths and its material.
 
 With `dynamics.shafts` the walls stand where the bearings are.
 """
@@ -8,9 +8,9 @@ from __future__ import annotations
 from siggen.config import Shafts
 from siggen.dynamics.housing.box import Material
 from siggen.dynamics.housing.layout import Contents, Proportions
+from siggen.gearbox.housing_numbers import PlateNumbers
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, constant
-from siggen.planning.housing_numbers import PlateNumbers
 
 IRON_PA, STEEL_PA = (90e9, 130e9), 206e9
 IRON_KG_M3, STEEL_KG_M3 = (7100.0, 7300.0), 7850.0

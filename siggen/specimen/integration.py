@@ -16,13 +16,12 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, Dynamics
 from siggen.dynamics.friction.friction import SLIP_SPEED_M_S
+from siggen.dynamics.mesh.tooth_law import CONSTANT, EXPONENTIAL, MIXED_EHL, ToothLaw
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.modes import natural_modes
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import MeshTables
-from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.asperities import FrictionTurn, friction_turn
 from siggen.specimen.motion import SpecimenMesh
@@ -68,13 +67,13 @@ def exponential_grid(steps: int) -> TimeGrid:
     return TimeGrid(2 * steps, 2) if steps < ENOUGH_STATES else TimeGrid(steps, 1)
 
 
-def rule_grid(config: Config, dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> TimeGrid:
-    """Return where the states of a record are by the rule, for a drawn `dynamics` section.
+def rule_grid(fs_hz: float, law: ToothLaw, mesh: SpecimenMesh, point: OperatingPoint) -> TimeGrid:
+    """Return where the states of a record are by the rule.
 
     The tables may be of any state: what counts is the stiffest pair at every position, which is healthy.
     """
-    if dynamics.method != "exponential":
-        return TimeGrid(dynamics.steps_per_sample, 1)
+    if law.method != EXPONENTIAL:
+        return TimeGrid(law.steps_per_sample, 1)
     mesh, front = mesh.carrying(point)
     teeth_hz = max(
         float(one.mesh.tables.table_of_pair.shape[0]) * one.turning * abs(point.speed_hz) for one in mesh.every
@@ -82,12 +81,12 @@ def rule_grid(config: Config, dynamics: Dynamics, mesh: SpecimenMesh, point: Ope
     vibration_per_s = 2.0 * pi * _fastest_hz(mesh.structure, [one.mesh.tables for one in mesh.every]) / MOST_RADIANS
     by_mesh = zip(mesh.every, mesh.structure.meshes, strict=True)
     stopping_per_s = max(
-        _stopping_per_s(dynamics, mesh.structure, vectors.sliding, one.mesh.pair, one.at(front))
+        _stopping_per_s(law, mesh.structure, vectors.sliding, one.mesh.pair, one.at(front))
         for one, vectors in by_mesh
     ) / MOST_STOPPED  # fmt: skip
     rate_hz = max(vibration_per_s, LEAST_PER_PITCH * teeth_hz, stopping_per_s)
-    finer = sqrt(USUAL_TOLERANCE / dynamics.integration_tolerance)
-    return exponential_grid(max(1, ceil(rate_hz / config.fs_hz * finer)))
+    finer = sqrt(USUAL_TOLERANCE / law.tolerance)
+    return exponential_grid(max(1, ceil(rate_hz / fs_hz * finer)))
 
 
 def _fastest_hz(structure: Structure, meshes: Sequence[MeshTables]) -> float:
@@ -99,12 +98,12 @@ def _fastest_hz(structure: Structure, meshes: Sequence[MeshTables]) -> float:
 
 
 def _stopping_per_s(
-    dynamics: Dynamics, structure: Structure, vectors: FloatArray, pair: GearPair, point: OperatingPoint
+    law: ToothLaw, structure: Structure, vectors: FloatArray, pair: GearPair, point: OperatingPoint
 ) -> float:
     """Return how fast friction under the static force stops the sliding where it turns: μ F/v_0 · r M⁻¹ r (derived)."""
-    turn = friction_turn(dynamics.friction, pair, point) if dynamics.rubbing == "mixed_ehl" else None
-    if dynamics.rubbing == "constant":
-        turn = FrictionTurn(constant(dynamics.friction.coefficient), SLIP_SPEED_M_S)
+    turn = friction_turn(law.friction, pair, point) if law.friction.model == MIXED_EHL else None
+    if law.friction.model == CONSTANT:
+        turn = FrictionTurn(law.friction.coefficient, SLIP_SPEED_M_S)
     if turn is None:
         return 0.0
     force_n = abs(point.torque_nm) / pair.pinion.base_radius_m

@@ -12,9 +12,9 @@ from math import cos, sin
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Dynamics
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing, loaded_bearing
 from siggen.dynamics.structure.gear_stage import GearStage, Rotor
+from siggen.gearbox.specimen import PairTrain
 from siggen.gears.geometry.gear_pair import GearPair
 
 BEARINGS = 2
@@ -22,29 +22,28 @@ BEARINGS = 2
 GRAVITY_M_S2 = 9.81
 
 
-def loaded_bearings(dynamics: Dynamics, stage: GearStage, pair: GearPair, torque_nm: float) -> dict[str, LoadedBearing]:
+def loaded_bearings(train: PairTrain, pair: GearPair, torque_nm: float, *, housed: bool) -> dict[str, LoadedBearing]:
     """Return one of both bearings of each shaft whose stiffness follows the load, under a torque on the pinion."""
     found = {}
-    for which in ("pinion", "gear"):
-        section = getattr(dynamics, which).bearing
-        if section is not None:
-            force_n = shaft_load_n(dynamics, pair, which, torque_nm, getattr(stage, which).mass_kg)
-            found[which] = loaded_bearing(section.bearing(), force_n / BEARINGS)
+    for which, ball_bearing in train.balls:
+        mass_kg = getattr(train.first, which).mass_kg
+        force_n = shaft_load_n(pair, which, torque_nm, mass_kg, housed=housed)
+        found[which] = loaded_bearing(ball_bearing, force_n / BEARINGS)
     return found
 
 
-def shaft_load_n(dynamics: Dynamics, pair: GearPair, which: str, torque_nm: float, mass_kg: float) -> FloatArray:
+def shaft_load_n(pair: GearPair, which: str, torque_nm: float, mass_kg: float, *, housed: bool) -> FloatArray:
     """Return the mean force (2,) on a shaft, horizontal and upward [N]: of the teeth and of its weight."""
     angle, force_n = pair.working_pressure_angle_rad, torque_nm / pair.pinion.base_radius_m
     # Horizontal runs from the gear to the pinion in a casing, else back. Either flank pushes the gears apart.
-    apart = 1.0 if dynamics.model == "casing" else -1.0
+    apart = 1.0 if housed else -1.0
     on_pinion = np.array([apart * sin(angle) * abs(force_n), -cos(angle) * force_n])
     return np.asarray((on_pinion if which == "pinion" else -on_pinion) - np.array([0.0, mass_kg * GRAVITY_M_S2]))
 
 
-def cage_sense(dynamics: Dynamics, which: str) -> float:
+def cage_sense(which: str, *, housed: bool) -> float:
     """Return 1 where a shaft turns from horizontal to upward, -1 where back: the pinion's mesh goes up, beside it."""
-    pinion = -1.0 if dynamics.model == "casing" else 1.0
+    pinion = -1.0 if housed else 1.0
     return pinion if which == "pinion" else -pinion
 
 

@@ -9,19 +9,20 @@ from typing import NamedTuple, TypeVar
 
 from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
+from siggen.gearbox.pair import mesh_options
 from siggen.gears.damage.flank_loss import Losses, from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import NO_TOOTH, Parts
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.idler import idler_later_rad
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import Specimen
 from siggen.planning.stages import first_mesh, stage_config, stage_specimen
 from siggen.specimen.contact import slice_shares
 from siggen.specimen.damage import grown_damage
 from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, lead_of, specimen_errors
 from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
-from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.motion import teeth_missing
 from siggen.specimen.structure import structure
 
@@ -70,7 +71,7 @@ class MadeGears:
         shared: Shared | None = None,
         body: SameBody | None = None,
     ) -> None:
-        self.pair: GearPair = gear_pair(specimen.gears) if pair is None else pair
+        self.pair: GearPair = specimen.pair if pair is None else pair
         self._whole, self._config, self._specimen = config, first_mesh(config), specimen
         self._shared, self._body = shared, body
         self.stages = tuple(_stages(self, config, specimen))
@@ -80,6 +81,11 @@ class MadeGears:
         self._shares = cache(self._computed_shares)
         self._missing = cache(self._computed_missing)
         self._damage = cache(self._drawn_damage)
+
+    @property
+    def options(self) -> StiffnessOptions:
+        """How the teeth of this pair bend."""
+        return mesh_options(self.pair, self._specimen.meshes[0].options)
 
     @property
     def config(self) -> Config:
@@ -162,14 +168,14 @@ class MadeGears:
 
     def _computed_missing(self, drawn_for: int, losses: Losses, reach: float) -> WavyTeeth:
         pair = self.pair
-        whole = teeth_missing(self._specimen.dynamics, pair, TABLE_POINTS, reach)
+        whole = teeth_missing(self._specimen.law, pair, TABLE_POINTS, reach)
         plain, shares = with_losses(whole, pair, losses), self._shares(drawn_for)
         teeth = erroneous_teeth(plain, pair, self._errors(drawn_for), shares)
         return WavyTeeth(teeth, pair, self._waves(drawn_for), shares)
 
     def _computed_shares(self, drawn_for: int) -> FaceShares | None:
         own = self._specimen
-        return slice_shares(own.dynamics, self.pair, stiffness_options(own.stiffness), lead_of(self._errors(drawn_for)))
+        return slice_shares(own.law, self.pair, self.options, lead_of(self._errors(drawn_for)))
 
 
 def _stages(first: MadeGears, config: Config, specimen: Specimen) -> Iterator[MadeGears]:
@@ -177,6 +183,6 @@ def _stages(first: MadeGears, config: Config, specimen: Specimen) -> Iterator[Ma
     front = first
     for index, stage in enumerate(specimen.stages):
         own = stage_specimen(specimen, index)
-        body = SameBody(front, idler_later_rad(front.pair, gear_pair(own.gears))) if stage.idler else None
+        body = SameBody(front, idler_later_rad(front.pair, own.pair)) if stage.idler else None
         front = MadeGears(stage_config(config, specimen, index), own, body=body)
         yield front

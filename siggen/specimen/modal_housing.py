@@ -13,7 +13,6 @@ from siggen.dynamics.housing.modes import TableModes, table_motion
 from siggen.dynamics.housing.motion import Motion
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.planning.specimen import Specimen
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.mode_table import BASE, DRIVE, ModeTable, mode_table, seats_of
 from siggen.specimen.specimen_housing import BoltMotions, SpecimenHousing, second_stage
 
@@ -32,14 +31,14 @@ def modal_housing(specimen: Specimen, section: ModalHousing) -> SpecimenHousing:
     """Return the housing of a specimen whose modes were given."""
     table = given_modes(section)
     places = {place: table_motion(shape) for place, shape in table.shapes.items()}
-    names = SEATS_OF_SET if specimen.planetary is not None else seats_of(specimen.names)
+    names = SEATS_OF_SET if specimen.planets is not None else seats_of(specimen.names)
     seats = {place: places[place] for place in names}
     still = table_motion(np.zeros_like(table.frequency_hz))
     drive = {place: places.get(place, still) for place in DRIVE}
     stage = still  # a planetary set has no second one
-    if specimen.planetary is None:
+    if specimen.planets is None:
         bearings = [shaft.bearing for shaft in specimen.names.shafts[:2]]
-        stage = second_stage(seats, bearings, gear_pair(specimen.gears).working_pressure_angle_rad)
+        stage = second_stage(seats, bearings, specimen.pair.working_pressure_angle_rad)
     return SpecimenHousing(
         modes=TableModes(table.frequency_hz),
         damping_ratio=table.damping_ratio,

@@ -9,12 +9,11 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.config import Dynamics
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
-from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_internals import PairContact
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
+from siggen.dynamics.mesh.tooth_law import EXPONENTIAL, MIXED_EHL, ToothLaw
 from siggen.dynamics.structure.shaft_lines import frame_turns
 from siggen.dynamics.structure.structure import Structure, on_back_flanks
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
@@ -31,10 +30,9 @@ from siggen.gears.geometry.missing_material import (
     missing_material,
 )
 from siggen.gears.stiffness.mesh_tables import MeshTables
-from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 from siggen.planning.stages import stage_point
-from siggen.specimen.contact import solves_across_the_face, tip_relief
+from siggen.specimen.contact import tip_relief
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh, specimen_friction
 
@@ -115,14 +113,14 @@ class SpecimenMesh:
 
 
 def teeth_missing(
-    dynamics: Dynamics, pair: GearPair, points: int, reach_pitches: float = CORNER_REACH_PITCHES
+    law: ToothLaw, pair: GearPair, points: int, reach_pitches: float = CORNER_REACH_PITCHES
 ) -> MissingMaterial:
-    """Return the missing material of the teeth of a drawn `dynamics` section; corners are followed for a reach."""
-    return missing_material(pair, tip_relief(dynamics, pair), points=points, reach_pitches=reach_pitches)
+    """Return the missing material of the teeth of a pair; corners are followed for a reach."""
+    return missing_material(pair, tip_relief(law, pair), points=points, reach_pitches=reach_pitches)
 
 
 def specimen_motion(
-    dynamics: Dynamics,
+    law: ToothLaw,
     mesh: SpecimenMesh,
     point: OperatingPoint,
     step_s: float,
@@ -139,22 +137,22 @@ def specimen_motion(
     excitation = None if driven is None else driven.excitation
     mesh, front = mesh.carrying(point)
     vectors = None if excitation is None else excitation.vectors
-    if dynamics.mesh.law == "linear":
+    if not law.across_the_face:
         return LinearMotion(
             mesh.structure,
             mesh.tables,
             torque_nm=point.torque_nm,
-            mesh_damping_ratio=constant(dynamics.mesh_damping_ratio),
-            backlash_m=1e-6 * constant(dynamics.backlash_um),
+            mesh_damping_ratio=law.damping_ratio,
+            backlash_m=law.backlash_m,
             step_s=step_s,
-            integrator=dynamics.method,
+            integrator=law.method,
             input_vectors=vectors,
         )
-    kind = ExponentialMotion if dynamics.method == "exponential" else PairMotion
+    kind = ExponentialMotion if law.method == EXPONENTIAL else PairMotion
     more: dict[str, Any] = {"stride": stride} if kind is ExponentialMotion else {}
     return kind(
         mesh.structure,
-        [_pair_mesh(dynamics, one, number, front) for number, one in enumerate(mesh.every)],
+        [_pair_mesh(law, one, number, front) for number, one in enumerate(mesh.every)],
         mean=MeanState(point.torque_nm, point.speed_hz * (1.0 - frame_turns(mesh.structure))),
         step_s=step_s,
         input_vectors=vectors,
@@ -163,33 +161,33 @@ def specimen_motion(
     )
 
 
-def _pair_mesh(dynamics: Dynamics, one: MeshBehind, number: int, front: OperatingPoint) -> PairMesh:
+def _pair_mesh(law: ToothLaw, one: MeshBehind, number: int, front: OperatingPoint) -> PairMesh:
     """Return the law of a mesh at an operating point as the gear in front of the first one has it."""
     mesh, own = one.mesh, one.at(front)
     return PairMesh(
-        _law(dynamics, mesh, own, mesh.structure.meshes[number].mass_kg),
+        _law(law, mesh, own, mesh.structure.meshes[number].mass_kg),
         mean_mesh_stiffness(mesh.tables),
         light_force_n(mesh.pair),
-        _contact(dynamics, mesh.pair, own),
+        _contact(law, mesh.pair, own),
         one.turned_pitches,
     )
 
 
-def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairContact:
-    modulus, friction = effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio), dynamics.friction
-    if dynamics.rubbing != "mixed_ehl":
+def _contact(law: ToothLaw, pair: GearPair, point: OperatingPoint) -> PairContact:
+    modulus = effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio)
+    if law.friction.model != MIXED_EHL:
         return PairContact(modulus, pair.face_width_m)
-    oil = lubricated_mesh(friction, pair, point)
-    return PairContact(modulus, pair.face_width_m, oil, composite_roughness_m(friction))
+    oil = lubricated_mesh(law.friction, pair, point)
+    return PairContact(modulus, pair.face_width_m, oil, composite_roughness_m(law.friction))
 
 
-def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, mass_kg: float) -> PairLaw:
+def _law(law: ToothLaw, mesh: SpecimenMesh, point: OperatingPoint, mass_kg: float) -> PairLaw:
     return pair_law(
         mesh.tables,
         mesh.missing.under(point.torque_nm),
-        MeshConstants(mesh.pair.line_of_action_m, mass_kg, 1e-6 * constant(dynamics.backlash_um), _spread(mesh)),
-        damping_ratio=_damping_ratio(dynamics),
-        friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
+        MeshConstants(mesh.pair.line_of_action_m, mass_kg, law.backlash_m, _spread(mesh)),
+        damping_ratio=law.damping,
+        friction=specimen_friction(law.friction, mesh.pair, point, rough_pits=law.across_the_face),
         contact=mesh.contact,
         coupling_m_per_n=mesh.coupling_m_per_n,
     )
@@ -202,14 +200,3 @@ def _spread(mesh: SpecimenMesh) -> NDArray[np.float64] | None:
     points = mesh.tables.pair_stiffness_n_per_m.shape[1]
     along = np.linspace(mesh.tables.start_m, mesh.tables.end_m, points)
     return mesh.shares.about(mesh.pair.pitch_point_m, along)
-
-
-def _damping_ratio(dynamics: Dynamics) -> float | DampingLaw:
-    section = dynamics.mesh
-    if section.damping == "constant":
-        return constant(dynamics.mesh_damping_ratio)
-    return DampingLaw(
-        structure=constant(section.structure_damping_ratio),
-        film=constant(section.film_damping_ratio),
-        asperities=constant(section.asperity_damping_ratio),
-    )

@@ -18,8 +18,8 @@ from siggen.config import RigidHousing
 from siggen.dynamics.structure.drivetrain import Drivetrain
 from siggen.dynamics.structure.makers import CENTRAL, GROUND, Housing, planetary_train, rigid_housing
 from siggen.dynamics.structure.structure import matrices
+from siggen.gearbox.planetary import ring_outer_radius_m
 from siggen.planning.specimen import Specimen
-from siggen.specimen.planetary_numbers import planetary_numbers, ring_outer_radius_m
 from siggen.specimen.rigid_casing import CASING_GYRATION, casing_numbers
 
 AXIS = (0.0, 0.0)
@@ -28,7 +28,8 @@ AXIS = (0.0, 0.0)
 
 def set_in_housing(specimen: Specimen, housing: Housing | None) -> Drivetrain:
     """Return a set with evenly spread planets in a housing, or on the ground."""
-    stage = planetary_numbers(specimen)
+    assert specimen.planets is not None
+    stage = specimen.planets.stage
     count = len(stage.places_turns)
     return planetary_train(replace(stage, places_turns=tuple(i / count for i in range(count))), housing)
 
@@ -42,7 +43,8 @@ def rigid_housing_of_set(specimen: Specimen) -> Housing:
         If the bolts leave it free to move.
     """
     assert isinstance(specimen.housing, RigidHousing)
-    extent_m = ring_outer_radius_m(specimen) / CASING_GYRATION
+    assert specimen.planets is not None
+    extent_m = ring_outer_radius_m(specimen.planets.ring) / CASING_GYRATION
     casing = replace(casing_numbers(specimen.housing, extent_m, specimen.sensors), pinion_place_m=AXIS)
     return rigid_housing(casing, dict.fromkeys(CENTRAL, AXIS))
 

@@ -14,13 +14,12 @@ from dataclasses import dataclass, replace
 from math import cos, pi
 
 from siggen.config import Config
+from siggen.gearbox.specimen import PlanetaryGears
 from siggen.gears.geometry.internal_pair import ring_begins_pitches
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
-from siggen.planning.specimen import Specimen
 from siggen.planning.stages import planet_config, ring_config
 from siggen.specimen.made_gears import MadeGears, SameBody, Shared
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, TeethUnderTorque
-from siggen.specimen.planetary_numbers import pin_errors_m, planetary_teeth, planets_in_ring
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,34 +51,35 @@ def made_meshes(first: MadeGears, config: Config) -> list[MadeGears]:
         Of the gearbox, with all of its damage.
     """
     specimen, ring = first.specimen, ring_config(config)
-    (pair, inner), later = planets_in_ring(specimen), _axes_later_rad(specimen)
+    planets = specimen.planets
+    assert planets is not None
+    later = _axes_later_rad(planets)
     suns = [first]
     for i in range(1, len(later)):
-        suns.append(MadeGears(planet_config(first.config, i), specimen, pair, Shared(first, "pinion")))
-    rings = [MadeGears(ring, specimen, inner, None, SameBody(first, later[0]))]
+        suns.append(MadeGears(planet_config(first.config, i), specimen, planets.pair, Shared(first, "pinion")))
+    rings = [MadeGears(ring, specimen, planets.ring, None, SameBody(first, later[0]))]
     for i in range(1, len(later)):
         body = SameBody(suns[i], later[i])
-        rings.append(MadeGears(planet_config(ring, i), specimen, inner, Shared(rings[0], "gear"), body))
+        rings.append(MadeGears(planet_config(ring, i), specimen, planets.ring, Shared(rings[0], "gear"), body))
     return [*suns, *rings]
 
 
-def _axes_later_rad(specimen: Specimen) -> list[float]:
+def _axes_later_rad(planets: PlanetaryGears) -> list[float]:
     """Return by how much the phase of a planet's eccentricity is later in its mesh with the ring than with the sun.
 
     Derived: moved by e at the angle β from the radius outwards, a planet stands back from the sun by e sin(β + α_s),
     from the ring by e sin(β - α_r); both phases count its turning, opposite to β, from where that mesh has turned none.
     """
-    (pair, inner), teeth = planets_in_ring(specimen), planetary_teeth(specimen)
+    pair, inner, teeth = planets.pair, planets.ring, planets.teeth
     angles = pair.working_pressure_angle_rad + inner.working_pressure_angle_rad
     lag, both = ring_begins_pitches(pair, inner), zip(teeth.sun_begins, teeth.ring_begins, strict=True)
     return [angles - 2.0 * pi * (lag + float(ring - sun)) / teeth.planet for sun, ring in both]
 
 
-def with_planets(config: Config, specimen: Specimen, meshes: Sequence[SpecimenMesh]) -> SpecimenMesh:
+def with_planets(planets: PlanetaryGears, meshes: Sequence[SpecimenMesh]) -> SpecimenMesh:
     """Return the mesh of the sun with its first planet, and behind it all others, as their pins stand."""
-    pair, inner = planets_in_ring(specimen)
-    teeth, errors = planetary_teeth(specimen), pin_errors_m(config, specimen)
-    count, against = errors.size, 1.0 - 1.0 / (1.0 + teeth.ring / teeth.sun)
+    pair, inner, teeth, errors = planets.pair, planets.ring, planets.teeth, planets.pin_errors_m
+    count, against = len(errors), 1.0 - 1.0 / (1.0 + teeth.ring / teeth.sun)
     moved = [_moved(one, errors[i % count], drives=i >= count) for i, one in enumerate(meshes)]
     lag, share = ring_begins_pitches(pair, inner), teeth.planet / teeth.sun
     behind = (

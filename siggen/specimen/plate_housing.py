@@ -1,6 +1,6 @@
 """A housing of plates of one specimen: a box from its geometry, its modes, and where it is pressed and seen.
 
-The box follows from the gears, the shafts and `siggen.planning.housing_numbers`. x runs from gear to pinion and is
+The box follows from the gears, the shafts and `siggen.gearbox.housing_numbers`. x runs from gear to pinion and is
 horizontal, y is vertical, z runs along the shafts. With `dynamics.shafts` the walls stand where the bearings are.
 """
 
@@ -27,13 +27,12 @@ from siggen.dynamics.housing.layout import Contents, Proportions, layout
 from siggen.dynamics.housing.loose_foot import loosened, springs
 from siggen.dynamics.housing.motion import Motion, PlatePlace, motion_at, seat_motions
 from siggen.dynamics.structure.gear_stage import Point
+from siggen.gearbox.housing_numbers import PlateNumbers
 from siggen.keys.number import at, constant
 from siggen.names import ROLES
-from siggen.planning.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensors.sensor import SensorBase
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing_layout import specimen_layout
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS, BoltMotions, SpecimenHousing, second_stage
 
@@ -45,7 +44,7 @@ EDGE_M = 8e-3
 def plate_housing(config: Config, specimen: Specimen, numbers: PlateNumbers) -> SpecimenHousing:
     """Return the box of plates of a specimen with its modes."""
     box, modes, ratio = damped_modes(config, specimen, numbers)
-    pair, shafts = gear_pair(specimen.gears), specimen.dynamics.shafts
+    pair, shafts = specimen.pair, specimen.dynamics.shafts
     pushed = pair.helix_rad != 0.0
     bearings = {role: shaft.bearing for role, shaft in zip(ROLES, specimen.names.shafts, strict=True)}
     seats = _seats(box, modes, shafts, bearings, located=pushed)
@@ -66,7 +65,7 @@ def plate_housing(config: Config, specimen: Specimen, numbers: PlateNumbers) -> 
 
 def damped_modes(config: Config, specimen: Specimen, numbers: PlateNumbers) -> tuple[Box, BoxModes, FloatArray]:
     """Return box, modes and their damping ratios (m,)."""
-    made = specimen_layout(numbers, specimen.dynamics.shafts, gear_pair(specimen.gears))
+    made = specimen_layout(numbers, specimen.dynamics.shafts, specimen.pair)
     box, modes = _on_its_feet(*made, 0.5 * config.fs_hz, constant(numbers.loose_foot_share))
     rng = named_generator(config.seed, Stage.PATH, specimen.specimen_id, name="housing.damping_ratio")
     plates = np.array([at(numbers.damping_ratio, float(u)) for u in rng.random(modes.frequency_hz.size)])

@@ -18,7 +18,6 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import Specimen
 from siggen.specimen.background import mean_meshes
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
-from siggen.specimen.planetary_numbers import planetary_numbers
 from siggen.specimen.structure import linear_structure, linear_train, specimen_body
 
 
@@ -34,7 +33,8 @@ def forces_through_housing(
     """
     housing, assembled = specimen_body(config, specimen), linear_structure(linear_train(config, specimen))
     assert housing is not None
-    supports = supports_of_set(planetary_numbers(specimen), None)
+    assert specimen.planets is not None
+    supports = supports_of_set(specimen.planets.stage, None)
     forcing = _on_seats(assembled, housing, np.concatenate([np.diag(one.stiffness) for one in supports]))
     return forced_ways((assembled, mean_meshes(specimen, assembled)), forcing, channels, frequency_hz)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import pi
 
 from siggen.config import Config
-from siggen.config.stages import turned
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.external_forces import (
     Unbalance,
@@ -32,7 +31,7 @@ def force_sources(config: Config, specimen: Specimen, structure: Structure) -> t
     """
     if constant(specimen.dynamics.unbalance.grade_mm_s) <= 0.0:
         return ()
-    orders = [1.0, *map(float, turned(specimen.gears, specimen.stages))]
+    orders = map(float, specimen.shaft_turns)
     by_shaft = zip(bearing_places(structure), orders, strict=True)
     return tuple(_unbalance(config, specimen, structure, place, order) for place, order in by_shaft)
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Dynamics
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.static_stiffness import largest_secant_loss, secant_stiffness_n_per_m
+from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.damage.flank_loss import from_flanks, reach_pitches, with_losses
 from siggen.gears.damage.part import NO_TOOTH, Parts
@@ -68,21 +68,21 @@ class StaticMesh:
         return largest_secant_loss(self.law, self.healthy, force_n, worn=self.worn)
 
 
-def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int, parts: Parts = ()) -> StaticMesh:
-    """Return the static mesh of a drawn `dynamics` section; `points` as for the tables of missing material.
+def static_mesh(law: ToothLaw, pair: GearPair, teeth: ToothTables, points: int, parts: Parts = ()) -> StaticMesh:
+    """Return the static mesh of a pair; `points` as for the tables of missing material.
 
     What `parts` of the damage take from whole flanks is missing beside the relief, which `healthy` has alone.
 
     The law linear knows neither relief nor corner contact: its pairs are springs along the path of contact, and their
     stiffness is the mesh stiffness.
     """
-    if dynamics.mesh.law == "linear":
+    if not law.across_the_face:
         missing = missing_material(pair, None, corner_contact=False, points=2)
     else:
-        missing = teeth_missing(dynamics, pair, points)
+        missing = teeth_missing(law, pair, points)
     losses, without = from_flanks(parts), missing
     if losses:
-        without = with_losses(teeth_missing(dynamics, pair, points, reach_pitches(pair, losses)), pair, losses)
+        without = with_losses(teeth_missing(law, pair, points, reach_pitches(pair, losses)), pair, losses)
     alike = replace(teeth.tables, table_of_pair=np.zeros_like(teeth.tables.table_of_pair), coupled=None)
     # Sinks count from where the flanks of a misaligned pair touch first, or its offset would count as approach.
     contact = None if teeth.contact is None else teeth.contact._replace(lead_m=0.0)

@@ -24,11 +24,12 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, Dynamics
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
+from siggen.dynamics.mesh.tooth_law import EXPONENTIAL, ToothLaw
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response_stream import Run
+from siggen.dynamics.time.sampling import Sampling
 from siggen.dynamics.time.stretch import LEAD, Seen, Stretch, seen_stretch, state_at
 from siggen.dynamics.time.transient import DECAY_TIMES, forgotten
 from siggen.errors import SolverFailure
@@ -85,33 +86,33 @@ class Stepped(NamedTuple):
 class Probe:
     """A record that can be integrated with any steps."""
 
-    config: Config
-    dynamics: Dynamics
+    sampling: Sampling
+    law: ToothLaw
     mesh: SpecimenMesh
     point: OperatingPoint
     driven: RecordDrive
 
     def motion(self, grid: TimeGrid, like: Motion | None = None) -> Motion:
         """Return the motion for a grid, quickly where one for another grid is at hand."""
-        step_s = 1.0 / (self.config.fs_hz * grid.per_sample)
+        step_s = 1.0 / (self.sampling.fs_hz * grid.per_sample)
         if isinstance(like, ExponentialMotion):
             return like.with_steps(step_s, grid.stride)
-        return specimen_motion(self.dynamics, self.mesh, self.point, step_s, self.driven, stride=grid.stride)
+        return specimen_motion(self.law, self.mesh, self.point, step_s, self.driven, stride=grid.stride)
 
     def inputs(self, first: int, end: int, rate_hz: float) -> SampledExcitation | None:
         """Return what acts between two samples and as far around them as filters reach."""
-        acting, fs_hz = self.driven.excitation, self.config.fs_hz
+        acting, fs_hz = self.driven.excitation, self.sampling.fs_hz
         if acting is None:
             return None
         return SampledExcitation(acting, self.driven.rotation, (first - LEAD) / fs_hz, (end + LEAD) / fs_hz, rate_hz)
 
     def run(self, motion: Motion, steps: int, acting: SampledExcitation | None) -> Run:
         """Return a motion with so many states per sample."""
-        return Run(motion, self.driven.rotation, self.config.fs_hz, steps, acting, _compared(motion))
+        return Run(motion, self.driven.rotation, self.sampling.fs_hz, steps, acting, _compared(motion))
 
     def ringing(self, motion: Motion) -> int:
         """Return the samples in which two motions from one state part as far as they will."""
-        return ceil(min(motion.decay_s, LONGEST_RINGING_S) * self.config.fs_hz)
+        return ceil(min(motion.decay_s, LONGEST_RINGING_S) * self.sampling.fs_hz)
 
     def stretch(self, motion: Motion) -> Stretch:
         """Return where the record is looked at."""
@@ -124,7 +125,7 @@ class Probe:
 
     def samples(self, compared_s: float) -> int:
         """Return the samples of a time, as far as the record has them."""
-        return max(2, min(ceil(compared_s * self.config.fs_hz), self.config.samples))
+        return max(2, min(ceil(compared_s * self.sampling.fs_hz), self.sampling.samples))
 
     def _sharp_s(self) -> float:
         """Return the time over which what acts shows all that it changes within few steps."""
@@ -139,9 +140,9 @@ class Probe:
         return min((sample for sample in entering if sample is not None), default=0)
 
     def _entering(self, one: MeshBehind) -> int | None:
-        samples = np.linspace(0.0, self.config.samples, SPREAD_POINTS)
+        samples = np.linspace(0.0, self.sampling.samples, SPREAD_POINTS)
         kinds = one.mesh.tables.table_of_pair
-        first_pinion = self.driven.rotation.angle_rad(samples / self.config.fs_hz) * kinds.shape[0] / (2.0 * np.pi)
+        first_pinion = self.driven.rotation.angle_rad(samples / self.sampling.fs_hz) * kinds.shape[0] / (2.0 * np.pi)
         turned = first_pinion * one.turning + one.turned_pitches
         pairs = np.arange(ceil(turned[0] + PITCHES_BEFORE), int(turned[-1]))
         damaged = pairs[kinds[pairs % kinds.shape[0], pairs % kinds.shape[1]] > 0]
@@ -149,31 +150,31 @@ class Probe:
 
 
 def stepped_motion(
-    config: Config, dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, driven: RecordDrive
+    sampling: Sampling, law: ToothLaw, mesh: SpecimenMesh, point: OperatingPoint, driven: RecordDrive
 ) -> Stepped:
-    """Return the motion of a record with its steps, for a drawn `dynamics` section.
+    """Return the motion of a record with its steps.
 
     Raises
     ------
     ValueError
         If the motion cannot start, as `specimen_motion` and `Motion.start`.
     """
-    probe = Probe(config, dynamics, mesh, point, driven)
-    grid = rule_grid(config, dynamics, mesh, point)
+    probe = Probe(sampling, law, mesh, point, driven)
+    grid = rule_grid(sampling.fs_hz, law, mesh, point)
     motion = probe.motion(grid)
-    if dynamics.method != "exponential":
+    if law.method != EXPONENTIAL:
         return Stepped(grid, motion, None)
     try:
         errors = _Errors(probe, grid, motion)
     except SolverFailure:
         return Stepped(grid, motion, inf)
-    steps, error = refined_steps(errors, grid.steps, MARGIN * dynamics.integration_tolerance)
-    motion.transient_s, left = errors.forgotten_start(START_SHARE * dynamics.integration_tolerance)
+    steps, error = refined_steps(errors, grid.steps, MARGIN * law.tolerance)
+    motion.transient_s, left = errors.forgotten_start(START_SHARE * law.tolerance)
     if steps > grid.steps:
         grid = exponential_grid(steps)
         motion = probe.motion(grid, motion)
     error = hypot(error, left)
-    if errors.parts and error > dynamics.integration_tolerance:
+    if errors.parts and error > law.tolerance:
         return Stepped(grid, motion, errors.of_levels(grid.steps), LEVELS)
     return Stepped(grid, motion, error)
 
@@ -193,8 +194,8 @@ class _Errors:
         self._probe, self._motion = probe, motion
         self._stretch, self._ringing = probe.stretch(motion), probe.ringing(motion)
         first, end = self._stretch.first, self._stretch.first + self._stretch.samples
-        settling = ceil(SETTLING_DECAYS * motion.transient_s / DECAY_TIMES * probe.config.fs_hz)
-        self._acting = probe.inputs(first - settling, end, probe.config.fs_hz * grid.per_sample)
+        settling = ceil(SETTLING_DECAYS * motion.transient_s / DECAY_TIMES * probe.sampling.fs_hz)
+        self._acting = probe.inputs(first - settling, end, probe.sampling.fs_hz * grid.per_sample)
         run = probe.run(motion, grid.per_sample, self._acting)
         self._state = state_at(run, first - settling, first)
         self._last = grid.steps, _seen(run, self._state, self._stretch)
@@ -211,13 +212,13 @@ class _Errors:
 
     def forgotten_start(self, allowed: float) -> tuple[float, float]:
         """Return how long before its samples [s] the record has to start, and its error by that."""
-        ringing_s = self._ringing / self._probe.config.fs_hz
+        ringing_s = self._ringing / self._probe.sampling.fs_hz
         return forgotten(self._by_start, ringing_s, allowed, self._motion.transient_s)
 
     def of_levels(self, steps: int) -> float:
         """Return by how much levels change with a later start and half the steps, infinite where a motion diverges."""
         first, count = self._stretch.first, self._ringing + self._probe.samples(LEVELS_S)
-        self._acting = self._probe.inputs(first, first + count, self._probe.config.fs_hz * steps)
+        self._acting = self._probe.inputs(first, first + count, self._probe.sampling.fs_hz * steps)
         cases = (steps, self._state), (2 * steps, self._start)
         seen = [_seen(self._run(tried), state, Stretch(first, count)) for tried, state in cases]
         if None in seen:

@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Dynamics
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.static_loads import loads_at_rest
+from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.gears.damage.wear import AtRest, LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
@@ -24,9 +24,9 @@ from siggen.specimen.contact import whole_face
 from siggen.specimen.motion import teeth_missing
 
 
-def load_at_rest(dynamics: Dynamics, pair: GearPair, options: StiffnessOptions, force_n: float) -> LoadAtRest:
-    """Return the load of a pair of a drawn `dynamics` section over its path, under a force of all pairs [N]."""
-    missing = teeth_missing(dynamics, pair, TABLE_POINTS)
+def load_at_rest(law: ToothLaw, pair: GearPair, options: StiffnessOptions, force_n: float) -> LoadAtRest:
+    """Return the load of a pair over its path, under a force of all pairs [N]."""
+    missing = teeth_missing(law, pair, TABLE_POINTS)
 
     def load(position_m: FloatArray, pinion_m: FloatArray, gear_m: FloatArray) -> AtRest:
         law = _law(pair, options, _worn(missing, position_m, pinion_m, gear_m))

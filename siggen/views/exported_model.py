@@ -67,7 +67,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         angle = start_angle_rad(config, specimen, record)
         built, parts = state.mesh.structure, (state.parts, state.parts_behind)
         driven = record_drive(config, specimen, built, point, record, angle, *parts)
-        (steps, _), motion, *_ = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
+        (steps, _), motion, *_ = stepped_motion(specimen.sampling, specimen.law, state.mesh, point, driven)
         grid = _time_grid(config, specimen, motion, steps)
         start = motion.start(_first_pitches(motion, driven.rotation, grid["start_s"]))
     return {
@@ -81,13 +81,13 @@ def exported_model(whole: Config, record_id: int) -> Model:
         **_structure(motion.structure),
         "static_deflection": motion.equations.static_deflection,
         "torque_nm": point.torque_nm,
-        "integrator": specimen.dynamics.method,
+        "integrator": specimen.law.method,
         "speed_hz": point.speed_hz,
         "start_angle_rad": angle,
         **grid,
         **_inputs(driven, grid, motion.structure),
         "start_state": start,
-        "law": specimen.dynamics.mesh.law,
+        "law": specimen.law.kind,
         **_meshes(motion),
     }
 

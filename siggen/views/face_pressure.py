@@ -203,7 +203,7 @@ def _solved(
 ) -> FacePressure:
     gear, tooth, number = looked_at
     config, state, pair, angle_rad = mesh.config, mesh.state, mesh.state.pair, mesh.angle_rad
-    options = face_options(mesh.specimen.dynamics, largest_force_n(config.operating_points, pair), pair)
+    options = face_options(mesh.specimen.law, largest_force_n(config.operating_points, pair), pair)
     errors = specimen_errors(config, pair, record.specimen_id, record.state_id)
     slices = face_slices(pair, options)
     lead = np.zeros(slices) if errors is None else errors.lead_m(slices)

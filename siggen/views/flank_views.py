@@ -12,6 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.columns.record import damage_schema
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
@@ -24,7 +25,6 @@ from siggen.planning.plan import record_ids_of
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.specimen.damage import state_damage
-from siggen.specimen.gears import gear_pair
 
 
 def outline_mm(outline: Outline, points: int = 181) -> FloatArray:

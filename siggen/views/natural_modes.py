@@ -14,8 +14,6 @@ from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.time.modes import Modes, natural_modes
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.planning.specimen import Specimen, draw_specimen
-from siggen.specimen.gears import gear_pair, mesh_options, stiffness_options
-from siggen.specimen.planetary_numbers import planets_in_ring
 from siggen.specimen.structure import structure
 
 FIRST = "first"
@@ -54,14 +52,9 @@ def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
 
 def _mean_stiffness(specimen: Specimen) -> list[float]:
     """Return the mean stiffness of every healthy mesh of a gearbox, in the order of its structure."""
-    options = stiffness_options(specimen.stiffness)
-    if specimen.planetary is not None:
-        pair, inner = planets_in_ring(specimen)
-        each = [mesh_tables(one, (), mesh_options(one, options)) for one in (pair, inner)]
-        count = len(specimen.planetary.positions_deg)
-        return [mean_mesh_stiffness(tables) for tables in each for _ in range(count)]
-    pairs = [gear_pair(gears) for gears in (specimen.gears, *(stage.gears for stage in specimen.stages))]
-    return [mean_mesh_stiffness(mesh_tables(pair, (), options)) for pair in pairs]
+    count = 1 if specimen.planets is None else len(specimen.planets.teeth.places)
+    each = [mean_mesh_stiffness(mesh_tables(mesh.pair, (), mesh.options)) for mesh in specimen.meshes]
+    return [stiffness for stiffness in each for _ in range(count)]
 
 
 def kinetic_shares(found: SpecimenModes) -> FloatArray:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.config.planetary import pitches_per_turn
-from siggen.config.stages import turned_teeth
 from siggen.dynamics.structure.makers import RING_TURNING
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
@@ -83,11 +82,11 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
             "no sensor stands on a housing that gives way or has a measured path: dynamics.model: casing has one"
         )
     housing = specimen_housing(config, specimen)
-    behind = map(float, turned_teeth(specimen.gears, specimen.stages))
-    meshing: tuple[float, ...] = (float(specimen.gears.pinion.teeth), *behind)
+    turns = zip(specimen.meshes, specimen.shaft_turns, strict=False)
+    meshing = tuple(float(turn * mesh.pair.pinion.teeth) for mesh, turn in turns)
     points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
-    if config.planetary is not None:
-        meshing = (pitches_per_turn(specimen.gears.pinion.teeth, config.planetary.ring_teeth),)
+    if specimen.planets is not None:
+        meshing = (pitches_per_turn(specimen.planets.teeth.sun, specimen.planets.teeth.ring),)
     return PathCurves(
         specimen_id=specimen_id,
         frequency_hz=frequencies(instrument.length, config.fs_hz),

@@ -11,7 +11,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, Dynamics
+from siggen.config import Config
 from siggen.errors import UsageError
 from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
@@ -22,10 +22,9 @@ from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.contact import largest_force_n, solves_across_the_face
+from siggen.specimen.contact import largest_force_n
 from siggen.specimen.damage import state_damage
 from siggen.specimen.friction import light_force_n
-from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
 
 TOOTH_PARTS = ("foundation", "bending", "shear", "axial")
@@ -114,14 +113,14 @@ def stiffness_curves(
         raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
     config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
-    pair = gear_pair(specimen.gears)
+    pair = specimen.pair
     damages = [on_teeth(state_damage(config, specimen_id, pair, i)) for i in range(len(config.states))]
     hit = [damaged_engagements(pair, one) for one in damages if one] or [(0, 0)]
     shown = min(first for first, _ in hit), max(last for _, last in hit)
     angle = pitches_shown(shown, points_per_pitch, pitches) * 2 * pi / pair.pinion.teeth
     wanted = [i for i, state in enumerate(config.states) if states is None or state.name in states]
     curves = [_curve(specimen, pair, config.states[i].name, damages[i], angle, shown[0]) for i in wanted]
-    if not solves_across_the_face(specimen.dynamics):
+    if not specimen.law.across_the_face:
         return curves
     torque = static_torque_nm(config, specimen_id) if torque_nm is None else torque_nm
     return [
@@ -135,13 +134,13 @@ def static_torque_nm(config: Config, specimen_id: int = 0) -> float:
     Curves are those of drive flanks; without such a point they are taken at a light contact.
     """
     points = (draw_operating_point(config, specimen_id, i).torque_nm for i in range(len(config.operating_points)))
-    pair = gear_pair(draw_specimen(gearbox_config(config, specimen_id), specimen_id).gears)
+    pair = draw_specimen(gearbox_config(config, specimen_id), specimen_id).pair
     return next((torque for torque in points if torque > 0.0), light_force_n(pair) * pair.pinion.base_radius_m)
 
 
-def stiffness_meaning(dynamics: Dynamics, torque_nm: float) -> str:
+def stiffness_meaning(*, across_the_face: bool, torque_nm: float) -> str:
     """Return in words what a curve of mesh stiffness is."""
-    if solves_across_the_face(dynamics):
+    if across_the_face:
         return f"quasi-static mesh stiffness at {torque_nm:.3g}\u00a0N\u00a0m: force over approach, as simulated"
     return BY_ENERGY
 
@@ -172,9 +171,9 @@ def _as_simulated(
 def _curve(
     specimen: Specimen, pair: GearPair, state: str, damage: Damage, angle: FloatArray, engagement: int
 ) -> StiffnessCurve:
-    options = stiffness_options(specimen.stiffness)
+    options = specimen.meshes[0].options
     offset = engagement * 2 * pi / pair.pinion.teeth
-    open_face = solves_across_the_face(specimen.dynamics)
+    open_face = specimen.law.across_the_face
     stiffness = mesh_stiffness(pair, angle + offset, options, damage, through_face=open_face)
     gears = [gear.column for gear in specimen.names.first.gears]
     return StiffnessCurve(state, angle, stiffness, _parts(pair, gears, options, damage, angle, engagement, open_face))

@@ -11,6 +11,7 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.errors.gear_errors import profiles_m
 from siggen.gears.errors.helix import HELIX_POINTS
 from siggen.gears.geometry.gear_pair import GearPair
@@ -18,7 +19,6 @@ from siggen.keys.problems import nearest
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.errors import MadeGear, specimen_errors
-from siggen.specimen.gears import gear_pair
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,9 @@ from siggen.checks.loading import load_config
 from siggen.config import yaml_text
 from siggen.errors import ConfigError, UsageError
 from siggen.faults.flank_place import height_m_of
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import geometry_problems
 from siggen.planning.plan import plan
-from siggen.specimen.gears import gear_pair
 from tests.config.minimal import config, minimal
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"

@@ -16,7 +16,6 @@ from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
 from tests.simulated import simulate
@@ -79,7 +78,7 @@ def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
     config = load_config(config.canonical() | {"operating_points": [{"speed_hz": 20.0, "torque_nm": 45.0}]})
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, 0)
-    motion = specimen_motion(specimen.dynamics, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
+    motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
     found = sum(static_tilts_rad(specimen.dynamics, which, state.pair, 45.0)[1] for which in ("pinion", "gear"))
     assert abs(found) > 1e-6
     assert found == pytest.approx(motion.pair_equations.static[0, 2], rel=1e-9)
@@ -123,7 +122,7 @@ def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
     rooms = []
     for number in range(9):
         specimen = draw_specimen(config, number)
-        pair = gear_pair(specimen.gears)
+        pair = specimen.pair
         found = flank_tilts(sections, pair)
         tilts = [static_tilts_rad(specimen.dynamics, gear, pair, found.torque_nm)[1] for gear in MEMBERS]
         rooms.append(abs(sum(tilts)) / found.limit_rad)
@@ -152,7 +151,7 @@ def test_a_tilt_in_motion_at_which_an_end_of_the_face_meets_the_other_flank_is_r
     config = load_config(with_shafts())
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, 0)
-    motion = specimen_motion(specimen.dynamics, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
+    motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
     turn = motion.structure.mesh.tilt
     room_m = motion.law.backlash_m + motion.pair_equations.static[0, 1]
     for share, refused in ((0.99, False), (1.01, True)):

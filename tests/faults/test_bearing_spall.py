@@ -15,6 +15,7 @@ from siggen.checks.physical_problems import physical_problems
 from siggen.config import Config, parse
 from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
+from siggen.gearbox.pair import gear_pair
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.damage_rows import damage_rows
@@ -22,7 +23,6 @@ from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
 from siggen.specimen.drive import record_rotation, start_angle_rad
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import structure
 from siggen.views.exported_model import exported_model
 from tests.config.minimal import by_name, config, minimal

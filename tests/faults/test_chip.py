@@ -11,11 +11,11 @@ from siggen.checks.quantity_names import available_quantities
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.chip import WholeChip
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import config_with, damage_of
 from tests.simulated import simulate
 

@@ -11,12 +11,12 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage
-from siggen.specimen.gears import gear_pair
 from tests.config.minimal import by_name
 
 PIT = {"semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3}

@@ -12,11 +12,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from siggen.errors import ConfigError
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.heights import clipped_arc_m
 from siggen.gears.damage.irregular import IrregularSpall
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import PIT, config_with, damage_of
 
 SPALL: dict[str, Any] = {"kind": "irregular", "profile_length_mm": 0.6, "face_share": 0.25}

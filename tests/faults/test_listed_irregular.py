@@ -9,11 +9,11 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.tooth_damage import on_teeth
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage
-from siggen.specimen.gears import gear_pair
 from tests.config.minimal import minimal
 
 EDGES = [[4.0, 2.0, 2.0], [6.0, 1.5, 2.5], [9.0, 2.0, 2.0]]

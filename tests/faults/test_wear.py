@@ -83,7 +83,7 @@ def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -
     state = specimen_state(config, specimen, 0)
     layer = WornFlanks("pinion", (5e-6,) * 9)
     teeth = state_teeth(config, specimen, 0, MadeGears(config, specimen)).tables
-    worn = static_mesh(specimen.dynamics, state.pair, teeth, TABLE_POINTS, (layer,))
+    worn = static_mesh(specimen.law, state.pair, teeth, TABLE_POINTS, (layer,))
     force_n = worn.force_n(60.0)
     approach = force_n / state.static.stiffness_n_per_m(60.0, np.linspace(0.0, 1.0, 2001))
     # 1e-4: 2001 angles do not meet the kink where the approach is least

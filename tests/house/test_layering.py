@@ -19,8 +19,8 @@ SIGGEN_ROOMS = (
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.bearings", "dynamics.friction",
     "dynamics.mesh", "dynamics.time",
-    "sensing", "faults", "noise", "sensors", "life", "config", "rig", "planning", "specimen", "checks", "columns",
-    "record", "dataset", "engines", "sets", "views", "publication", "library", "cli",
+    "sensing", "faults", "noise", "sensors", "life", "config", "rig", "gearbox", "planning", "specimen", "checks",
+    "columns", "record", "dataset", "engines", "sets", "views", "publication", "library", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",

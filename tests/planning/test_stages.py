@@ -9,9 +9,8 @@ import pytest
 from siggen.config import Config, parse
 from siggen.config.stages import hunting_turns
 from siggen.planning.specimen import OperatingPoint, draw_specimen
-from siggen.planning.stages import first_mesh, stage_config, stage_point, turns
+from siggen.planning.stages import first_mesh, stage_config, stage_point
 from siggen.specimen.damage import state_damage
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.made_gears import MadeGears
 from tests.config.minimal import by_name, minimal
 from tests.config.staged import SPALL, staged
@@ -31,7 +30,7 @@ def test_a_gearbox_with_one_mesh_is_its_own_first_mesh() -> None:
 
 def test_speed_falls_and_torque_rises_by_the_teeth_of_the_meshes_in_front() -> None:
     specimen = draw_specimen(config_of(), 0)
-    point = stage_point(OperatingPoint(30.0, 40.0), turns(specimen)[0])
+    point = stage_point(OperatingPoint(30.0, 40.0), float(specimen.shaft_turns[1]))
     assert point.speed_hz == pytest.approx(30.0 * 18 / 47)
     assert point.torque_nm == pytest.approx(40.0 * 47 / 18)
     own = stage_config(config_of(), specimen, 0)
@@ -56,7 +55,7 @@ def test_damage_grows_on_both_meshes_whatever_state_adds_to_which() -> None:
     ]
     config = config_of(states=by_name(states))
     specimen = draw_specimen(config, 0)
-    first, behind = gear_pair(specimen.gears), gear_pair(specimen.stages[0].gears)
+    first, behind = (mesh.pair for mesh in specimen.meshes)
     own = stage_config(config, specimen, 0)
     assert [len(state_damage(config, 0, first, i)) for i in range(4)] == [0, 1, 1, 1]
     assert [len(state_damage(own, 0, behind, i)) for i in range(4)] == [0, 0, 1, 2]

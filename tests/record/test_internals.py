@@ -19,7 +19,6 @@ from siggen.record.internals import internals_table, stored_quantities
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import structure
 from tests.simulated import simulate
 
@@ -104,7 +103,7 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
     config = load_config("tests/configs/casing.yaml", SHORT)
     specimen = draw_specimen(config, 0)
     table = internals_table(config, 0)
-    pair = gear_pair(specimen.gears)
+    pair = specimen.pair
     assembled = structure(config, specimen)
     lengths = dict(zip(assembled.coordinates, assembled.mesh.vector, strict=True))
     assert lengths["theta_pinion"] == pytest.approx(pair.pinion.base_radius_m)

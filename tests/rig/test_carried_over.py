@@ -9,11 +9,11 @@ import pytest
 
 from siggen.config import Config, inherited, parse, parse_yaml
 from siggen.config.pairs import Pair
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import pair_config
 from siggen.rig.rig import Rig
 from siggen.rig.rig_text import rig_text
-from siggen.specimen.gears import gear_pair
 from tests.config.minimal import config as minimal
 
 RANGE = {"log": [1e8, 2e8]}

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from siggen.gearbox.pair import gear_pair
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.gears import gear_pair
 from tests.sensors.runs import loaded, problems, record
 from tests.sensors.test_encoder import OFF
 

@@ -13,7 +13,6 @@ from siggen.columns.record import SimulatedRecord, channels
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.staged_structure import axis_places_m
 from tests.config.minimal import by_name
 from tests.config.staged import SLOW, staged
@@ -63,7 +62,7 @@ def test_bearings_carry_the_mesh_forces_of_their_shaft_and_couplings_and_encoder
     flange = {"kind": "coupling_torque", "name": "out", "place": "output_coupling", "range_nm": 1e5, "bits": None}
     config = loaded(*washers, flange, *encoders, duration_s=1.0)
     found, specimen = signals(config), draw_specimen(config, 0)
-    pairs = gear_pair(specimen.gears), gear_pair(specimen.stages[0].gears)
+    pairs = [mesh.pair for mesh in specimen.meshes]
     sizes = TORQUE_NM / pairs[0].pinion.base_radius_m, TORQUE_NM * 47 / 18 / pairs[1].pinion.base_radius_m
     # x from the first pinion to its gear; the first pinion turns from x to y, the second one back.
     first = radians(90.0) - pairs[0].working_pressure_angle_rad

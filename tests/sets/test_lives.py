@@ -17,12 +17,12 @@ from diagnostics.records.record_classes import set_classes
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
+from siggen.gearbox.pair import gear_pair
 from siggen.planning.gearbox import gearbox_life
 from siggen.planning.plan import plan
 from siggen.planning.specimen import draw_specimen
 from siggen.publication.dataset_info import class_names
 from siggen.sets.extension import extend
-from siggen.specimen.gears import gear_pair
 from tests.config.minimal import by_name, minimal
 
 LIFE: dict[str, Any] = {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 1.2, "most": 6, "removed_share": 0.0}

@@ -8,10 +8,8 @@ from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.plate_housing import sensor_place
 from siggen.specimen.specimen_housing import SpecimenHousing
-from siggen.specimen.structure import gear_stage
 from tests.dynamics.housing.rigid_body import mass_points
 from tests.dynamics.trains import casing_structure
 
@@ -19,7 +17,7 @@ from tests.dynamics.trains import casing_structure
 def rigid_twin(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Structure:
     """Return the gears in a rigid casing with the box's mass, inertia, bolts and places of sensors."""
     casing = _casing(config, specimen, housing)
-    return locked_load(casing_structure(gear_stage(specimen.dynamics, gear_pair(specimen.gears)), casing))
+    return locked_load(casing_structure(specimen.train.first, casing))
 
 
 def _casing(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Casing:

@@ -56,8 +56,8 @@ def state_of(config: Config, state_id: int = 0) -> SpecimenState:
 
 def moved(config: Config, state: SpecimenState, torque_nm: float, internals: bool = False) -> FloatArray:
     """Return states (k, 2n) from rest, or internals (k, names), with the mesh law at the same angles."""
-    dynamics = draw_specimen(config, 0).dynamics
-    motion = specimen_motion(dynamics, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
+    law = draw_specimen(config, 0).law
+    motion = specimen_motion(law, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
     pitches = 0.4 + 25 * 30.0 * STEP_S * np.arange(STEPS + 1)
     states = np.empty((STEPS + 1, 2 * len(motion.structure.coordinates)))
     states[0] = motion.start(pitches[0])
@@ -140,9 +140,9 @@ def test_friction_brakes_back_flanks_as_it_brakes_drive_flanks():
 def test_both_torques_push_the_gears_apart_and_turn_them_against_each_other():
     config = own_mirror()
     state = state_of(config)
-    dynamics = draw_specimen(config, 0).dynamics
+    law = draw_specimen(config, 0).law
     for torque_nm in (40.0, -40.0):
-        motion = specimen_motion(dynamics, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
+        motion = specimen_motion(law, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
         at = dict(zip(motion.structure.coordinates, motion.equations.static_deflection, strict=True))
         force_n = abs(torque_nm) / state.pair.pinion.base_radius_m
         apart = force_n * np.sin(state.pair.working_pressure_angle_rad) / 1.6e8
@@ -155,8 +155,8 @@ def test_both_torques_push_the_gears_apart_and_turn_them_against_each_other():
 def test_internals_of_any_torque_are_told_for_the_drive_flanks(torque_nm: float):
     config = own_mirror()
     state = state_of(config)
-    dynamics = draw_specimen(config, 0).dynamics
-    motion = specimen_motion(dynamics, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
+    law = draw_specimen(config, 0).law
+    motion = specimen_motion(law, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
     found = dict(zip(motion.internal_names, moved(config, state, torque_nm, internals=True).T, strict=True))
     assert np.isfinite(found["mesh_force_n"]).all()
     if torque_nm < 0.0:

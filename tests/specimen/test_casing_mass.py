@@ -11,7 +11,6 @@ from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.structure import structure
 from tests.config.minimal import by_name, minimal
@@ -76,7 +75,7 @@ def test_far_above_its_bolts_a_casing_moves_and_turns_as_a_free_body_of_its_mass
     """At its centre of gravity a = F/m; at the height h a further h²/J, J = m (1.15 a)², for a horizontal force."""
     config = loaded(12.0)
     specimen, height_m = draw_specimen(config, 0), 0.05
-    pair = gear_pair(specimen.gears)
+    pair = specimen.pair
     stage = locked_load(structure(config, specimen))
     direction = stage.motions["casing_lid/horizontal"]
     found = forced_motion(stage, MESH, direction[None, :], ("casing_lid/horizontal",), np.array([2e5]))

@@ -22,9 +22,8 @@ def cracked(gear: str = "pinion", damage: str = "all") -> SpecimenState:
     crack = {"kind": "crack", "depth_share": 0.4, "gear": gear, "teeth": [TOOTH]}
     config = config_with(crack)
     specimen = draw_specimen(config, 0)
-    mesh = specimen.dynamics.mesh.model_copy(update={"damage": damage})
-    dynamics = specimen.dynamics.model_copy(update={"mesh": mesh})
-    return specimen_state(config, replace(specimen, dynamics=dynamics), 1)
+    law = replace(specimen.law, section_loss=damage == "all")
+    return specimen_state(config, replace(specimen, law=law), 1)
 
 
 def approaches_m(state: SpecimenState, pitches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,10 +8,10 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.pair import gear_pair
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.specimen.errors import SpecimenErrors, specimen_errors
-from siggen.specimen.gears import gear_pair
 from tests.config.minimal import by_name
 from tests.sensors.runs import loaded, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config, parse
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.errors import SpecimenErrors, specimen_errors
-from siggen.specimen.gears import gear_pair
 from tests.simulated import simulate
 
 SHORT = ["specimens=20", "duration_s=0.1", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import siggen
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config, by_reference
+from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import start_angle_rad
@@ -47,8 +47,8 @@ def accelerations(
     angle = start_angle_rad(config, specimen, record)
     driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
     rate_hz = config.fs_hz * steps
-    dynamics = by_reference(specimen.dynamics) if integrator == "runge_kutta" else specimen.dynamics
-    motion = specimen_motion(dynamics, state.mesh, point, 1.0 / rate_hz, driven, stride=stride)
+    law = specimen.law.by_reference() if integrator == "runge_kutta" else specimen.law
+    motion = specimen_motion(law, state.mesh, point, 1.0 / rate_hz, driven, stride=stride)
     times = np.arange(round(WINDOW_S * rate_hz) + 1) / rate_hz
     pitches = driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
     inputs = np.zeros((times.size, motion.equations.external_input.shape[0]))
@@ -67,13 +67,13 @@ def errors(preset: str, number: int) -> np.ndarray:
     config, record_id = drawn_record(preset, number)
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
-    assert specimen.dynamics.method == "exponential"
+    assert specimen.law.method == "exponential"
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     driven = record_drive(
         config, specimen, state.mesh.structure, point, record, start_angle_rad(config, specimen, record)
     )
-    steps, stride = stepped_motion(config, specimen.dynamics, state.mesh, point, driven).grid
+    steps, stride = stepped_motion(specimen.sampling, specimen.law, state.mesh, point, driven).grid
     fine = accelerations(config, record_id, state, "runge_kutta", REFERENCE_STEPS)
     fast = accelerations(config, record_id, state, "exponential", steps, stride)
     return np.asarray(np.sqrt(np.mean((fast - fine) ** 2, axis=0) / np.mean(fine**2, axis=0)))

@@ -10,10 +10,10 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
+from siggen.gearbox.pair import gear_pair
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen import flank_waves
 from siggen.specimen.flank_waves import CLAMPING, specimen_waves
-from siggen.specimen.gears import gear_pair
 from tests.simulated import simulate
 
 

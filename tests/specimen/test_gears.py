@@ -8,9 +8,9 @@ from siggen.checks.loading import load_config
 from siggen.checks.physical_problems import physical_problems
 from siggen.config import parse
 from siggen.errors import ConfigError
+from siggen.gearbox.pair import gear_pair, model_notes, stiffness_options
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.specimen.gears import gear_pair, model_notes, stiffness_options
 from tests.config.minimal import config, minimal
 
 

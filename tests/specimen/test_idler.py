@@ -34,7 +34,7 @@ def machine(state: int = 0, **changes: object) -> tuple[Config, Specimen, Specim
 
 def motion_of(mesh: SpecimenMesh) -> PairMotion:
     _, specimen, _, point = machine()
-    motion = specimen_motion(specimen.dynamics, mesh, point, STEP_S)
+    motion = specimen_motion(specimen.law, mesh, point, STEP_S)
     assert isinstance(motion, PairMotion)
     return motion
 

@@ -12,9 +12,9 @@ from siggen.checks.shaft_notes import shaft_notes
 from siggen.config import Config
 from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
+from siggen.gearbox.pair import gear_pair
 from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
 from siggen.specimen.bearing_spalls import mean_force_n
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 from siggen.specimen.structure import specimen_bearings, structure
 from tests.config.minimal import by_name, config, minimal
@@ -55,7 +55,7 @@ def test_the_load_of_a_bearing_is_what_the_flanks_that_touch_press_and_its_weigh
         seen = on_back_flanks(seen, 0.0)
     for which in ("pinion", "gear"):
         size = mean_force_n(specimen, seen, OperatingPoint(30.0, abs(torque_nm)), f"{which}_bearing")
-        found = shaft_load_n(specimen.dynamics, pair, which, torque_nm, 2.0)
+        found = shaft_load_n(pair, which, torque_nm, 2.0, housed=specimen.housed)
         np.testing.assert_allclose(found, size - [0.0, 2.0 * 9.81], rtol=1e-9)
 
 

@@ -16,7 +16,6 @@ from siggen.gears.damage.part import Parts
 from siggen.gears.damage.part_chip import PartChip, lost_outline
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.lost_mass import lost_mass_sources
 from siggen.specimen.structure import structure
 from tests.faults.test_damage import config_with
@@ -66,7 +65,7 @@ def test_shares_of_the_face_add_up_and_a_whole_tooth_weighs_about_three_square_m
 def machine() -> tuple[Structure, GearPair]:
     config = config_with({"kind": "chip", "height_mm": 1.0})
     specimen = draw_specimen(config, 0)
-    return structure(config, specimen), gear_pair(specimen.gears)
+    return structure(config, specimen), specimen.pair
 
 
 def forces_n(parts: Parts, angle_rad: float) -> dict[str, np.ndarray]:

@@ -24,7 +24,6 @@ from siggen.specimen.background import AXES, EVEN, mean_meshes, mesh_directions
 from siggen.specimen.forced_ways import ChannelWay
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.planetary_housing import set_in_housing
-from siggen.specimen.planetary_numbers import planetary_numbers
 from siggen.specimen.set_on_housing import forces_through_housing
 from siggen.specimen.structure import linear_structure, linear_train, specimen_body
 from tests.config.minimal import by_name
@@ -104,7 +103,7 @@ def test_modes_beyond_those_of_the_machine_give_way_as_if_they_were_in_it(
 def at_angles(config: Config, specimen: Specimen, turn: float) -> tuple[Structure, Structure]:
     """Return the machine as siggen takes it, and with its carrier a part of a turn farther."""
     places, housing = (turn, turn + 1 / 3, turn + 2 / 3), specimen_body(config, specimen)
-    farther = planetary_train(replace(planetary_numbers(specimen), places_turns=places), housing)
+    farther = planetary_train(replace(specimen.planets.stage, places_turns=places), housing)
     return linear_structure(linear_train(config, specimen)), linear_structure(farther)
 
 

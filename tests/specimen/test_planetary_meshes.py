@@ -15,7 +15,6 @@ from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.planetary_meshes import made_meshes
-from siggen.specimen.planetary_numbers import planetary_numbers, planetary_teeth, planets_in_ring
 from tests.config.planets import planets
 from tests.dynamics.trains import planetary_structure
 
@@ -76,8 +75,9 @@ def test_an_eccentric_planet_stands_back_from_sun_and_ring_as_the_structure_says
 ) -> None:
     """The shift is found from the sun's mesh by the vectors of the motion, turned, and told to the ring's."""
     specimen = meshes[0].specimen
-    teeth, (pair, inner) = planetary_teeth(specimen), planets_in_ring(specimen)
-    structure = planetary_structure(planetary_numbers(specimen))
+    planets = specimen.planets
+    teeth, pair, inner = planets.teeth, planets.pair, planets.ring
+    structure = planetary_structure(specimen.planets.stage)
     place = [structure.coordinates.index(f"{axis}_planet_{planet + 1}") for axis in ("x", "y")]
     to_sun, to_ring = (structure.meshes[i].vector[place] for i in (planet, COUNT + planet))
     turned = 30.0 + np.linspace(0.0, 26.0, 53)  # pitches of the first mesh
@@ -96,7 +96,7 @@ def test_an_eccentric_planet_stands_back_from_sun_and_ring_as_the_structure_says
 
 def test_the_ring_weighs_and_turns_like_thin_hoops_of_steel() -> None:
     specimen = draw_specimen(load_config(planets()), 0)
-    ring, inner = planetary_numbers(specimen).ring, planets_in_ring(specimen)[1]
+    ring, inner = specimen.planets.stage.ring, specimen.planets.ring
     # From the root circle of its teeth to the rim, four modules behind; teeth of the ring point inwards.
     edges = np.linspace(inner.gear.root_radius_m, inner.gear.root_radius_m + 4.0 * inner.gear.module_m, 10_001)
     radius_m = 0.5 * (edges[1:] + edges[:-1])

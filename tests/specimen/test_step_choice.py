@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import siggen
-from siggen.config import Config, by_reference
+from siggen.config import Config
 from siggen.dynamics.time.response import SampleGrid, Wanted, response_of
 from siggen.dynamics.time.transient import DECAY_TIMES, TRANSIENT_CAP_S, forgotten
 from siggen.planning.plan import planned_record
@@ -37,7 +37,7 @@ def steps_of(config: Config) -> int:
     """Return the steps of the rule for the first operating point of the first gearbox."""
     specimen = draw_specimen(config, 0)
     mesh = specimen_state(config, specimen, 0).mesh
-    return rule_grid(config, specimen.dynamics, mesh, draw_operating_point(config, 0, 0)).steps
+    return rule_grid(config.fs_hz, specimen.law, mesh, draw_operating_point(config, 0, 0)).steps
 
 
 def chosen_steps(config: Config) -> tuple[Config, Stepped, RecordDrive]:
@@ -47,7 +47,7 @@ def chosen_steps(config: Config) -> tuple[Config, Stepped, RecordDrive]:
     mesh = specimen_state(config, specimen, record.state_id).mesh
     point = draw_operating_point(config, 0, record.operating_point_id)
     driven = record_drive(config, specimen, mesh.structure, point, record, start_angle_rad(config, specimen, record))
-    return config, stepped_motion(config, specimen.dynamics, mesh, point, driven), driven
+    return config, stepped_motion(specimen.sampling, specimen.law, mesh, point, driven), driven
 
 
 def largest_error(found: Mapping[str, np.ndarray], wanted: Mapping[str, np.ndarray]) -> float:
@@ -154,8 +154,8 @@ def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
     record = planned_record(config, RECORD)
     mesh = specimen_state(config, specimen, record.state_id).mesh
     point = draw_operating_point(config, 0, record.operating_point_id)
-    dynamics, step_s = by_reference(specimen.dynamics), 1.0 / (config.fs_hz * FINE_STEPS)
-    fine = specimen_motion(dynamics, mesh, point, step_s, driven)
+    law, step_s = specimen.law.by_reference(), 1.0 / (config.fs_hz * FINE_STEPS)
+    fine = specimen_motion(law, mesh, point, step_s, driven)
     found, wanted = (
         response_of(
             motion, driven.rotation, SampleGrid(config.fs_hz, config.samples, steps),

@@ -18,16 +18,16 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import Config, read_yaml
-from siggen.config.stages import hunting_turns
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.external_forces import Unbalance, shaft_mass
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gearbox.train import gear_stage
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.planning.stages import first_mesh, stage_config, stage_point, stage_specimen, turns
+from siggen.planning.stages import first_mesh, stage_config, stage_point, stage_specimen
 from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
@@ -93,7 +93,7 @@ def base_radii_m(*meshes: SpecimenMesh) -> list[float]:
 def test_teeth_and_bearings_carry_the_torque_of_their_shaft_at_rest() -> None:
     """F = T/R_b of the shaft's pinion; on the middle shaft both tooth forces and the bearings leave nothing."""
     _, specimen, mesh, point = machine(*WITHOUT_FRICTION)
-    motion = specimen_motion(specimen.dynamics, mesh, point, STEP_S)
+    motion = specimen_motion(specimen.law, mesh, point, STEP_S)
     r_1, r_2, r_3, _ = base_radii_m(mesh, mesh.behind[0].mesh)
     first = point.torque_nm / r_1
     assert motion.equations.static_force == pytest.approx([first, first * r_2 / r_3], rel=1e-9)
@@ -160,22 +160,25 @@ def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
     found, specimen, mesh, point = machine(*WITHOUT_FRICTION)
     middle = [f"{kind}_{gear}" for kind in ("x", "y", "theta") for gear in GEARS[1:3]]
     pitches = 18 * point.speed_hz * STEP_S * np.arange(8001) + 0.3
-    both = specimen_motion(specimen.dynamics, mesh.on(with_heavy(mesh.structure, middle)), point, STEP_S)
+    both = specimen_motion(specimen.law, mesh.on(with_heavy(mesh.structure, middle)), point, STEP_S)
     velocities = dict(zip(both.structure.coordinates, run(both, pitches).T, strict=True))
 
-    alone, single = first_mesh(found), replace(specimen, stages=(), names=PAIR)
+    alone, train = first_mesh(found), specimen.train
+    assert train is not None
+    single = replace(specimen, meshes=specimen.meshes[:1], train=replace(train, behind=()), stages=(), names=PAIR)
     made = structure(alone, single)
     first = replace(mesh, structure=with_heavy(made, ["x_gear", "y_gear", "theta_gear"]), behind=())
-    wanted = run(specimen_motion(single.dynamics, first, point, STEP_S), pitches).T
+    wanted = run(specimen_motion(single.law, first, point, STEP_S), pitches).T
     for name, expected in zip(made.coordinates[:4], wanted[:4], strict=True):
         # What is left is the motion of the shaft, 1e-8 times a few ratios of stiffness and inertia.
         assert rms(velocities[name] - expected) < 1e-6 * rms(expected)
 
     own, behind = stage_specimen(specimen, 0), mesh.behind[0]
+    own = replace(own, train=replace(train, first=gear_stage(own.dynamics, own.pair), behind=()))
     made = structure(stage_config(found, specimen, 0), own)
     second = replace(behind.mesh, structure=with_heavy(made, ["x_pinion", "y_pinion", "theta_pinion"]))
-    turned = pitches * turns(specimen)[0] * 17 / 18 + behind.turned_pitches
-    slow = specimen_motion(own.dynamics, second, stage_point(point, turns(specimen)[0]), STEP_S)
+    turned = pitches * float(specimen.shaft_turns[1]) * 17 / 18 + behind.turned_pitches
+    slow = specimen_motion(own.law, second, stage_point(point, float(specimen.shaft_turns[1])), STEP_S)
     # Its line of centres is turned by 70°, and its pinion runs backwards: a mirror and a turn, on equal bearings.
     wanted = run(slow, turned).T
     for name, expected in zip(("theta_slow_gear", "theta_load"), wanted[[6, 7]], strict=True):
@@ -207,7 +210,7 @@ def lines(motion: PairMotion, point: OperatingPoint, orders: Sequence[float]) ->
 
 def test_all_teeth_meet_as_at_the_start_after_the_hunting_turns_and_not_before() -> None:
     found, specimen, _, _ = machine()
-    whole = hunting_turns(specimen.gears, specimen.stages)
+    whole = int(specimen.hunting_turns)
     z_1, z_2, z_3, z_4 = TEETH
 
     def as_at_start(turned: int) -> bool:
@@ -268,7 +271,7 @@ def test_shafts_that_let_gears_part_are_refused_with_the_place_to_change() -> No
     found = load_config(soft, WITHOUT_FRICTION)
     specimen = draw_specimen(found, 0)
     motion = specimen_motion(
-        specimen.dynamics, specimen_state(found, specimen, 0).mesh, draw_operating_point(found, 0, 0), STEP_S
+        specimen.law, specimen_state(found, specimen, 0).mesh, draw_operating_point(found, 0, 0), STEP_S
     )
     with pytest.raises(ValueError, match="stages: a gear moves by"):
         motion.start(0.0)

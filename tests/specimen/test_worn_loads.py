@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,13 +10,13 @@ import pytest
 
 from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
 from siggen.dynamics.mesh.static_stiffness import static_approaches_m
+from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.flank_loss import with_losses
 from siggen.gears.damage.wear import POINTS, Worn, WornFlanks, worn_until
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.contact import RELIEF_LENGTH, tooth_tables
-from siggen.specimen.gears import gear_pair
 from siggen.specimen.motion import teeth_missing
 from siggen.specimen.worn_loads import load_at_rest
 from tests.faults.test_damage import config_with
@@ -26,16 +27,14 @@ TEETH = StiffnessOptions("base_circle", "none")
 WORE_UNDER_N, FORCE_N, DEPTH_M, RELIEF_M = 2500.0, 1500.0, 20e-6, 60e-6
 """So long a relief for so little force that no tip corner touches beside the path: the computation by hand has none."""
 SPECIMEN = draw_specimen(config_with(), 0)
-DYNAMICS = SPECIMEN.dynamics.model_copy(
-    update={"mesh": SPECIMEN.dynamics.mesh.model_copy(update={"tip_relief_um": 1e6 * RELIEF_M})}
-)
+LAW = replace(SPECIMEN.law, relief_m=RELIEF_M)
 PAIR = gear_pair(SPECIMEN.gears)
 PATH = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, POINTS)
 
 
 @cache
 def worn() -> Worn:
-    load = load_at_rest(DYNAMICS, PAIR, TEETH, WORE_UNDER_N)
+    load = load_at_rest(LAW, PAIR, TEETH, WORE_UNDER_N)
     return worn_until(PAIR, load, 1e-17, depth_m=DEPTH_M)
 
 
@@ -59,10 +58,10 @@ def test_mesh_harmonics_of_the_transmission_error_at_rest_are_those_by_hand(worn
         WornFlanks(which, tuple((worn_depth * depths).tolist()))
         for which, depths in (("pinion", worn().pinion_m), ("gear", worn().gear_m))
     )
-    teeth = tooth_tables(DYNAMICS, PAIR, (), TEETH, TABLE_POINTS, 3.0 * FORCE_N)
+    teeth = tooth_tables(LAW, PAIR, (), TEETH, TABLE_POINTS, 3.0 * FORCE_N)
     law = pair_law(
         teeth.tables,
-        with_losses(teeth_missing(DYNAMICS, PAIR, TABLE_POINTS), PAIR, parts),
+        with_losses(teeth_missing(LAW, PAIR, TABLE_POINTS), PAIR, parts),
         MeshConstants(PAIR.line_of_action_m, 1.0, PAIR.base_pitch_m),
         damping_ratio=0.0,
         contact=teeth.contact,
@@ -78,7 +77,7 @@ def test_mesh_harmonics_of_the_transmission_error_at_rest_are_those_by_hand(worn
 
 def test_swapped_gears_wear_the_same_under_the_same_force() -> None:
     other = gear_pair(SPECIMEN.gears.model_copy(update={"pinion": SPECIMEN.gears.gear, "gear": SPECIMEN.gears.pinion}))
-    load = load_at_rest(DYNAMICS, other, TEETH, WORE_UNDER_N)
+    load = load_at_rest(LAW, other, TEETH, WORE_UNDER_N)
     swapped = worn_until(other, load, 1e-17, depth_m=DEPTH_M)
     # The end of a pair's way is the beginning of the other: steps of the load lie in other cells of the profile.
     for one, two in ((worn().pinion_m, swapped.gear_m), (worn().gear_m, swapped.pinion_m)):

@@ -125,7 +125,7 @@ def beginning(
     matrices = {name: change(getattr(built, name)) for name in MATRICES}
     vectors = tuple(replace(one, vector=change(one.vector), sliding=change(one.sliding)) for one in built.meshes)
     mesh = replace(state.mesh, structure=replace(built, meshes=vectors, **matrices))
-    motion = specimen_motion(specimen.dynamics, mesh, point, 1.0 / (loaded.fs_hz * steps), driven)
+    motion = specimen_motion(specimen.law, mesh, point, 1.0 / (loaded.fs_hz * steps), driven)
     buffer = io.BytesIO()
     np.savez(buffer, **{name: np.asarray(value) for name, value in exported_model(loaded, record).items()})
     buffer.seek(0)
@@ -215,7 +215,7 @@ def test_the_model_starts_where_its_record_does() -> None:
     specimen, steps = draw_specimen(loaded, 0), int(model["steps_per_sample"])
     point = draw_operating_point(loaded, 0, 0)
     motion = specimen_motion(
-        specimen.dynamics, specimen_state(loaded, specimen, 0).mesh, point, float(model["step_s"])
+        specimen.law, specimen_state(loaded, specimen, 0).mesh, point, float(model["step_s"])
     )  # fmt: skip
     first = round(-model["start_s"] / model["step_s"])
     assert first % steps == 0

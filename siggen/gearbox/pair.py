@@ -1,12 +1,17 @@
-"""From the units of a drawn section `gears` (mm, degrees, GPa) to the gear pair in SI."""
+"""From drawn sections (mm, degrees, GPa) to gear pairs in SI, and how their teeth bend."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
-from siggen.config import Pair, Wheel
+from siggen.config import Config, Pair, Stiffness, Wheel
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.geometry.spur_gear import transverse_gear
+from siggen.gears.stiffness.stiffness_notes import stiffness_notes
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.keys.drawing import corners
 from siggen.keys.number import constant
 
 
@@ -41,3 +46,21 @@ def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
         bore_radius_m=constant(wheel.bore_radius_mm) / 1e3,
     )
     return transverse_gear(normal, math.radians(constant(gears.helix_deg)))
+
+
+def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
+    """Return the options of the stiffness model that a section `stiffness` names."""
+    return StiffnessOptions(stiffness.beam, coupling=stiffness.coupled_by)
+
+
+def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
+    """Return the options of one pair of a gearbox: in a ring neighbours do not act on each other."""
+    return replace(options, coupling="none") if isinstance(pair, InternalPair) else options
+
+
+def model_notes(config: Config) -> tuple[str, ...]:
+    """Return what to know about the stiffness model of a set, at the bounds of its gears, each sentence once."""
+    options = stiffness_options(config.stiffness)
+    gears = [gear.word for gear in config.names.first.gears]
+    notes = (note for corner in corners(config.gears) for note in stiffness_notes(gear_pair(corner), options, gears))
+    return tuple(dict.fromkeys(notes))

@@ -1,0 +1,1 @@
+"""The gearbox of a record, drawn once: laws of a configuration become numbers in SI."""

@@ -1,0 +1,142 @@
+"""Specimen: a gearbox of a set, drawn; every number is a value in SI, and nothing behind it asks the configuration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import lcm
+
+from siggen.config import Dynamics, Gears, ModalHousing, Planetary, RigidHousing, Stage, Stiffness
+from siggen.dynamics.bearings.ball_bearing import BallBearing
+from siggen.dynamics.mesh.tooth_law import ToothLaw
+from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
+from siggen.dynamics.time.sampling import Sampling
+from siggen.gearbox.housing_numbers import PlateNumbers
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.internal_pair import InternalPair
+from siggen.gears.geometry.planetary import PlanetarySet
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Names
+from siggen.sensors.sensor import SensorBase
+
+
+@dataclass(frozen=True, slots=True)
+class OperatingPoint:
+    """Speed and torque of the first shaft."""
+
+    speed_hz: float
+    torque_nm: float
+
+
+@dataclass(frozen=True, slots=True)
+class ToothMesh:
+    """One mesh of a gearbox.
+
+    Attributes
+    ----------
+    inner : its name in sections; empty for the first one
+    pair : its gears
+    options : how their teeth bend
+    idler : whether its driver is the driven gear of the mesh in front
+    direction_rad : from the driver's axis to that of its mate, against the first mesh
+    """
+
+    inner: str
+    pair: GearPair
+    options: StiffnessOptions
+    idler: bool = False
+    direction_rad: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class PairTrain:
+    """Shafts of a train of pairs: rotors and couplings, those behind, what bends, bearings that follow the load."""
+
+    first: GearStage
+    behind: tuple[NextStage, ...] = ()
+    bending: tuple[Shaft, Shaft] | None = None
+    balls: tuple[tuple[str, BallBearing], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetaryGears:
+    """A planetary set: its teeth in numbers, sun and planet, planet and ring, and its bodies.
+
+    `pin_errors_m`: how far each planet's pin is ahead of its place along the tangent.
+    """
+
+    teeth: PlanetarySet
+    pair: GearPair
+    ring: InternalPair
+    stage: PlanetaryStage
+    pin_errors_m: tuple[float, ...]
+
+    @property
+    def hunting_turns(self) -> float:
+        """Turns of the sun after which all teeth stand again as they did, and the carrier too."""
+        return self.teeth.common_turns * (1.0 + self.teeth.ring / self.teeth.sun)
+
+    def of_one_mesh(self, point: OperatingPoint) -> OperatingPoint:
+        """Return a point as the sun has it against the carrier in one of its meshes."""
+        speed_hz = point.speed_hz * (1.0 - float(self.teeth.carrier_turns))
+        return OperatingPoint(speed_hz, point.torque_nm / len(self.teeth.places))
+
+
+@dataclass(frozen=True, slots=True)
+class Specimen:
+    """A gearbox.
+
+    Attributes
+    ----------
+    meshes : in the order of power; of a planetary set those of sun and planet, and of planet and ring
+    law : how all teeth push and rub
+    train, planets : its shafts; one of both
+    housed : whether a housing carries its bearings, not the ground
+    bearing_point : the operating point under whose load its bearings stand; None where they have one stiffness
+    """
+
+    specimen_id: int
+    names: Names
+    sampling: Sampling
+    meshes: tuple[ToothMesh, ...]
+    law: ToothLaw
+    train: PairTrain | None
+    planets: PlanetaryGears | None
+    housed: bool
+    gears: Gears
+    stiffness: Stiffness
+    dynamics: Dynamics
+    housing: PlateNumbers | ModalHousing | RigidHousing
+    sensors: tuple[SensorBase, ...]
+    bearing_point: OperatingPoint | None = None
+    stages: tuple[Stage, ...] = ()
+    planetary: Planetary | None = None
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears of the first mesh."""
+        return self.meshes[0].pair
+
+    @property
+    def behind(self) -> tuple[ToothMesh, ...]:
+        """The further meshes of a train."""
+        return () if self.train is None else self.meshes[1:]
+
+    @property
+    def shaft_turns(self) -> tuple[Fraction, ...]:
+        """Turns of every shaft of a train per turn of the first one, exactly."""
+        turns = [Fraction(1)]
+        for mesh in self.meshes:
+            turns.append(turns[-1] * Fraction(mesh.pair.pinion.teeth, mesh.pair.gear.teeth))
+        return tuple(turns)
+
+    @property
+    def hunting_turns(self) -> float:
+        """Turns of the first shaft after which all teeth stand again as they did."""
+        if self.planets is not None:
+            return self.planets.hunting_turns
+        return lcm(*(turns.denominator for turns in self.shaft_turns))
+
+    def under(self, point: OperatingPoint) -> Specimen:
+        """Return the gearbox at an operating point; itself where its bearings have one stiffness."""
+        return self if self.bearing_point in (None, point) else replace(self, bearing_point=point)
