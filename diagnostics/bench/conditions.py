@@ -12,7 +12,7 @@ from typing import Any
 
 SPEED, TORQUE = [32.5, 37.0], [30.0, 60.0]
 HEALTHY: Mapping[str, Any] = {"healthy": {}, "healthy_again": {}}
-MODERATE = {"severity": "moderate", "grows_from": "none"}
+MODERATE = {"severity": "moderate"}
 SPALL = {
     "kind": "irregular",
     "gear": "pinion",
@@ -31,7 +31,7 @@ OTHER_FAULTS = {
     "chip": {**MODERATE, "damage": {"kind": "chip", "gear": "pinion", "height_mm": [0.3, 1.0]}},
     "wear": {**MODERATE, "damage": {"kind": "wear", "depth_um": [10.0, 30.0]}},
     "bearing": {**MODERATE, "damage": {"kind": "bearing_spall", "element": "outer", "length_mm": [1.0, 3.0]}},
-    "sham": {"sham": True, "damage": SPALL},
+    "sham": {"acts": False, "damage": SPALL},
 }
 """Faults of `confusers` with the sizes that it has: none of them is learned from."""
 

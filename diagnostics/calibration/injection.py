@@ -235,7 +235,7 @@ def simulated_differences(mine: Path, block: Block, gearbox: int) -> Iterator[Di
     except SolverFailure:
         return
     for name, state in damage_states(mine).items():
-        alone = {**state, "grows_from": "none"} if "grows_from" in state else state
+        alone = {**state, "grows": None} if "grows" in state else state
         config = siggen.load_config({**changes, "states": {name: alone}})
         try:
             damaged = siggen.run(siggen.draw(config, gearbox), config.state_names[0])

@@ -30,14 +30,14 @@ AROUND = (
     "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, second_stage: {order: 7}, "
     "auxiliary_drive: {order: 20}}"
 )
-SHAM = "states.sham={sham: true, damage: {kind: spall, face_length_mm: 8, profile_length_mm: 1, depth_mm: 0.3}}"
+SHAM = "states.sham={acts: false, damage: {kind: spall, face_length_mm: 8, profile_length_mm: 1, depth_mm: 0.3}}"
 ADDED = {
     "manufacture": MADE,
     "variation": "variation.speed.random_rms=0.001",
     "gears.pairs": PAIR,
     "dynamics.friction.oil": OILS,
     "background": AROUND,
-    "states.NAME.sham": SHAM,
+    "states.NAME.acts": SHAM,
 }
 """With these a configuration that has every part with columns of its own."""
 PLATES = "`housing.kind: plates`"

@@ -17,6 +17,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from chosen_states import chosen_states
 from matplotlib.figure import Figure
 from report_pages import run
 
@@ -67,7 +68,7 @@ Entry = dict[str, Any]
 def preset(name: str, gearboxes: int, chosen: tuple[str, ...]) -> dict[str, Any]:
     """Return a preset with some of its states."""
     raw = inherited(read_yaml(CONFIGS / f"{name}.yaml"), CONFIGS)
-    states = {name: state for name, state in raw["states"].items() if name in chosen}
+    states = chosen_states(raw["states"], chosen)
     by = {"by": "pair"} if name == "families" else {}
     return {**raw, "specimens": gearboxes, "states": states, "splits": {**HALVES, **by}}
 
@@ -93,7 +94,7 @@ def edges(gearboxes: int) -> dict[str, Any]:
         for skew in SKEWS_MM:
             name = f"share_{100 * share:03.0f}_skew_{100 * skew:03.0f}"
             damage = {**SPALL, "skew_mm_per_10mm": 0.5 * skew, "face_share": share}
-            damaged[name] = {"severity": "severe", "grows_from": "none", "damage": damage}
+            damaged[name] = {"severity": "severe", "damage": damage}
     raw = preset("bench", gearboxes, STATES[:2])
     return {**raw, "name": "edges", "states": {**raw["states"], **damaged}}
 

@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from chosen_states import chosen_states
 from report_pages import run
 
 import siggen
@@ -29,7 +30,7 @@ Entry = dict[str, Any]
 def raw(gearboxes: int, *, many: bool) -> dict[str, Any]:
     """Return the preset with three states, with or without its pairs."""
     found = inherited(read_yaml(CONFIGS / "families.yaml"), CONFIGS)
-    states = {name: state for name, state in found["states"].items() if name in STATES}
+    states = chosen_states(found["states"], STATES)
     found |= {"name": "families_small", "specimens": gearboxes, "states": states}
     if many:
         return found

@@ -24,7 +24,9 @@ Cases = dict[str, tuple[Config, str]]
 
 def varied(state: str, key: str, value: float) -> Config:
     """Return the paper's set with one size of one state changed; that state keeps no pits of a milder one."""
-    return load_config(PAPER, [f"states.{state}.damage.{key}={value}", f"states.{state}.grows_from=none"])
+    milder = STATES[STATES.index(state) - 1]
+    alone = [f"states.{state}.grows=null", f"states.{state}.like={milder}"]
+    return load_config(PAPER, [f"states.{state}.damage.{key}={value}", *alone])
 
 
 def sweep(symbol: str, key: str, values: tuple[float, ...], state: str = "moderate") -> Cases:
@@ -38,7 +40,7 @@ def scattered(half_mm: float) -> Config:
         f"{{kind: clustered, count: 48, spread_profile_mm: 0.4, semi_axis_face_mm: 0.3, "
         f"semi_axis_profile_mm: {half_mm}, depth_mm: 0.4}}"
     )
-    return load_config(PAPER, [f"states.severe.damage={damage}", "states.severe.grows_from=none"])
+    return load_config(PAPER, [f"states.severe.damage={damage}", "states.severe.grows=null"])
 
 
 GROUPS: dict[str, Cases] = {

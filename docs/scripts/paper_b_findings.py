@@ -39,14 +39,14 @@ CONSTANTS = [
 ]  # fmt: skip
 
 
-def pits(count, spread_mm, severity):
-    """Return a state with round pits of 0.4 mm in clusters about the pitch line of tooth 0."""
+def pits(count, spread_mm, severity, milder=None):
+    """Return a state with round pits of 0.4 mm about the pitch line of tooth 0, and those of a milder one."""
     damage = {
         "kind": "clustered", "gear": "pinion", "teeth": [0], "count": count, "centre_height_mm": "pitch",
         "spread_profile_mm": spread_mm, "semi_axis_face_mm": 0.4, "semi_axis_profile_mm": 0.4, "depth_mm": 0.25,
         "floor": "dish",
     }  # fmt: skip
-    return {"name": severity, "damage": damage}
+    return {"name": severity, "grows": milder, "damage": damage}
 
 
 def spall(name, length_mm, width_mm):
@@ -55,11 +55,15 @@ def spall(name, length_mm, width_mm):
         "kind": "spall", "gear": "pinion", "teeth": [0], "centre_height_mm": "pitch", "depth_mm": 0.2,
         "profile_length_mm": length_mm, "face_length_mm": width_mm,
     }  # fmt: skip
-    return {"name": name, "severity": "severe", "grows_from": "none", "damage": damage}
+    return {"name": name, "severity": "severe", "damage": damage}
 
 
 HEALTHY = {"name": "healthy"}
-PITTED = [pits(9, 0.3, "slight"), pits(18, 0.35, "moderate"), pits(36, 0.4, "severe")]  # each holds the one before
+PITTED = [
+    pits(9, 0.3, "slight"),
+    pits(18, 0.35, "moderate", "slight"),
+    pits(36, 0.4, "severe", "moderate"),
+]  # each holds the one before
 PARTIAL, THROUGH = spall("spall_half_face", 1.5, 10.0), spall("through_1_0_mm", 1.0, 20.0)
 SEVERITIES = [
     HEALTHY, *PITTED, PARTIAL,

@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from chosen_states import chosen_states
 
 import siggen
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
@@ -77,7 +78,7 @@ def machine(index: int) -> tuple[dict[str, Any], tuple[int, int]]:
     changes = {
         "specimens": 1, "repeats": 1, "duration_s": DURATION_S, "seed": seed,
         "operating_points": [{"speed_hz": speed_hz, "torque_nm": torque_nm}],
-        "states": {name: raw["states"][name] for name in STATES},
+        "states": chosen_states(raw["states"], STATES),
         "variation": {**raw["variation"], "speed": speed},
         "background": {**raw["background"], "second_stage": stage if index % 3 else None},
     }  # fmt: skip

@@ -101,7 +101,7 @@ def tvms(
         if study.vary:
             loaded = (
                 (label, gearbox.of(load_config(config, [*(overrides or ()), *changes])), state)
-                for label, changes, state in varied(study.vary, usable.state_names)
+                for label, changes, state in varied(study.vary, usable)
             )
             curves = varied_curves(loaded, gearbox.specimen, torque)
         else:

@@ -231,44 +231,41 @@ def _raw_name(entry: object) -> object:
     return entry.get("name") if isinstance(entry, Mapping) else getattr(entry, "name", None)
 
 
-def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+def _growth(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     states: Mapping[str, StateSection] = sections.get("states", {})
-    names = [*named_entries("states", raw)] or [*states]
     for index, state in states.items():
-        if not state.faulty or state.grows_from == "none":
+        if state.grows is None or state.grows not in states:
             continue
-        before = names[: names.index(index)]
-        earlier = [name for name in before if name in states and states[name].faulty]
-        if state.grows_from == "previous":
-            milder = next((name for name in reversed(earlier) if states[name].damaged), None) if state.damaged else None
+        milder = states[state.grows]
+        if milder.faulty:
+            yield from _growth_problems(milder, state, f"states.{index}")
         else:
-            milder = state.grows_from
-            if milder not in before or (milder in states and milder not in earlier):
-                candidates = ["previous", "none", *earlier]
-                allowed = f"allowed: an earlier state with damage or changes: one of {', '.join(candidates)}"
-                yield Problem(f"states.{index}.grows_from", f"'{state.grows_from}'", allowed)
-                continue
-        if milder is not None and milder in states:
-            yield from _growth_problems(states[milder], state, f"states.{index}")
+            faulty = [name for name, other in states.items() if other.faulty and name != index]
+            allowed = f"allowed: {', '.join(faulty) or 'null'}; states with damage or changes"
+            yield Problem(f"states.{index}.grows", f"'{state.grows}', which has neither", allowed)
 
 
 def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield labels that do not say what a state shows, by its own damage or by that of a state before it."""
     states: Mapping[str, StateSection] = sections.get("states", {})
-    shown: list[Fault] = []
     for index, state in states.items():
-        before = [*shown]
-        shown += state.damages if state.damaged else ()
         if not state.faulty or state.fault == HEALTHY:
             continue
         own = [word for section in state.damages for word in section.own_words]
         outranked = {word for section in state.damages for word in section.outranked}
-        inherited = (word for section in before for word in section.own_words)
+        inherited = (word for section in _milder_damages(states, state) for word in section.own_words)
         words = dict.fromkeys([*own, *(word for word in inherited if word not in outranked)])
         words |= {COMBINED: None} if len(words) > 1 else {}
         kinds = kinds_called(state.fault)
         if state.fault not in words and (kinds or not state.changes):
             yield Problem(f"states.{index}.fault", _shown_text(state), _words_text([*words], state.fault, kinds))
+
+
+def _milder_damages(states: Mapping[str, StateSection], state: StateSection) -> Iterator[Fault]:
+    """Yield the damage of the states that a state has grown from."""
+    while state.grows is not None and state.grows in states:
+        state = states[state.grows]
+        yield from state.damages
 
 
 def _severities(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -305,13 +302,13 @@ def _words_text(words: Sequence[str], fault: str, kinds: Sequence[str]) -> str:
 def _growth_problems(milder: StateSection, state: StateSection, path: str) -> Iterator[Problem]:
     known = all(one.severity in SEVERITIES for one in (milder, state))
     if known and SEVERITIES.index(milder.severity) > SEVERITIES.index(state.severity):
-        received = f"'{state.grows_from}', which is {milder.name} ({milder.severity}), for a {state.severity} state"
-        yield Problem(f"{path}.grows_from", received, "allowed: a state that is not more severe, or none")
+        received = f"'{state.grows}' ({milder.severity}), for a {state.severity} state"
+        yield Problem(f"{path}.grows", received, "allowed: a state that is not more severe, or null")
     for where, one in state.placed(path):
         if key := next((key for older in milder.damages if (key := one.key_that_adds_nothing(older))), None):
             nouns = one.nouns or "damage"
-            received = f"no {nouns} beyond those of {milder.name}, which this state contains (grows_from)"
-            allowed = f"allowed: more {nouns} than {milder.name} has, or grows_from: none"
+            received = f"no {nouns} beyond those of {milder.name}, which this state contains (grows)"
+            allowed = f"allowed: more {nouns} than {milder.name} has; or like: {milder.name} in place of grows"
             yield Problem(f"{where}.{key}", received, allowed)
         for problem in (problem for older in milder.damages for problem in one.contradictions(older)):
             yield replace(problem, path=f"{where}.{problem.path}")

@@ -10,7 +10,9 @@ from siggen.config.config import Config
 from siggen.config.inheritance import EXTENDS, inherited
 from siggen.config.parsing import parse
 from siggen.config.presets import presets
+from siggen.config.states import StateSection
 from siggen.config.yaml_source import read_yaml
+from siggen.faults.kinds import KINDS
 from siggen.keys.distributions import is_written_number
 from siggen.keys.section import Section
 
@@ -39,9 +41,14 @@ def schema_with_experts() -> dict[str, Any]:
 
 
 def schema_text() -> str:
-    """Return the JSON Schema as editors read it; a file that extends another one needs no key of its own."""
+    """Return the JSON Schema as editors read it; a file or a damage that takes others over needs no key of its own."""
     schema = schema_with_experts()
     required = [key for key in schema.pop("required") if key != "gears"]
+    sections = schema["$defs"]
+    kinds = [sections[kind.__name__] for kind in KINDS]
+    known = sorted({key for kind in kinds for key in kind["properties"]})
+    taken_over = {"type": "object", "not": {"required": ["kind"]}, "propertyNames": {"enum": known}}
+    sections[StateSection.__name__]["properties"]["damage"]["anyOf"].append(taken_over)
     either = [{"anyOf": [{"required": [key]} for key in pair]} for pair in (("gears", "machine"), ("states", "life"))]
     needed = {"if": {"required": [EXTENDS]}, "else": {"required": required, "allOf": either}}
     return json.dumps({"$schema": DRAFT, **schema, **needed}, indent=2) + "\n"

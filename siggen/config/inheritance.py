@@ -10,7 +10,7 @@ from siggen.config.data_file import is_file
 from siggen.config.presets import config_file
 from siggen.config.yaml_source import read_yaml
 from siggen.errors import ConfigError, Problem, UsageError
-from siggen.keys.distributions import is_written_number
+from siggen.keys.distributions import WORDS
 from siggen.keys.problems import received_text
 
 EXTENDS = "extends"
@@ -19,6 +19,8 @@ OTHERS = "others"
 REPLACED = ("gears", "stages", "planetary")
 """Sections that a machine takes the place of."""
 REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
+REPLACING = ("kind", "like", "times", "add", *WORDS)
+"""Keys of a mapping that stands for itself: it takes nothing from the one that it replaces."""
 DEEPEST = 8
 """Files that may extend each other in a row."""
 
@@ -27,8 +29,8 @@ def inherited(raw: Mapping[str, Any], folder: Path = Path(), source: str = "conf
     """Return a raw configuration in which `extends` is resolved; without that key, a copy.
 
     Mappings are merged key by key, states and sensors by name; one with `others: null` takes nothing over. Everything
-    else replaces what it extends: numbers, lists, null, and mappings that have a `kind` of their own or stand for a
-    number. A `machine` takes the place of gears and of their shafts.
+    else replaces what it extends: numbers, lists, null, and mappings that have a `kind` of their own, are
+    `like` something or stand for a number. A `machine` takes the place of gears and of their shafts.
 
     Parameters
     ----------
@@ -131,6 +133,6 @@ def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in own.items():
         below = result[key]
         both = isinstance(below, Mapping) and isinstance(value, Mapping)
-        replaces = not both or "kind" in value or is_written_number(value)
+        replaces = not both or any(word in value for word in REPLACING)
         result[key] = value if replaces else merged(below, value)  # type: ignore[arg-type]
     return result

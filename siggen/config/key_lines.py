@@ -9,13 +9,11 @@ from typing import NamedTuple
 
 import yaml
 
+from siggen.config.inheritance import REPLACING
 from siggen.config.yaml_source import yaml_node
 from siggen.errors import Problem
-from siggen.keys.distributions import WORDS
 
 MERGE = "tag:yaml.org,2002:merge"
-REPLACING = ("kind", *WORDS)
-"""Keys of a mapping that takes nothing from a file that its own file extends."""
 MOST_MERGES = 20
 """Merged mappings within each other that are followed; a mapping may merge itself."""
 
@@ -35,9 +33,31 @@ class KeyLine(NamedTuple):
 def key_line(node: yaml.Node | None, path: str) -> KeyLine | None:
     """Return where a key such as `states.slight.damage.teeth` stands; None if not even its first part is there.
 
-    A key that an anchor brings stands where it is written. A key may hold dots itself, as those of `changes` do.
+    A key that an anchor brings, or a state that another one names, stands where it is written. A key may hold dots
+    itself, as those of `changes` do.
     """
-    found, own, parts, depth = None, False, path.split("."), 0
+    parts = path.split(".")
+    found = _key_line(node, parts)
+    for _ in range(MOST_MERGES if parts[0] == "states" else 0):
+        named = _named_state(node, parts[1:2])
+        if found is None or named is None or found.depth == len(parts):
+            break
+        parts[1] = named
+        further = _key_line(node, parts)
+        found = further if further is not None and further.depth > found.depth else found
+    return found
+
+
+def _named_state(node: yaml.Node | None, name: Sequence[str]) -> str | None:
+    """Return the name of the state from which a state takes keys over."""
+    for part in ("states", *name):
+        _, node = _child(node, part) or (0, None)
+    named = (_child(node, key) for key in ("grows", "like"))
+    return next((other[1].value for other in named if other and isinstance(other[1], yaml.ScalarNode)), None)
+
+
+def _key_line(node: yaml.Node | None, parts: Sequence[str]) -> KeyLine | None:
+    found, own, depth = None, False, 0
     while depth < len(parts):
         named = ((end, _child(node, ".".join(parts[depth:end]))) for end in range(depth + 1, len(parts) + 1))
         depth, child = next(((end, child) for end, child in named if child is not None), (len(parts), None))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
@@ -15,6 +15,7 @@ from siggen.config.consistency import consistency_problems
 from siggen.config.machine import Machine
 from siggen.config.machine_problems import machine_problems
 from siggen.config.short_form import names_of, short_form
+from siggen.config.state_keys import complete_states, source_of
 from siggen.errors import Problem
 from siggen.keys.by_name import BY_NAME, named_entries, refused_list
 from siggen.keys.problems import (
@@ -83,6 +84,8 @@ def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:
         if value is not None:
             sections[name] = {} if value == () and name in BY_NAME else value
     problems += consistency_problems(sections, raw)
+    if isinstance(states := raw.get("states"), Mapping):
+        problems = [one for one in problems if not _taken_over(one, problems, states)]
     config = None if problems else Config.model_validate(_listed(sections))
     return ParsedConfig(config, MappingProxyType(sections), tuple(problems))
 
@@ -122,8 +125,8 @@ def _entries(name: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any] | None, 
     if not items:
         return None, [Problem(name, received_text(given), f"allowed: {allowed}")]
     entries: dict[str, Any] = {}
-    problems: list[Problem] = []
-    for key, item in items.items():
+    complete, problems = complete_states(items) if name == "states" else (items, [])
+    for key, item in complete.items():
         if len(problems) >= MOST_PROBLEMS:
             break
         if isinstance(item, Mapping) and "name" in item:
@@ -144,6 +147,17 @@ def _of_entry(problem: Problem, name: str, key: str) -> Problem:
     if below != "name":
         return replace(problem, path=_below(name, key, below))
     return replace(problem, path=_below(name, key), received=problem.received.replace("the text", "the name", 1))
+
+
+def _taken_over(problem: Problem, problems: Sequence[Problem], states: Mapping[str, object]) -> bool:
+    """Tell whether a state has a problem by a key of the state that it names, which has the same one."""
+    name = next((name for name in states if problem.path.startswith(f"{_below('states', str(name))}.")), None)
+    rest, seen = problem.path.removeprefix(_below("states", str(name))), {name}
+    while name is not None and (name := source_of(states.get(name))) not in seen:
+        if replace(problem, path=f"{_below('states', str(name))}{rest}") in problems:
+            return True
+        seen.add(name)
+    return False
 
 
 def _below(*parts: str) -> str:

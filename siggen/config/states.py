@@ -17,7 +17,6 @@ from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
 SEVERITIES = ("healthy", "slight", "moderate", "severe")
-RESERVED_NAMES = ("previous", "none")
 KNOWN_CHANGES = (
     "misalignment", "eccentricity", "unbalance", "lubrication", "looseness", "clearance", "bearing", "coupling",
     "resonance", "sensor",
@@ -38,7 +37,7 @@ def _labels_are_optional(schema: dict[str, Any]) -> None:
 
 
 class StateSection(Section):
-    """One condition: its label, its damage, and the milder state it has grown from."""
+    """One condition: its label, its damage, and the milder state that it grows from."""
 
     key_field: ClassVar[str] = "name"
     model_config = ConfigDict(json_schema_extra=_labels_are_optional)
@@ -52,18 +51,24 @@ class StateSection(Section):
     severity: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
         description="default: the state's name; healthy without damage"
     )
-    grows_from: str = Field(
-        default="previous",
-        description="whose damage it contains: previous (the nearest earlier state with damage), none, or a name",
+    grows: str | None = Field(
+        default=None,
+        description="name of the milder state that it grows from: it contains its damage, and takes over all its keys "
+        "beside its own; null: it begins anew",
+    )
+    like: str | None = Field(
+        default=None,
+        description="name of a state whose keys it takes over beside its own, without growing from it",
+        exclude=True,
     )
     damage: Annotated[DamageSections | None, DAMAGE] = Field(
         default=None, description="null for a healthy state; a list for several at once"
     )
-    sham: bool = Field(
-        default=False,
+    acts: bool = Field(
+        default=True,
         strict=True,
-        description="its damage is drawn, tabulated and passed on, with nothing removed: a healthy state that no "
-        "record may give away",
+        description="false: a sham, whose damage is drawn, tabulated and passed on, with nothing removed: a healthy "
+        "state that no record may give away",
     )
 
     changes: Changes = Field(
@@ -92,6 +97,11 @@ class StateSection(Section):
         yield from ((f"{path}.damage{f'.{i}' if listed else ''}", one) for i, one in enumerate(self.damages))
 
     @property
+    def sham(self) -> bool:
+        """Whether it has damage of which nothing is removed."""
+        return not self.acts
+
+    @property
     def damaged(self) -> bool:
         """Whether anything is removed."""
         return bool(self.damages) and not self.sham
@@ -117,7 +127,7 @@ class StateSection(Section):
     def _fill_labels(cls, value: Any) -> Any:
         if not isinstance(value, Mapping):
             return value
-        sound = value.get("damage") is None or value.get("sham") is True
+        sound = value.get("damage") is None or value.get("acts") is False
         labels = {}
         if not sound:
             labels["fault"] = default_word(value["damage"])
@@ -129,17 +139,10 @@ class StateSection(Section):
 
     @model_validator(mode="after")
     def _labels_agree(self) -> StateSection:
-        problems = [*self._name_problems(), *self._label_problems()]
+        problems = [*self._label_problems()]
         if problems:
             raise refusal(problems)
         return self
-
-    def _name_problems(self) -> list[Problem]:
-        if self.name not in RESERVED_NAMES:
-            return []
-        return [
-            Problem("name", f"the text '{self.name}'", f"allowed: a name other than {' and '.join(RESERVED_NAMES)}")
-        ]
 
     def _label_problems(self) -> Iterator[Problem]:
         healthy = self.fault == HEALTHY, self.severity == HEALTHY
@@ -154,40 +157,35 @@ class StateSection(Section):
             yield Problem("fault", f"healthy, with {shown}", allowed)
         if faulty and not self.sham and healthy[1]:
             yield Problem("severity", f"healthy, with {shown}", f"allowed: any other name, or no {shown}")
-        if not faulty and self.grows_from not in RESERVED_NAMES:
-            received = f"'{self.grows_from}', {'with sham: true' if self.sham else 'without damage'}"
-            yield Problem("grows_from", received, "only a state with damage or changes grows from another one")
+        if not faulty and self.grows is not None:
+            received = f"'{self.grows}', {'with acts: false' if self.sham else 'without damage'}"
+            yield Problem(
+                "grows", received, "only a state with damage or changes grows from another one; allowed: like"
+            )
 
     def _sham_problems(self) -> Iterator[Problem]:
         """Yield what a state in whose damage nothing is removed cannot be."""
         if self.changes:
-            yield Problem("changes", "a mapping, with sham: true", "allowed: none, or sham: false")
+            yield Problem("changes", "a mapping, with acts: false", "allowed: none, or acts: true")
         if not self.damages:
-            yield Problem("sham", "true, without damage", "allowed: damage, of which nothing is then removed; or false")
+            yield Problem("acts", "false, without damage", "allowed: damage, of which nothing is then removed; or true")
         for key in ("fault", "severity"):
             if getattr(self, key) != HEALTHY:
-                received = f"'{getattr(self, key)}', with sham: true"
-                yield Problem(key, received, "allowed: healthy, since nothing is removed; or sham: false")
+                received = f"'{getattr(self, key)}', with acts: false"
+                yield Problem(key, received, "allowed: healthy, since nothing is removed; or acts: true")
 
 
 def grown_from(states: tuple[StateSection, ...], state_id: int) -> int | None:
-    """Return the index of the state whose damage and changes a state contains, or None if it begins anew.
-
-    Changes alone grow from nothing that is not named.
-    """
-    state = states[state_id]
-    if state.grows_from not in RESERVED_NAMES:
-        return next(i for i in range(state_id) if states[i].name == state.grows_from)
-    if not state.damaged or state.grows_from == "none":
-        return None
-    return next((i for i in reversed(range(state_id)) if states[i].damaged), None)
+    """Return the index of the state whose damage and changes a state contains, or None if it begins anew."""
+    milder = states[state_id].grows
+    return None if milder is None else next(i for i, state in enumerate(states) if state.name == milder)
 
 
 def changes_of(states: tuple[StateSection, ...], state_id: int) -> tuple[tuple[int, Change], ...]:
-    """Return what a state changes, each with the state that says so: its own and, of other keys, its milder state's."""
-    found: dict[str, tuple[int, Change]] = {}
-    index: int | None = state_id
-    while index is not None:
-        found = {one.path: (index, one) for one in states[index].changes} | found
-        index = grown_from(states, index)
-    return tuple(found[path] for path in sorted(found))
+    """Return what a state changes, each with the state that says so first: itself, or a milder one."""
+    first = dict.fromkeys(states[state_id].changes, state_id)
+    older = grown_from(states, state_id)
+    while older is not None:
+        first |= {change: older for change in states[older].changes if change in first}
+        older = grown_from(states, older)
+    return tuple((index, change) for change, index in first.items())

@@ -25,7 +25,7 @@ SECTIONS = {
 }
 GROWTH = (
     "States of a specimen may grow from each other: a later state then keeps the damage of the earlier one "
-    "(`grows_from` in `config.yaml`). Single damages are in `damage/`."
+    "(`grows` in `config.yaml`). Single damages are in `damage/`."
 )
 FRICTION = {
     "off": "There is no friction between the flanks.",

@@ -75,7 +75,7 @@ class RootCracks(Fault):
         """Yield another angle than that of the milder crack on the same gear, less depth or a shorter run."""
         if not isinstance(milder, RootCracks) or milder.gear != self.gear or _apart(milder.teeth, self.teeth):
             return
-        kept = "as in the milder state, or grows_from: none"
+        kept = "as in the milder state, or like in place of grows"
         if milder.angle_deg != self.angle_deg:
             allowed = f"allowed: {number_text(milder.angle_deg)}, {kept}"
             yield Problem("angle_deg", number_text(self.angle_deg), allowed)

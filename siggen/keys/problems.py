@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from siggen.errors import Problem, counted
+from siggen.keys.former_keys import NOW
 from siggen.keys.wording import allowed_text, keys_of, models_in, words_in
 
 REFUSAL = "refusal"
@@ -118,6 +119,8 @@ def _unknown_key(path: str, value: object, known: Sequence[str]) -> Problem:
     """Return the problem of a key that does not exist at its place."""
     path = _short_path(path)
     key = path.rpartition(".")[2]
+    if key in NOW:
+        return Problem(path, received_text(value), NOW[key])
     hint = nearest(key, known) or ";"
     return Problem(path, received_text(value), f"there is no such key here{hint} known keys: {', '.join(known)}")
 

@@ -189,9 +189,7 @@ class Gearbox:
         damage = entries(state.damages, self._seat)
         entry: dict[str, Any] = {}
         if damage:
-            entry |= {"damage": damage, "sham": state.sham}
-        if damage and not state.sham:
-            entry["grows_from"] = "none"
+            entry |= {"damage": damage, "acts": not state.sham}
         return entry
 
     def _shapes(self, state: State) -> tuple[ShapeFault, ...]:
@@ -257,7 +255,7 @@ class Gearbox:
             if shapes := self._shapes(state):
                 place = [one.name for one in states].index(state.name)
                 states[place] = states[place].model_copy(update={
-                    "damage": (*states[place].damages, *shapes), "sham": state.sham, "grows_from": "none",
+                    "damage": (*states[place].damages, *shapes), "acts": not state.sham,
                     **({} if state.sham else {"fault": shapes[0].word, "severity": state.name}),
                 })  # fmt: skip
         return config.model_copy(update={"states": tuple(states)})

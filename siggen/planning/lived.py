@@ -77,7 +77,7 @@ def _state(life: Life, found: Lived, number: int) -> StateSection:
     damage = found.course.damage(time)
     severity = SEVERITIES[PHASES.index(found.phase(time))] if damage is not None else "healthy"
     fault = HEALTHY if damage is None else damage.words[0]
-    return StateSection(name=life.name_of(number), fault=fault, severity=severity, grows_from="none", damage=damage)
+    return StateSection(name=life.name_of(number), fault=fault, severity=severity, damage=damage)
 
 
 def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:

@@ -139,8 +139,8 @@ def _states_on(config: Config, name: str) -> tuple[StateSection, ...]:
 def _on(config: Config, state_id: int, name: str) -> StateSection:
     """Return a state with the damage of one mesh; what it grows from stays, though it may add nothing here."""
     state, older = config.states[state_id], config.grown_from(state_id)
-    milder = "none" if older is None else config.states[older].name
-    return state.model_copy(update={"damage": _own(state, name), "grows_from": milder})
+    milder = None if older is None else config.states[older].name
+    return state.model_copy(update={"damage": _own(state, name), "grows": milder})
 
 
 def _own(state: StateSection, name: str) -> tuple[Fault, ...] | Fault | None:

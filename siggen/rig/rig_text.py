@@ -146,16 +146,15 @@ def _states(rig: Rig) -> str:
         "  healthy: {}",
         "  healthy_again: {}           # the same gearbox measured a second time: what a paired comparison starts from",
         f"  {names[0]}:",
-        *(f"    {line}" for line in ("damage: &damage", *first, *(f"  {key}: {one}" for key, one in size(share[0])))),
+        *(f"    {line}" for line in ("damage:", *first, *(f"  {key}: {one}" for key, one in size(share[0])))),
     ]
-    for name, part in zip(names[1:], share[1:], strict=True):
+    for milder, name, part in zip(names, names[1:], share[1:], strict=False):
         own = ", ".join(f"{key}: {one}" for key, one in size(part))
-        lines += [f"  {name}: {{damage: {{<<: *damage, {own}}}}}"]
+        lines += [f"  {name}: {{grows: {milder}, damage: {{{own}}}}}"]
     own = ", ".join(f"{key}: {one}" for key, one in size(0.5))
     lines += [
-        "  sham:                       # its damage passes everywhere, with nothing removed: what finds it is a leak",
-        "    sham: true",
-        f"    damage: {{<<: *damage, {own}}}",
+        "  # its damage passes everywhere, with nothing removed: what finds it is a leak",
+        f"  sham: {{like: {names[0]}, acts: false, damage: {{{own}}}}}",
     ]
     return "\n".join(lines) + "\n"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from siggen.config import Config
@@ -12,8 +12,8 @@ from siggen.keys.problems import nearest
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
 
 
-def varied(text: str, states: Sequence[str]) -> Iterator[tuple[str, list[str], int]]:
-    """Yield label, overrides and state of every value of `KEY=1,1.9,2.8`.
+def varied(text: str, config: Config) -> Iterator[tuple[str, list[str], int]]:
+    """Yield label, overrides and state of every value of `KEY=1,1.9,2.8`; the state keeps its keys, and grows no more.
 
     Raises
     ------
@@ -25,11 +25,14 @@ def varied(text: str, states: Sequence[str]) -> Iterator[tuple[str, list[str], i
     if not key or len(values) < 2:
         allowed = "KEY=VALUES with at least two values, such as states.moderate.damage.first_height_mm=1,1.9,2.8"
         raise UsageError(f"--vary: received '{text}'; allowed: {allowed}")
+    states = config.state_names
     own = re.match(r"states\.([^.]+)\.", key)
     name = own[1] if own else states[-1]
     if name not in states:
         raise UsageError(f"--vary: received state '{name}'; allowed: {', '.join(states)}{nearest(name, states)}")
-    state, alone = states.index(name), [f"states.{name}.grows_from=none"] if own else []
+    state = states.index(name)
+    milder = config.states[state].grows if own else None
+    alone = [] if milder is None else [f"states.{name}.grows=null", f"states.{name}.like={milder}"]
     for value in values:
         yield f"{key}={value}", [*alone, f"{key}={value}"], state
 

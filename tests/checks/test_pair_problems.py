@@ -47,11 +47,12 @@ def test_an_empty_list_is_refused_where_someone_wrote_it_and_not_in_a_stored_con
 def test_damage_that_may_be_on_either_gear_is_checked_on_both() -> None:
     layered = "states.slight.damage={{kind: layered, gear: {}, layers: 1, pits_per_layer: 1, first_height_mm: 1.2, \
 semi_axis_face_mm: 0.2, semi_axis_profile_mm: 0.2, depth_mm: 0.1}}"
-    load_config(PLAIN, [layered.format("pinion")])
+    alone = ["states.moderate=null", "states.severe=null"]
+    load_config(PLAIN, [layered.format("pinion"), *alone])
     found = {}
     for gear in ("gear", "either"):
         with pytest.raises(ConfigError) as refused:
-            load_config(PLAIN, [layered.format(gear)])
+            load_config(PLAIN, [layered.format(gear), *alone])
         found[gear] = [str(problem) for problem in refused.value.problems]
     assert found["gear"] == found["either"]
 

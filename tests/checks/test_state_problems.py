@@ -33,7 +33,7 @@ def test_what_grows_is_checked_with_all_that_it_holds() -> None:
         "severity": "slight",
         "changes": {"dynamics.mesh.pit_edge_radius_mm": 0.5},
     }
-    second = {**first, "name": "second", "grows_from": "first", "changes": {"dynamics.backlash_um": {"add": -90}}}
+    second = {**first, "name": "second", "grows": "first", "changes": {"dynamics.backlash_um": {"add": -90}}}
     with pytest.raises(ConfigError, match=r"states\.second\.changes\.dynamics\.backlash_um: received -10"):
         load_config(minimal(states=by_name([{"name": "healthy"}, DAMAGED, first, second])))
 

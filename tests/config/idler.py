@@ -30,8 +30,8 @@ def idler(**changes: Any) -> dict[str, Any]:
     spall = {**SPALL, "teeth": [5], "face_length_mm": 20.0}
     states = [
         {"name": "healthy"},
-        {"name": "front", "severity": "severe", "grows_from": "none", "damage": {**spall, "gear": "first.b"}},
-        {"name": "behind", "severity": "severe", "grows_from": "none", "damage": {**spall, "gear": "second.b"}},
+        {"name": "front", "severity": "severe", "damage": {**spall, "gear": "first.b"}},
+        {"name": "behind", "severity": "severe", "damage": {**spall, "gear": "second.b"}},
     ]
     return mill(**{"machine": MACHINE, "states": by_name(states), **changes})
 

@@ -38,9 +38,9 @@ def planets(**changes: Any) -> dict[str, Any]:
         "operating_points": [{"speed_hz": 24.48, "torque_nm": 60.0}],
         "states": {
             "healthy": {},
-            "sun": {"severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "sun"}},
-            "planet": {"severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "planet"}},
-            "ring": {"severity": "severe", "grows_from": "none", "damage": {**SPALL, "gear": "ring"}},
+            "sun": {"severity": "severe", "damage": {**SPALL, "gear": "sun"}},
+            "planet": {"severity": "severe", "damage": {**SPALL, "gear": "planet"}},
+            "ring": {"severity": "severe", "damage": {**SPALL, "gear": "ring"}},
         },
         "sensors": {"ring": {"place": "ring", "axes": ["horizontal", "vertical"], "bits": None}},
     }

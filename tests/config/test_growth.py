@@ -30,23 +30,64 @@ def grown(*states: dict) -> list[int | None]:
     return [config.grown_from(i) for i in range(len(states))]
 
 
-def test_states_grow_from_the_nearest_earlier_one_with_damage():
-    more, most = {**LAYERS, "pits_per_layer": 8}, {**LAYERS, "pits_per_layer": 8, "layers": 3}
-    states = [state("healthy"), state("slight", LAYERS), state("moderate", more), state("severe", most)]
+def test_a_state_takes_over_the_keys_of_the_one_it_grows_from() -> None:
+    more = {"name": "moderate", "grows": "slight", "damage": {"pits_per_layer": 8}}
+    most = {"name": "severe", "grows": "moderate", "damage": {"layers": 3}}
+    states = [state("healthy"), state("slight", LAYERS), more, most]
     assert grown(*states) == [None, None, 1, 2]
+    severe = parsed(*states).sections["states"]["severe"]
+    assert (severe.damages[0].layers, severe.damages[0].pits_per_layer, severe.severity) == (3, 8, "severe")
+    assert grown(*reversed(states)) == [1, 2, None, None]  # whatever their order
 
 
-def test_a_healthy_state_between_is_passed_over():
-    assert grown(state("slight", LAYERS), state("healthy"), state("severe", CLUSTER)) == [None, None, 0]
+def test_a_state_without_grows_begins_anew_and_one_that_is_like_another_does_not_grow() -> None:
+    again = {"name": "elsewhere", "like": "slight", "severity": "slight", "damage": {"gear": "gear"}}
+    assert grown(state("slight", LAYERS), again, state("worse", CLUSTER)) == [None, None, None]
+    (damage,) = parsed(state("slight", LAYERS), again).sections["states"]["elsewhere"].damages
+    assert (damage.kind, damage.gear) == ("layered", "gear")
 
 
-def test_a_state_may_start_from_an_intact_gear_or_from_a_named_one():
-    states = [
+def test_a_sham_takes_over_damage_and_no_labels() -> None:
+    severe = state("severe", LAYERS, severity="large", fault="pitting")
+    sham = parsed(severe, {"name": "sham", "like": "severe", "acts": False}).sections["states"]["sham"]
+    assert (sham.sham, sham.fault, sham.severity) == (True, "healthy", "healthy")
+
+
+def test_a_kind_of_its_own_and_null_replace_the_damage_that_is_taken_over() -> None:
+    states = parsed(
         state("slight", LAYERS),
-        state("moderate", CLUSTER, grows_from="none"),
-        state("severe", {**LAYERS, "layers": 3}, grows_from="slight"),
-    ]
-    assert grown(*states) == [None, None, 0]
+        {"name": "other", "grows": "slight", "damage": {"kind": "crack", "depth_share": 0.2}},
+        {"name": "oil", "like": "slight", "fault": "lubrication", "damage": None, "changes": {"housing.wall_mm": 6}},
+    ).sections["states"]  # fmt: skip
+    assert states["other"].damages[0].kind == "crack"
+    assert not states["oil"].damages
+
+
+def test_a_change_that_is_taken_over_belongs_to_the_state_that_says_it() -> None:
+    first = {
+        "fault": "lubrication",
+        "changes": {"dynamics.backlash_um": [60, 70], "dynamics.motor_inertia_kg_m2": 5e-3},
+    }
+    second = {"grows": "first", "changes": {"dynamics.backlash_um": {"add": 9}}}
+    config = parse(minimal(states={"second": {"severity": "worse", **second}, "first": first})).config
+    assert config is not None
+    assert [(index, one.text) for index, one in config.changes_of(0)] == [
+        (0, "dynamics.backlash_um plus 9"), (1, "dynamics.motor_inertia_kg_m2 = 0.005"),
+    ]  # fmt: skip
+    assert parse(config.canonical()).config == config
+
+
+def test_a_circle_is_told_once_and_what_grows_from_it_is_left_alone() -> None:
+    circle = [{"name": "a", "grows": "b"}, {"name": "b", "like": "c"}, {"name": "c", "grows": "a"}]
+    (problem,) = parsed(state("slight", LAYERS), {"name": "d", "grows": "a"}, *circle).problems
+    assert problem.path == "states.a.grows"
+    assert problem.received == "a circle: a from b from c from a"
+
+
+def test_what_is_wrong_with_a_state_is_not_told_again_of_those_that_take_it_over() -> None:
+    others = {"name": "worse", "grows": "slight"}, {"name": "sham", "like": "worse", "acts": False}
+    (problem,) = parsed(state("slight", {**LAYERS, "layers": 0}), *others).problems
+    assert problem.path == "states.slight.damage.layers"
 
 
 def test_states_without_a_healthy_one_are_allowed():
@@ -72,10 +113,10 @@ def test_a_severity_may_have_any_other_name(severity: str) -> None:
 
 
 def test_a_milder_state_cannot_grow_from_a_more_severe_one():
-    (problem,) = parsed(state("severe", LAYERS), state("slight", CLUSTER)).problems
-    assert problem.path == "states.slight.grows_from"
-    assert "severe (severe), for a slight state" in problem.received
-    assert parsed(state("severe", LAYERS), state("slight", CLUSTER, grows_from="none")).problems == ()
+    (problem,) = parsed(state("severe", LAYERS), state("slight", CLUSTER, grows="severe")).problems
+    assert problem.path == "states.slight.grows"
+    assert "'severe' (severe), for a slight state" in problem.received
+    assert parsed(state("severe", LAYERS), state("slight", CLUSTER)).problems == ()
 
 
 @pytest.mark.parametrize(
@@ -88,10 +129,10 @@ def test_a_milder_state_cannot_grow_from_a_more_severe_one():
     ],
 )
 def test_a_state_must_add_pits_to_the_one_it_grows_from(milder, damage, key):
-    (problem,) = parsed(state("slight", milder), state("severe", damage)).problems
+    (problem,) = parsed(state("slight", milder), state("severe", damage, grows="slight")).problems
     assert problem.path == f"states.severe.damage.{key}"
     assert "no pits beyond those of slight" in problem.received
-    assert parsed(state("slight", milder), state("severe", damage, grows_from="none")).problems == ()
+    assert parsed(state("slight", milder), state("severe", damage)).problems == ()
 
 
 SPALL = {"kind": "spall", "face_length_mm": 8, "profile_length_mm": 1.2, "depth_mm": 0.2}
@@ -114,8 +155,8 @@ IRREGULAR = {"kind": "irregular", "profile_length_mm": [0.8, 1.4], "face_share":
 def test_a_spall_smaller_than_the_milder_one_is_no_growth(
     milder: dict, smaller: dict, larger: dict, key: str, tmp_path: Path
 ) -> None:
-    def planned(change: dict, **keys: str) -> Config:
-        severe = {"damage": {**milder, **change}, **keys}
+    def planned(change: dict, takes: str = "grows") -> Config:
+        severe = {takes: "slight", "damage": change}
         states = f"states:\n  others: null\n  healthy: {{}}\n  slight: {{damage: {milder}}}\n  severe: {severe}\n"
         file = tmp_path / "mine.yaml"
         file.write_text(f"extends: quickstart\nname: mine\n{states}")
@@ -125,7 +166,7 @@ def test_a_spall_smaller_than_the_milder_one_is_no_growth(
         ConfigError, match=rf"states\.severe\.damage\.{key}: received no spalls beyond .*slight.*\(line 7\)"
     ):
         planned(smaller)
-    planned(smaller, grows_from="none")
+    planned(smaller, "like")
     planned({})  # as large
     planned(larger)
 
@@ -134,4 +175,4 @@ def test_a_spall_smaller_than_the_milder_one_is_no_growth(
     "damage", [{**CLUSTER, "count": 10}, {**CLUSTER, "teeth": 2}, {**CLUSTER, "gear": "gear"}, LAYERS]
 )
 def test_pits_elsewhere_or_more_of_them_are_growth(damage):
-    assert parsed(state("slight", CLUSTER), state("severe", damage)).problems == ()
+    assert parsed(state("slight", CLUSTER), state("severe", damage, grows="slight")).problems == ()

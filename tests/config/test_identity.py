@@ -67,7 +67,7 @@ CHANGES = [
     ("operating_points__0__torque_nm", 61),
     ("states", {"healthy": {}, "mild": {**MINIMAL["states"]["slight"], "severity": "slight"}}),
     ("states__slight__damage__depth_mm", 0.41),
-    ("states__slight__grows_from", "none"),
+    ("states__slight__severity", "first"),
     ("sensors__bearing__bits", None),
     ("sensors__bearing__noise", {"floor_m_s2": 20}),
     ("sensors__bearing__axes", ["horizontal"]),

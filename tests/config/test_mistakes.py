@@ -287,24 +287,22 @@ MISTAKES = [
         "nothing, with fault pitting",
         "fault and severity both",
     ),
-    ({"states__none": {}}, "states.none", "the name 'none'", "other than previous"),
     ({"states": [{"name": "healthy"}]}, "states", "a list of 1", "write states: {healthy: {}}"),
     ({"sensors": [{"name": "lid", "place": "lid"}]}, "sensors", "a list of 1", "write sensors: {lid: {place: lid}}"),
     ({"states__healthy__name": "sound"}, "states.healthy.name", "'sound'", "the name stands before"),
-    ({"states__slight__grows_from": "nobody"}, "states.slight.grows_from", "'nobody'", "an earlier state with damage"),
-    ({"states__slight__grows_from": "slight"}, "states.slight.grows_from", "'slight'", "an earlier state with damage"),
+    ({"states__slight__grows": "haelthy"}, "states.slight.grows", "'haelthy'", "did you mean 'healthy'"),
+    ({"states__slight__grows": "slight"}, "states.slight.grows", "the state itself", "another state: healthy"),
+    ({"states__slight__like": 5}, "states.slight.like", "5", "the name of another state: healthy"),
+    ({"states__slight__grows": "healthy"}, "states.slight.grows", "'healthy', which has neither", "with damage or"),
     (
-        {"states__slight__grows_from": "healthy"},
-        "states.slight.grows_from",
-        "'healthy'",
-        "an earlier state with damage",
+        {"states__healthy__severity": "slight", "states__healthy__grows": "slight", "states__healthy__like": "slight"},
+        "states.healthy.grows",
+        "'slight' beside like: slight",
+        "one of them",
     ),
-    (
-        {"states__healthy__grows_from": "slight"},
-        "states.healthy.grows_from",
-        "'slight', without damage",
-        "only a state with",
-    ),
+    ({"states__again": {"grows": "healthy"}}, "states.again.grows", "'healthy', without damage", "allowed: like"),
+    ({"states__slight__grows_from": "none"}, "states.slight.grows_from", "'none'", "write grows: NAME"),
+    ({"states__slight__sham": True}, "states.slight.sham", "true", "write acts: false"),
     (
         {"sensors__bearing__axes": ["vertical", "vertical"]},
         "sensors.bearing.axes",
@@ -359,7 +357,8 @@ def test_a_mistake_in_one_state_hides_neither_the_others_nor_what_follows_from_t
 
 def test_a_state_that_is_wrong_does_not_make_its_name_unknown():
     raw = minimal(states__slight__damage__depth_mm=-1)
-    raw["states"]["severe"] = {"grows_from": "slight", "damage": CLUSTER}
+    raw["states"]["severe"] = {"grows": "slight", "damage": CLUSTER}
+    raw["states"]["worst"] = {"grows": "severe", "damage": {"count": 99}}
     assert [problem.path for problem in parse(raw).problems] == ["states.slight.damage.depth_mm"]
 
 

@@ -40,8 +40,8 @@ def with_states(*damage: dict[str, Any] | None, **changes: Any) -> Config:
     states = [{"name": "first"}]
     for number, one in enumerate(damage):
         severity = {} if one is None else {"severity": "moderate"}
-        own = {} if one is None else {"damage": {k: v for k, v in one.items() if k != "grows_from"}}
-        grown = {} if one is None else {"grows_from": one.get("grows_from", "none")}
+        own = {} if one is None else {"damage": {k: v for k, v in one.items() if k != "grows"}}
+        grown = {"grows": f"state-{number - 1}"} if one is not None and one.get("grows") else {}
         states.append({"name": f"state-{number}", **severity, **grown, **own})
     return config(states=by_name(states), **{"dynamics__model": "8dof", "fs_hz": 25600.0, "duration_s": 1.0, **changes})
 
@@ -187,8 +187,8 @@ def test_a_grown_spall_takes_the_place_of_the_milder_one() -> None:
     longer = [1.0, 4.0]
     made = with_states(
         {**SPALL, "element": "inner", "length_mm": drawn},
-        {**SPALL, "element": "inner", "length_mm": longer, "grows_from": "previous"},
-        {**SPALL, "grows_from": "previous"},
+        {**SPALL, "element": "inner", "length_mm": longer, "grows": True},
+        {**SPALL, "grows": True},
     )
     slight, severe, both = (specimen_state(made, draw_specimen(made, 0), n).parts for n in (1, 2, 3))
     assert [len(parts) for parts in (slight, severe, both)] == [1, 1, 2]

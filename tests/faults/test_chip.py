@@ -53,7 +53,7 @@ def test_a_missing_tooth_is_simulated_and_strikes_once_per_turn() -> None:
 def test_a_small_chip_shows_where_its_pair_leaves_and_no_teeth_part() -> None:
     """Against its sham, which starts at the same angle and differs in nothing else."""
     config = quick(CHIP)
-    sham = (config.states[0], config.states[1].model_copy(update={"sham": True}))
+    sham = (config.states[0], config.states[1].model_copy(update={"acts": False}))
     (whole,), (chipped,) = records(config.model_copy(update={"states": sham}), [1]), records(config, [1])
     assert chipped.labels["fault"] == "chip"
     assert chipped.labels["contact_loss_share"] == 0.0

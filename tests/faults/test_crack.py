@@ -77,7 +77,10 @@ def test_its_row_has_depth_angle_and_run_and_stands_beside_pits() -> None:
             [cracked(depth_share=0.2), cracked(depth_share=0.3, angle_deg=60)],
             ("states.moderate.damage.angle_deg", "60", "45, as in the milder state"),
         ),
-        ([cracked(depth_share=0.2), cracked(depth_share=0.2)], ("states.moderate.damage.depth_share", "grows_from")),
+        (
+            [cracked(depth_share=0.2), cracked(depth_share=0.2)],
+            ("states.moderate.damage.depth_share", "like: slight in place of grows"),
+        ),
         ([cracked(depth_share=0.2), cracked(depth_share=0.1)], ("states.moderate.damage.depth_share", "at least 0.2")),
         (
             [cracked(depth_share=UNIFORM), cracked(depth_share=[0.05, 0.2])],

@@ -28,8 +28,10 @@ DRAWN_PIT = {
 
 
 def config_with(*damages: Mapping[str, Any], seed: int = 5, law: str = "pairs") -> Config:
-    names = ("slight", "moderate", "severe")
-    states = [{"name": "healthy"}, *({"name": n, "damage": dict(d)} for n, d in zip(names, damages, strict=False))]
+    """Return a configuration whose states have these damages, each grown from the one before."""
+    chain = (("slight", None), ("moderate", "slight"), ("severe", "moderate"))
+    grown = ({"name": n, "grows": m, "damage": dict(d)} for (n, m), d in zip(chain, damages, strict=False))
+    states = [{"name": "healthy"}, *grown]
     return load_config(
         {
             "name": "test",

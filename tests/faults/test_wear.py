@@ -92,7 +92,7 @@ def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -
 
 def test_worn_records_tell_a_loss_of_stiffness_that_grows_and_a_sham_none() -> None:
     config = config_with({**WEAR, "depth_um": 5.0}, WEAR, {**WEAR, "depth_um": 25.0})
-    states = (*config.states[:3], config.states[3].model_copy(update={"sham": True}))
+    states = (*config.states[:3], config.states[3].model_copy(update={"acts": False}))
     config = config.model_copy(update={"states": states})
     loss = [specimen_state(config, draw_specimen(config, 0), n).static.largest_loss(60.0) for n in range(4)]
     assert loss[0] == loss[3] == 0.0

@@ -17,6 +17,7 @@ from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.config import Config
 from siggen.config.inheritance import inherited
+from siggen.config.state_keys import complete_states
 from siggen.config.yaml_source import read_yaml
 from siggen.planning.gearbox import pair_of
 from siggen.planning.plan import SPLITS, split_of
@@ -33,10 +34,8 @@ THROUGH = "through_100"
 def preset(name: str, states: tuple[str, ...], **changes: Any) -> Config:
     """Return a preset with some of its states; those that lose the state they grew from begin with an intact gear."""
     raw = inherited(read_yaml(CONFIGS / f"{name}.yaml"), CONFIGS)
-    kept = {name: {**state} for name, state in raw["states"].items() if name in states}
-    for state in kept.values():
-        if "damage" in state:
-            state["grows_from"] = "none"
+    complete = complete_states(raw["states"])[0]
+    kept = {name: {**state, "grows": None} for name, state in complete.items() if name in states}
     return load_config({**raw, "states": kept, "duration_s": 0.3, **changes})
 
 

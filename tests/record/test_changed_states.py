@@ -79,7 +79,7 @@ def test_factor_and_shift_act_on_what_the_healthy_gearbox_drew() -> None:
 
 def test_a_drawn_change_belongs_to_gearbox_and_state_and_stays_while_it_grows() -> None:
     wide = {"dynamics.backlash_um": {"add": [10, 200]}}
-    worse = {"name": "worse", "fault": "lubrication", "severity": "severe", "grows_from": "hot"}
+    worse = {"name": "worse", "fault": "lubrication", "severity": "severe", "grows": "hot"}
     chosen = config(changed(wide), {**worse, "changes": {"dynamics.motor_inertia_kg_m2": {"times": 2}}})
     drawn = [[draw_specimen(state_config(chosen, g, s), g).dynamics for s in range(3)] for g in range(2)]
     assert drawn[0][1].backlash_um == drawn[0][2].backlash_um != drawn[1][1].backlash_um

@@ -73,7 +73,8 @@ def test_each_is_the_one_that_it_is_alone() -> None:
 
 def test_labels_say_each_kind() -> None:
     chosen = config(
-        {"name": "slight", "damage": PITS}, state(SPALL, {**PITS, "pits": [{**PITS["pits"][0], "tooth": 5}]})
+        {"name": "slight", "damage": PITS},
+        state(SPALL, {**PITS, "pits": [{**PITS["pits"][0], "tooth": 5}]}, grows="slight"),
     )
     labels = record(chosen, 2).labels
     assert (labels["fault"], labels["faulty_gear"]) == ("combined", "several")
@@ -120,7 +121,7 @@ def test_each_fault_has_its_rows_in_one_table() -> None:
 
 
 def test_a_sham_may_have_several() -> None:
-    sham = record(config({"name": "sham", "sham": True, "damage": [PITS, SPALL]}))
+    sham = record(config({"name": "sham", "acts": False, "damage": [PITS, SPALL]}))
     healthy = record(config({"name": "again"}))
     assert all(sham.channels[name].tobytes() == healthy.channels[name].tobytes() for name in healthy.channels)
 

@@ -37,7 +37,7 @@ SPALL = {
 }  # fmt: skip
 STATES = [
     {"name": "healthy"}, {"name": "slight", "damage": pits(9, 0.3)}, {"name": "severe", "damage": pits(36, 0.4)},
-    {"name": "through", "severity": "severe", "grows_from": "none", "damage": SPALL},
+    {"name": "through", "severity": "severe", "damage": SPALL},
 ]  # fmt: skip
 
 

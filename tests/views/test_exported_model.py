@@ -190,7 +190,7 @@ def test_scipy_gives_the_motion_of_two_stages_from_their_file_alone() -> None:
 def planetary(**changes: object) -> dict:
     """Return a set with friction, errors and pins out of place; of one state every tooth of the sun is spalled."""
     damage = {**PLANET_SPALL, "gear": "sun", "teeth": 25, "centre_height_mm": "pitch"}
-    states = [{"name": "healthy"}, {"name": "severe", "grows_from": "none", "damage": damage}]
+    states = [{"name": "healthy"}, {"name": "severe", "damage": damage}]
     friction = {**planets()["dynamics"], "friction": {"model": "mixed_ehl"}}
     section = {"ring_teeth": 77, "pin_error_um": 10}
     made = {"manufacture": {"accuracy_class": 6}, "states": by_name(states), "dynamics": friction, "planetary": section}

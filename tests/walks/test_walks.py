@@ -30,7 +30,8 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
     drawing = "--teeth 18,47 --module 3 --face-width 20 --speed 33,36 --torque 30,45 --sensors 1"
     walk(folder, f"siggen init {drawing} --out rig.yaml")
     raw = yaml.safe_load((folder / "rig.yaml").read_text())
-    raw["states"] = {name: state for name, state in raw["states"].items() if name in (*STATES, "others")}
+    raw["states"] = {**raw["states"], "healthy_again": None, "moderate": None, "sham": None}
+    raw["states"]["severe"] |= {"grows": "slight"}
     (folder / "rig.yaml").write_text(yaml.safe_dump(raw, sort_keys=False))
     walk(folder, f"siggen generate rig.yaml {SIZE} --out set --engine serial")
     return folder

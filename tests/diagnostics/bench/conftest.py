@@ -34,7 +34,7 @@ CONFIG = {
         "healthy": {},
         "healthy_again": {},
         "pits": {"severity": "slight", "damage": PITS},
-        "sham": {"sham": True, "damage": PITS},
+        "sham": {"acts": False, "damage": PITS},
     },
 }
 OTHERS = {
