@@ -12,10 +12,7 @@ from typing import Any, NamedTuple
 from siggen.config import Dynamics, PlateHousing, Shafts
 from siggen.dynamics.housing.layout import Contents
 from siggen.errors import Problem
-from siggen.gearbox.housing_numbers import PlateNumbers
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, bounds
-from siggen.specimen.housing_layout import (
+from siggen.gearbox.housing_layout import (
     ABOVE_SHARE,
     CLEARANCE_M,
     IRON_WALL,
@@ -25,6 +22,9 @@ from siggen.specimen.housing_layout import (
     housing_contents,
     least_wall_m,
 )
+from siggen.gearbox.housing_numbers import PlateNumbers
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import Number, bounds
 
 THICKEST = 0.25
 """Thickness of a wall over the least inner length of its box; a thicker one is no plate."""

@@ -11,10 +11,10 @@ from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.config.short_form import names_in
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.errors import Problem
+from siggen.gearbox.mode_table import BASE, DRIVE, ModesRefusal, ModeTable, mode_table, seats_of, shape_column
 from siggen.keys.problems import nearest
 from siggen.sensing.inputs import MOTION
 from siggen.sensors.sensor import SensorBase
-from siggen.specimen.mode_table import BASE, DRIVE, ModesRefusal, ModeTable, mode_table, seats_of, shape_column
 
 KEY = "housing.modes"
 

@@ -16,6 +16,7 @@ from siggen.config import Config, Coupling, Housing, ModalHousing, Pair, PlainRo
 from siggen.config.changes import SECTIONS, changed_sections
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
 from siggen.errors import counted
+from siggen.gearbox.mode_table import mode_table
 from siggen.gearbox.pair import gear_pair
 from siggen.gearbox.planetary import RIM_MODULES
 from siggen.gears.geometry.gear_pair import GearPair
@@ -26,7 +27,6 @@ from siggen.keys.usual import unusual
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
 from siggen.sensors.sensor import SensorBase
-from siggen.specimen.modal_housing import given_modes
 
 FORM_FACTOR = 2.5
 """Of the nominal stress at the tooth root, F_t/(b m) Y; 2.1 to 3 for spur gears of 17 teeth and more (ISO 6336-3)."""
@@ -338,7 +338,7 @@ def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
     gears = _discs_kg(pair)
     if isinstance(housing, ModalHousing):
         what, hint = "mass that a seat feels over both discs", "are shapes in 1/sqrt(kg), not of unit length?"
-        masses = [mass / gears for mass in given_modes(housing).seat_masses_kg]
+        masses = [mass / gears for mass in mode_table(housing.modes).seat_masses_kg]
         yield Quantity("housing.modes", what, _ends(masses), 0.5, 500.0, hint)
         return
     if isinstance(housing, RigidHousing):

@@ -53,7 +53,7 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     reaches = (one.reach_pitches(pair) for state in own.states for one in state.damages)
     reach = max(reaches, default=CORNER_REACH_PITCHES)
     specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
-    assembled = structure(own, specimen)
+    assembled = structure(specimen)
     behind = tuple(
         MeshBehind(_tabulated(one.pair, specimen, assembled), float(turning))
         for one, turning in zip(specimen.behind, specimen.shaft_turns[1:-1], strict=True)

@@ -261,12 +261,12 @@ def _path_text(config: Config) -> str:
 
 
 def _housing_text(config: Config) -> str:
-    from siggen.specimen.modal_housing import mode_count  # not for those who read: it loads the model of a housing
+    from siggen.gearbox.mode_table import mode_table  # not for those who read: it loads the model of a housing
 
     through = "Bearing forces reach the sensors through"
-    if config.has_plates:
+    if config.housing.kind != "modal":
         return f"{through} a box of plates on bolts, new for every specimen (`housing`). "
-    modes = counted(mode_count(config.housing), "mode")
+    modes = counted(mode_table(config.housing.modes).frequency_hz.size, "mode")
     return f"{through} a housing of which {modes} were given, the same for every specimen (`housing.modes`). "
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated
 
-from siggen.config import Housing, ModalHousing, PlateHousing, RigidHousing
+from siggen.config import PlateHousing
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within
@@ -57,10 +57,8 @@ class PlateNumbers(PlateHousing):
     feet: FootNumbers = FootNumbers()
 
 
-def drawn_housing(section: Housing, uniform: Callable[[str], float]) -> PlateNumbers | ModalHousing | RigidHousing:
-    """Return the housing of one gearbox; the damping of plates belongs to modes and stays as it is."""
-    if isinstance(section, (RigidHousing, ModalHousing)):
-        return draw(section, uniform, "housing")
+def plate_numbers(section: PlateHousing, uniform: Callable[[str], float]) -> PlateNumbers:
+    """Return the numbers of one gearbox's box; the damping of plates belongs to modes and stays as it is."""
     numbers: PlateNumbers = draw(PlateNumbers.model_construct(**dict(section)), uniform, "housing")
     material = section.material
     if material == "any":

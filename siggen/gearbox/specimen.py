@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
 
-from siggen.config import Dynamics, Gears, ModalHousing, Planetary, RigidHousing, Stage, Stiffness
+from siggen.config import Dynamics, Gears, Planetary, Stage, Stiffness
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
 from siggen.dynamics.time.sampling import Sampling
-from siggen.gearbox.housing_numbers import PlateNumbers
+from siggen.gearbox.housing import Housing
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.geometry.planetary import PlanetarySet
@@ -91,7 +91,7 @@ class Specimen:
     meshes : in the order of power; of a planetary set those of sun and planet, and of planet and ring
     law : how all teeth push and rub
     train, planets : its shafts; one of both
-    housed : whether a housing carries its bearings, not the ground
+    housing : what carries its bearings; None for the ground
     bearing_point : the operating point under whose load its bearings stand; None where they have one stiffness
     """
 
@@ -102,15 +102,19 @@ class Specimen:
     law: ToothLaw
     train: PairTrain | None
     planets: PlanetaryGears | None
-    housed: bool
     gears: Gears
     stiffness: Stiffness
     dynamics: Dynamics
-    housing: PlateNumbers | ModalHousing | RigidHousing
+    housing: Housing | None
     sensors: tuple[SensorBase, ...]
     bearing_point: OperatingPoint | None = None
     stages: tuple[Stage, ...] = ()
     planetary: Planetary | None = None
+
+    @property
+    def housed(self) -> bool:
+        """Whether a housing carries its bearings, not the ground."""
+        return self.housing is not None
 
     @property
     def pair(self) -> GearPair:

@@ -9,7 +9,7 @@ from siggen.config.planetary import RING
 from siggen.config.planetary_problems import set_of
 from siggen.config.stages import Stage, with_idlers
 from siggen.dynamics.time.sampling import Sampling
-from siggen.gearbox.housing_numbers import drawn_housing
+from siggen.gearbox.housing import drawn_housing
 from siggen.gearbox.pair import gear_pair, mesh_options, stiffness_options
 from siggen.gearbox.planetary import planetary_stage
 from siggen.gearbox.specimen import OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
@@ -54,6 +54,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         for (name, one), stage in zip(pairs, [None, *stages, *([None] if planets else [])], strict=True)
     )
     balls = ball_bearings(dynamics)
+    sensors = tuple(one.drawn(sensor) for one in own.sensors)
     return Specimen(
         specimen_id,
         names=own.names,
@@ -62,12 +63,11 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         law=tooth_law(dynamics),
         train=_train(dynamics, stages, meshes) if planets is None else None,
         planets=planets,
-        housed=own.dynamics.model == "casing",
         gears=first,
         stiffness=stiffness,
         dynamics=dynamics,
-        housing=drawn_housing(own.housing, supports),
-        sensors=tuple(one.drawn(sensor) for one in own.sensors),
+        housing=drawn_housing(own, specimen_id, dynamics, pair, sensors),
+        sensors=sensors,
         bearing_point=draw_operating_point(own, specimen_id, 0) if balls else None,
         stages=stages,
         planetary=section,

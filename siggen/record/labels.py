@@ -81,11 +81,11 @@ def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
     oil = {"oil": specimen.law.friction.oil} if draws_oil(config) else {}
     positions = {i: sensor.place_on_casing_mm for i, sensor in enumerate(specimen.sensors)}
     places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
-    return {**_pair_labels(config, specimen), **oil, **_housing_labels(config, specimen), **places}
+    return {**_pair_labels(config, specimen), **oil, **_housing_labels(specimen), **places}
 
 
-def _housing_labels(config: Config, specimen: Specimen) -> dict[str, object]:
-    housing = specimen_housing(config, specimen)
+def _housing_labels(specimen: Specimen) -> dict[str, object]:
+    housing = specimen_housing(specimen)
     if housing is None or housing.box is None:
         return {}
     return {

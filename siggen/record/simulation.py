@@ -75,7 +75,7 @@ def at_point(
     if specimen.bearing_point is None:
         return specimen, state
     specimen = specimen.under(draw_operating_point(config, record.specimen_id, record.operating_point_id))
-    return specimen, replace(state, mesh=state.mesh.on(structure(config, specimen)))
+    return specimen, replace(state, mesh=state.mesh.on(structure(specimen)))
 
 
 def _stream(
@@ -104,17 +104,17 @@ def _stream(
                 needs(config.sensors, SHAFT),
             ),
             excitation=driven.excitation,
-            settle_s=_settle_s(config, specimen, motion),
-            history_s=history_s(config, specimen),
+            settle_s=_settle_s(specimen, motion),
+            history_s=history_s(specimen),
             ahead=AHEAD,
         )
     stepped = {} if error is None else {"integration_error": error, "integration_error_of": error_of}
     return stream, point, stepped
 
 
-def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
+def _settle_s(specimen: Specimen, motion: Motion) -> float:
     """Return the least time before the record, in which motion and filters forget the start."""
-    return both_settled_s(motion.transient_s, history_s(config, specimen))
+    return both_settled_s(motion.transient_s, history_s(specimen))
 
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:

@@ -102,7 +102,7 @@ def specimen_background(
     channels : by name
     frequency_hz : (k,)
     """
-    machine = linear_train(config, specimen)
+    machine = linear_train(specimen)
     if section.base is not None and BASE in machine.body:
         machine = on_base(machine, _base(section.base))
     assembled = linear_structure(machine)

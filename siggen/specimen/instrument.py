@@ -118,27 +118,27 @@ class Instrument:
     background: SpecimenBackground | None = None
 
 
-def settle_s(config: Config, specimen: Specimen) -> float:
+def settle_s(specimen: Specimen) -> float:
     """Return the time before the first sample over which what lies between bearings and sensors settles [s]."""
     measured = any(isinstance(sensor.through, MeasuredPath) for sensor in specimen.sensors)
-    return max(housing_settle_s(config, specimen), MEMORY_S if measured else 0.0)
+    return max(housing_settle_s(specimen), MEMORY_S if measured else 0.0)
 
 
-def history_s(config: Config, specimen: Specimen) -> float:
+def history_s(specimen: Specimen) -> float:
     """Return the history that the instrument needs [s].
 
     The longest memory of a filter counts whatever the sensors are: the motion begins before it. Otherwise a sensor
     that is added would move all others by what is left of the start.
     """
-    return max(settle_s(config, specimen), CHAIN_HISTORY_S)
+    return max(settle_s(specimen), CHAIN_HISTORY_S)
 
 
 def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
     section = drawn_background(config, specimen.specimen_id)
-    history = max(history_s(config, specimen), background_history_s(section))
+    history = max(history_s(specimen), background_history_s(section))
     blocks = block_grid(round(history * config.fs_hz), config.samples)
-    housing = specimen_housing(config, specimen)
+    housing = specimen_housing(specimen)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
     named = partial(_named, config.seed, specimen.specimen_id)
     grid = frequencies(blocks.memory, config.fs_hz)
@@ -151,7 +151,7 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
             channel, ways[sensor.channel_name(axis)] = _channel(sensor, axis, constant(gain), draw, paths)
             channels.append(channel)
     if config.turns_in_housing:
-        through = forces_through_housing(config, specimen, ways, grid)
+        through = forces_through_housing(specimen, ways, grid)
         channels = [_on_set(channel, through[channel.name], grid) for channel in channels]
     background = None
     if section is not None:

@@ -106,7 +106,7 @@ class MadeGears:
         ValueError
             As `structure`.
         """
-        return structure(self._whole, self._specimen)
+        return structure(self._specimen)
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
         """Return the errors; None for perfect gears.

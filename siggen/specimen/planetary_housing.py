@@ -14,13 +14,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.config import RigidHousing
 from siggen.dynamics.structure.drivetrain import Drivetrain
 from siggen.dynamics.structure.makers import CENTRAL, GROUND, Housing, planetary_train, rigid_housing
 from siggen.dynamics.structure.structure import matrices
+from siggen.gearbox.housing import CASING_GYRATION, Block
 from siggen.gearbox.planetary import ring_outer_radius_m
-from siggen.planning.specimen import Specimen
-from siggen.specimen.rigid_casing import CASING_GYRATION, casing_numbers
+from siggen.gearbox.specimen import Specimen
+from siggen.gears.geometry.internal_pair import InternalPair
 
 AXIS = (0.0, 0.0)
 """Of all bodies: the middle of the housing."""
@@ -34,7 +34,7 @@ def set_in_housing(specimen: Specimen, housing: Housing | None) -> Drivetrain:
     return planetary_train(replace(stage, places_turns=tuple(i / count for i in range(count))), housing)
 
 
-def rigid_housing_of_set(specimen: Specimen) -> Housing:
+def rigid_housing_of_set(block: Block, ring: InternalPair) -> Housing:
     """Return a block on bolts round a set, whose axis lies in its middle.
 
     Raises
@@ -42,10 +42,7 @@ def rigid_housing_of_set(specimen: Specimen) -> Housing:
     ValueError
         If the bolts leave it free to move.
     """
-    assert isinstance(specimen.housing, RigidHousing)
-    assert specimen.planets is not None
-    extent_m = ring_outer_radius_m(specimen.planets.ring) / CASING_GYRATION
-    casing = replace(casing_numbers(specimen.housing, extent_m, specimen.sensors), pinion_place_m=AXIS)
+    casing = replace(block.casing(ring_outer_radius_m(ring) / CASING_GYRATION), pinion_place_m=AXIS)
     return rigid_housing(casing, dict.fromkeys(CENTRAL, AXIS))
 
 

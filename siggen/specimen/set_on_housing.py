@@ -11,18 +11,17 @@ from collections.abc import Mapping
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config
 from siggen.dynamics.structure.drivetrain import Modes
 from siggen.dynamics.structure.makers import SEATS_OF_SET, Housing, supports_of_set
 from siggen.dynamics.structure.structure import Structure
-from siggen.planning.specimen import Specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.specimen.background import mean_meshes
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.structure import linear_structure, linear_train, specimen_body
 
 
 def forces_through_housing(
-    config: Config, specimen: Specimen, channels: Mapping[str, ChannelWay], frequency_hz: FloatArray
+    specimen: Specimen, channels: Mapping[str, ChannelWay], frequency_hz: FloatArray
 ) -> dict[str, ComplexArray]:
     """Return channel -> response (`SEATS_OF_SET`, k) at frequencies (k,) to what a set presses held seats with.
 
@@ -31,7 +30,7 @@ def forces_through_housing(
     ValueError
         If a channel shows what the machine does not have.
     """
-    housing, assembled = specimen_body(config, specimen), linear_structure(linear_train(config, specimen))
+    housing, assembled = specimen_body(specimen), linear_structure(linear_train(specimen))
     assert housing is not None
     assert specimen.planets is not None
     supports = supports_of_set(specimen.planets.stage, None)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from siggen.config import RigidHousing
 from siggen.dynamics.structure.gear_stage import PLACES, Point
 from siggen.dynamics.structure.makers import Housing, rigid_housing
-from siggen.planning.specimen import Specimen
-from siggen.specimen.rigid_casing import casing_numbers
+from siggen.gearbox.housing import Block
+from siggen.gearbox.specimen import Specimen
 
 LEAST_SPAN = 0.5 / min(PLACES[0], PLACES[1] - PLACES[0])
 """Distance of the bearings of a common shaft over both faces, from which on neither gears nor bearings overlap."""
@@ -22,11 +21,10 @@ def casing_round_shafts(specimen: Specimen) -> Housing:
     ValueError
         If the bolts leave it free to move.
     """
-    assert isinstance(specimen.housing, RigidHousing)
+    assert isinstance(specimen.housing, Block)
     places = axis_places_m(specimen)
     across = [place[0] for place in places.values()]
-    casing = casing_numbers(specimen.housing, max(across) - min(across), specimen.sensors)
-    return rigid_housing(casing, places)
+    return rigid_housing(specimen.housing.casing(max(across) - min(across)), places)
 
 
 def axis_places_m(specimen: Specimen) -> dict[str, Point]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
 
-from siggen.config import Config
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.drivetrain import TURNING, Drivetrain, Place, Way
@@ -13,7 +11,8 @@ from siggen.dynamics.structure.gear_stage import GearStage
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.makers import Housing, planetary_train, train
 from siggen.dynamics.structure.structure import Structure, assembled
-from siggen.planning.specimen import Specimen
+from siggen.gearbox.housing import Block
+from siggen.gearbox.specimen import Specimen
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.loaded_bearings import loaded_bearings, on_loaded_bearings
 from siggen.specimen.planetary_housing import rigid_housing_of_set, set_in_housing
@@ -21,15 +20,15 @@ from siggen.specimen.specimen_housing import moving_with_gears
 from siggen.specimen.staged_structure import casing_round_shafts
 
 
-def structure(config: Config, specimen: Specimen) -> Structure:
+def structure(specimen: Specimen) -> Structure:
     """Return the structure of a drawn specimen.
 
     A planetary set stands on the ground: its frame turns in its housing (`planetary_housing`).
     """
     if specimen.planets is not None:
         return assembled(planetary_train(specimen.planets.stage))
-    found = assembled(specimen_train(specimen, specimen_body(config, specimen)))
-    if specimen_housing(config, specimen) is None:
+    found = assembled(specimen_train(specimen, specimen_body(specimen)))
+    if specimen.housing is None or isinstance(specimen.housing, Block):
         return found
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
     shafts = {name.replace("bearing", "shaft"): shaft_direction(found, name) for name in found.bearing_directions}
@@ -51,9 +50,9 @@ def moved_along(specimen: Specimen) -> tuple[str, ...]:
     return tuple(f"{shaft.bearing}/axial" for shaft in specimen.names.shafts) if grounded and helical else ()
 
 
-def linear_train(config: Config, specimen: Specimen) -> Drivetrain:
+def linear_train(specimen: Specimen) -> Drivetrain:
     """Return the machine on which small forces act, with what carries its bearings; it is seen where that moves."""
-    housing = specimen_body(config, specimen)
+    housing = specimen_body(specimen)
     return specimen_train(specimen, housing) if specimen.planets is None else set_in_housing(specimen, housing)
 
 
@@ -75,16 +74,16 @@ def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
     return loaded_bearings(specimen.train, specimen.pair, specimen.bearing_point.torque_nm, housed=specimen.housed)
 
 
-@lru_cache(maxsize=4)  # structure and background of a gearbox ask for it
-def specimen_body(config: Config, specimen: Specimen) -> Housing | None:
+def specimen_body(specimen: Specimen) -> Housing | None:
     """Return what carries the bearings of a specimen, sensors and entries on it included; None for the ground."""
-    if not specimen.housed:
-        return None
-    pair, modes = specimen.pair, specimen_housing(config, specimen)
+    pair, modes = specimen.pair, specimen_housing(specimen)
     if modes is not None:
         return moving_with_gears(modes)
+    if specimen.housing is None:
+        return None
     if specimen.planets is not None:
-        return rigid_housing_of_set(specimen)
+        assert isinstance(specimen.housing, Block)
+        return rigid_housing_of_set(specimen.housing, specimen.planets.ring)
     housing = casing_round_shafts(specimen)
     if specimen.behind:
         return housing

@@ -200,7 +200,7 @@ def _first_pitches(motion: Motion, rotation: Rotation, time_s: float) -> float:
 def _time_grid(config: Config, specimen: Specimen, motion: Motion, steps: int) -> dict[str, Any]:
     """Return rate and steps; the transient lies before time 0, as long as that of the record (`response_stream`)."""
     step_s = 1.0 / (config.fs_hz * steps)
-    settle_s = both_settled_s(motion.transient_s, history_s(config, specimen))
+    settle_s = both_settled_s(motion.transient_s, history_s(specimen))
     settling = half_length(steps) + settling_steps(motion.transient_s, settle_s, config.fs_hz * steps)
     if motion.starts_settled:
         settling = steps * (half_length(1) + settling_steps(motion.transient_s, settle_s, config.fs_hz))

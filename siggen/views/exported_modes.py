@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 
-from siggen.specimen.mode_table import BASE, DRIVE, ModeTable
+from siggen.gearbox.mode_table import BASE, DRIVE, ModeTable
 from siggen.specimen.specimen_housing import SpecimenHousing, participation
 
 RESIDUAL_HZ, RESIDUAL_DAMPING = 1e10, 1e-6

@@ -45,7 +45,7 @@ def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
     """Return the modes of one specimen without damage, undamped, at the mean over the angle of its mesh stiffness."""
     specimen = draw_specimen(config, specimen_id)
     stiffness = _mean_stiffness(specimen)
-    assembled = structure(config, specimen)
+    assembled = structure(specimen)
     of_mesh = dict(zip((mesh.name or FIRST for mesh in assembled.meshes), stiffness, strict=True))
     return SpecimenModes(assembled.coordinates, of_mesh, assembled.mass, natural_modes(assembled, stiffness))
 

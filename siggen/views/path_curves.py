@@ -81,7 +81,7 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
         raise UsageError(
             "no sensor stands on a housing that gives way or has a measured path: dynamics.model: casing has one"
         )
-    housing = specimen_housing(config, specimen)
+    housing = specimen_housing(specimen)
     turns = zip(specimen.meshes, specimen.shaft_turns, strict=False)
     meshing = tuple(float(turn * mesh.pair.pinion.teeth) for mesh, turn in turns)
     points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
@@ -94,7 +94,7 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
         housing=housing if any(c.path_modes for c in channels) else None,
         mesh_hz=tuple(tuple(point.speed_hz * teeth for teeth in meshing) for point in points),
         mesh_harmonics=config.mesh_harmonics,
-        memory_s=settle_s(config, specimen),
+        memory_s=settle_s(specimen),
     )
 
 

@@ -12,11 +12,12 @@ from siggen.checks.loading import load_config
 from siggen.config import inherited, parse_yaml, yaml_text
 from siggen.dynamics.housing.layout import layout
 from siggen.errors import ConfigError
+from siggen.gearbox.housing_layout import specimen_layout
+from siggen.gearbox.housing_numbers import plate_numbers
 from siggen.gearbox.pair import gear_pair
 from siggen.planning.specimen import draw_specimen
 from siggen.rig.rig_answers import rig_of
 from siggen.rig.rig_text import rig_text
-from siggen.specimen.housing_layout import specimen_layout
 from tests.config.minimal import minimal
 
 SHAFTS = {"pinion": {"diameter_mm": 30, "bearing_span_mm": 120}, "gear": {"diameter_mm": 35, "bearing_span_mm": 120}}
@@ -74,8 +75,7 @@ def test_the_least_lengths_that_are_let_through_can_be_built(shafts: object, mat
     smallest = load_config(config.canonical() | {"housing": {**config.canonical()["housing"], **least}})
     for specimen_id in range(30):
         specimen = draw_specimen(smallest, specimen_id)
-        contents, proportions, stuff = specimen_layout(specimen.housing, specimen.dynamics.shafts, pair)
-        box = layout(contents, proportions, stuff)
+        box = layout(specimen.housing.contents, specimen.housing.proportions, specimen.housing.material)
         inner = (
             1e3 * (box.size_m[0] - box.thickness.ends_m),
             1e3 * (box.size_m[1] - 0.5 * (box.thickness.lid_m + box.thickness.floor_m)),
@@ -93,7 +93,7 @@ def test_small_equal_gears_turn_in_bearings_larger_than_they_are(teeth: str, mod
     pair = gear_pair(config.gears)
     for specimen_id in range(config.specimens):
         specimen = draw_specimen(config, specimen_id)
-        box = layout(*specimen_layout(specimen.housing, specimen.dynamics.shafts, pair))
+        box = layout(specimen.housing.contents, specimen.housing.proportions, specimen.housing.material)
         assert all(seat.boss_radius_m > seat.bore_radius_m for seat in box.seats.values())
         assert min(seat.y_m for seat in box.seats.values()) > pair.gear.tip_radius_m
 
@@ -101,8 +101,9 @@ def test_small_equal_gears_turn_in_bearings_larger_than_they_are(teeth: str, mod
 def test_a_length_below_the_least_cannot_be_built() -> None:
     """The check is not stricter than need be: with the bearing and the wall that it counts with, 10 mm less fail."""
     config = load_config(minimal(housing__length_mm=234.0))
-    specimen = draw_specimen(config, 0)
-    thick = specimen.housing.model_copy(update={"bearing": 2.2, "material": "steel", "wall": 1.0})
+    thick = plate_numbers(config.housing, lambda _: 0.5).model_copy(
+        update={"bearing": 2.2, "material": "steel", "wall": 1.0}
+    )
     contents, proportions, stuff = specimen_layout(thick, None, gear_pair(config.gears))
     layout(contents, proportions, stuff)
     with pytest.raises(ValueError, match="boss"):

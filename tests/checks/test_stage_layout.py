@@ -68,7 +68,7 @@ def test_a_coaxial_gearbox_stands_and_its_layshaft_alone_holds_the_casing_agains
     specimen = draw_specimen(config, 0)
     places = axis_places_m(specimen)
     assert places["slow_bearing"] == pytest.approx(places["pinion_bearing"], abs=1e-15)
-    found, torque_nm = structure(config, specimen), 20.0
+    found, torque_nm = structure(specimen), 20.0
     loaded = found.stiffness + mesh_springs(found, [3e8, 5e8])
     rest = static_solution(found, loaded, torque_nm * found.torque_vector)
     forces = {name: float(row @ rest) for name, (row, _) in found.bearing_forces.items()}

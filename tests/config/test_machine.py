@@ -50,7 +50,7 @@ def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and
     assert of["teeth", "gear"].filled_by == "teeth_pinion"  # which the driver of a mesh is inside
     assert of["shaft_hz", "pinion"].name == "pinion_shaft_hz"
     assert config.names.gear(config.states[1].damages[0].hit_gear) == "gear"
-    assert structure(config, draw_specimen(config, 0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
+    assert structure(draw_specimen(config, 0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
 
 
 def test_its_own_file_reads_the_same_and_never_says_pinion() -> None:

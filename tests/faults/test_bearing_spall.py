@@ -105,7 +105,7 @@ def test_shaft_and_housing_feel_equal_and_opposite_forces(model: str, bearing: s
     housing = {"housing": {"kind": "rigid"}} if model == "casing" else {}
     made = with_states({**SPALL, "bearing": bearing}, dynamics__model=model, **housing)
     (source,) = sources_of(made, 1)
-    names = structure(made, draw_specimen(made, 0)).coordinates
+    names = structure(draw_specimen(made, 0)).coordinates
     for axis in "xy":
         on_shafts = source.vectors[:, [names.index(f"{axis}_{gear}") for gear in ("pinion", "gear")]].sum(axis=1)
         on_seats = -np.array([source.seat_forces[f"{bearing}/{one}"] for one in ("horizontal", "vertical")]).sum(axis=1)
@@ -125,7 +125,7 @@ def test_the_mean_force_of_the_bearing_is_the_torques_whether_a_ball_sinks_or_no
         response, point = record_response(made, specimen, specimen_state(made, specimen, 1), record, internals=True)
         force = np.array([response.bearing_force_n[f"pinion_bearing/{axis}"] for axis in ("horizontal", "vertical")])
         means.append(force.mean(axis=1))
-        expected = mean_force_n(specimen, structure(made, specimen), point, "pinion_bearing")
+        expected = mean_force_n(specimen, structure(specimen), point, "pinion_bearing")
     (source,) = sources_of(made, 1)
     sunk = source.inputs(Drive(SPEED_HZ, 1.0).turning(np.linspace(0.0, 2.0, 50_000))).mean(axis=0)
     assert np.hypot(*sunk) > 50.0  # by so much the mean would be wrong if one of both were left out
@@ -140,7 +140,7 @@ def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
     point = draw_operating_point(made, record.specimen_id, record.operating_point_id)
     rotation = record_rotation(made, point, record, start_angle_rad(made, specimen, record))
     parts = specimen_state(made, specimen, record.state_id).parts
-    return spall_sources(made, specimen, structure(made, specimen), point, record, rotation, parts)
+    return spall_sources(made, specimen, structure(specimen), point, record, rotation, parts)
 
 
 def test_an_exported_model_has_what_a_spall_pushes_and_what_of_it_the_housing_feels() -> None:

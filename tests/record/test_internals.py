@@ -104,7 +104,7 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
     specimen = draw_specimen(config, 0)
     table = internals_table(config, 0)
     pair = specimen.pair
-    assembled = structure(config, specimen)
+    assembled = structure(specimen)
     lengths = dict(zip(assembled.coordinates, assembled.mesh.vector, strict=True))
     assert lengths["theta_pinion"] == pytest.approx(pair.pinion.base_radius_m)
     assert lengths["theta_gear"] == pytest.approx(-pair.gear.base_radius_m)

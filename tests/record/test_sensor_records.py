@@ -11,13 +11,13 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing
-from siggen.specimen.mode_table import seats_of
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
@@ -55,7 +55,7 @@ def test_a_sensor_on_a_plate_sees_bearing_forces_through_all_modes() -> None:
     config = loaded(UP, {**LID, "name": "wall", "place": "wall"})
     channels, specimen = record(config).channels, draw_specimen(config, 0)
     response, _ = record_response(config, specimen, specimen_state(config, specimen, 0), planned_record(config, 0))
-    housing = specimen_housing(config, specimen)
+    housing = specimen_housing(specimen)
     assert housing is not None
     length = 2**16  # one transform, in which nothing wraps round
     grid = np.arange(length // 2 + 1) * config.fs_hz / length

@@ -2,36 +2,35 @@
 
 from __future__ import annotations
 
-from siggen.config import Config
 from siggen.dynamics.structure.gear_stage import Bolts, Casing
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
-from siggen.planning.specimen import Specimen
-from siggen.seeding import Stage, named_uniforms
+from siggen.gearbox.housing import Plates
+from siggen.gearbox.specimen import Specimen
 from siggen.specimen.plate_housing import sensor_place
 from siggen.specimen.specimen_housing import SpecimenHousing
 from tests.dynamics.housing.rigid_body import mass_points
 from tests.dynamics.trains import casing_structure
 
 
-def rigid_twin(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Structure:
+def rigid_twin(specimen: Specimen, housing: SpecimenHousing) -> Structure:
     """Return the gears in a rigid casing with the box's mass, inertia, bolts and places of sensors."""
-    casing = _casing(config, specimen, housing)
+    casing = _casing(specimen, housing)
     return locked_load(casing_structure(specimen.train.first, casing))
 
 
-def _casing(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Casing:
+def _casing(specimen: Specimen, housing: SpecimenHousing) -> Casing:
     box = housing.box
     places, masses = mass_points(box)
     x, y, _ = masses @ places / masses.sum()
     arms = places[:, :2] - (x, y)
     shear, axial, _ = box.bolts[0].stiffness_n_per_m
-    uniform = named_uniforms(config.seed, Stage.PATH, specimen.specimen_id)
+    assert isinstance(specimen.housing, Plates)
     sensors = {}
-    for sensor in specimen.sensors:
-        plate, first, _ = sensor_place(box, sensor, uniform)
+    for name, mount in specimen.housing.mounts.items():
+        plate, first, _ = sensor_place(box, mount)
         at = {"lid": (first, box.size_m[1]), "gear_end": (0.0, first)}[plate]
-        sensors[sensor.name] = (at[0] - x, at[1] - y)
+        sensors[name] = (at[0] - x, at[1] - y)
     seat = box.seats["pinion"]
     return Casing(
         mass_kg=float(masses.sum()),

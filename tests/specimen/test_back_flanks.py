@@ -83,7 +83,7 @@ def mirror(config: Config, state: SpecimenState) -> FloatArray:
                 to = names.index(f"{kind[:-1]}{axis}_{other[side]}")
                 found[to, i] = reflected[j, "xy".index(kind[-1])]
     if "eta_1" in names:
-        modes = specimen_body(config, draw_specimen(config, 0)).body
+        modes = specimen_body(draw_specimen(config, 0)).body
         for name, sign in zip(modes.coordinates, signs_in_mirror(modes), strict=True):
             found[names.index(name), names.index(name)] = sign
     return found

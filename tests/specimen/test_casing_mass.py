@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Config, RigidHousing
+from siggen.config import Config
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
+from siggen.gearbox.housing import Block
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.rigid_casing import casing_numbers
 from siggen.specimen.structure import structure
 from tests.config.minimal import by_name, minimal
 
@@ -27,7 +27,7 @@ def loaded(mass_kg: float) -> Config:
 def assembled(mass_kg: float) -> Structure:
     config = loaded(mass_kg)
     specimen = draw_specimen(config, 0)
-    return locked_load(structure(config, specimen))
+    return locked_load(structure(specimen))
 
 
 def test_a_casing_without_end_to_its_mass_stands_still_and_passes_the_force_to_rigid_seats() -> None:
@@ -76,7 +76,7 @@ def test_far_above_its_bolts_a_casing_moves_and_turns_as_a_free_body_of_its_mass
     config = loaded(12.0)
     specimen, height_m = draw_specimen(config, 0), 0.05
     pair = specimen.pair
-    stage = locked_load(structure(config, specimen))
+    stage = locked_load(structure(specimen))
     direction = stage.motions["casing_lid/horizontal"]
     found = forced_motion(stage, MESH, direction[None, :], ("casing_lid/horizontal",), np.array([2e5]))
     inertia = 12.0 * (1.15 * pair.working_centre_distance_m) ** 2
@@ -96,8 +96,8 @@ def test_a_file_that_writes_the_default_values_out_has_the_identity_of_one_witho
 
 def test_a_casing_of_twice_the_extent_turns_four_times_as_hard() -> None:
     """The radius of gyration follows the distance of the axes; 1.15 of it is a box of even wall round both gears."""
-    section = loaded(20.0).housing
-    assert isinstance(section, RigidHousing)
-    small, large = (casing_numbers(section, extent_m, ()) for extent_m in (0.1, 0.2))
+    block = draw_specimen(loaded(20.0), 0).housing
+    assert isinstance(block, Block)
+    small, large = (block.casing(extent_m) for extent_m in (0.1, 0.2))
     assert large.inertia_kg_m2 == pytest.approx(4.0 * small.inertia_kg_m2)
     assert np.sqrt(small.inertia_kg_m2 / small.mass_kg) == pytest.approx(1.15 * 0.1)

@@ -34,7 +34,7 @@ def drive_of(config: Config, record_id: int, start_rad: float = 0.5) -> RecordDr
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    return record_drive(config, specimen, structure(config, specimen), point, record, start_rad)
+    return record_drive(config, specimen, structure(specimen), point, record, start_rad)
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +106,6 @@ def test_unbalance_belongs_to_the_specimen() -> None:
     first, second = inputs(0), inputs(config.repeats * len(config.operating_points))
     np.testing.assert_array_equal(first, second)
     point = draw_operating_point(config, 0, 0)
-    mass = structure(config, draw_specimen(config, 0)).mass[1, 1]
+    mass = structure(draw_specimen(config, 0)).mass[1, 1]
     expected = mass * 6.3e-3 * (2.0 * math.pi * point.speed_hz) ** 2 / (2.0 * math.pi * 50.0)
     assert np.hypot(first[:, 0], first[:, 1]) == pytest.approx(expected, rel=1e-9)

@@ -56,7 +56,7 @@ def test_no_mesh_notices_that_the_whole_machine_is_moved_and_turned_as_one_body(
     """Turned about the idler by ω, the gear at d moves by ω x d; shafts that turn back count their rotation so."""
     config = load_config(idler(machine=with_idler("meshes", 1, direction_deg=direction_deg)))
     specimen = draw_specimen(config, 0)
-    found = structure(config, specimen)
+    found = structure(specimen)
     names, place = found.coordinates, np.radians(direction_deg)
     to_a, to_c = (-0.045, 0.0), (0.062 * np.cos(place), 0.062 * np.sin(place))
     body = {"theta_a": 1.0, "theta_b": -1.0, "theta_c": 1.0}
@@ -131,7 +131,7 @@ def test_an_eccentric_idler_stands_back_from_both_gears_as_the_structure_says_of
     """The shift is found from the first mesh by the vectors of the motion, turned, and told to the second one's."""
     config = load_config(idler(**SMOOTH, manufacture={"accuracy_class": 6}))
     specimen = draw_specimen(config, 0)
-    made, found = MadeGears(config, specimen), structure(config, specimen)
+    made, found = MadeGears(config, specimen), structure(specimen)
     mesh = specimen_state(config, specimen, 0, made).mesh
     rows = [found.coordinates.index(f"{axis}_b") for axis in "xy"]
     ahead, behind = (one.vector[rows] for one in found.meshes)

@@ -9,12 +9,12 @@ import pytest
 
 import siggen
 from siggen.checks.loading import load_config
+from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.accelerometer import Accelerometer
 from siggen.specimen.instrument import ChannelInstrument, channel_ways, settle_s
-from siggen.specimen.mode_table import seats_of
 from tests.config.minimal import minimal
 
 INPUTS = seats_of(PAIR)
@@ -43,4 +43,4 @@ def test_what_the_model_does_not_give_is_refused_by_the_name_of_the_sensor(monke
 
 def test_nothing_settles_where_bearings_are_seats_and_no_path_was_measured() -> None:
     config = load_config(minimal(dynamics__model="8dof"))
-    assert settle_s(config, draw_specimen(config, 0)) == 0.0
+    assert settle_s(draw_specimen(config, 0)) == 0.0

@@ -50,7 +50,7 @@ def signal(chosen: Config, record: int) -> np.ndarray:
 def test_the_load_of_a_bearing_is_what_the_flanks_that_touch_press_and_its_weight(model: str, torque_nm: float) -> None:
     chosen = made(dynamics__model=model)
     specimen, pair = draw_specimen(chosen, 0), gear_pair(draw_specimen(chosen, 0).gears)
-    seen = structure(chosen, specimen)
+    seen = structure(specimen)
     if torque_nm < 0.0:
         seen = on_back_flanks(seen, 0.0)
     for which in ("pinion", "gear"):
@@ -67,9 +67,9 @@ def test_a_shaft_moves_by_a_little_more_load_as_its_balls_do() -> None:
     more = OperatingPoint(point.speed_hz, 1.02 * point.torque_nm)
     before, after = (specimen_bearings(specimen.under(one))["pinion"] for one in (point, more))
     moved = after.moved_m * after.direction - before.moved_m * before.direction
-    names = structure(chosen, specimen).coordinates
+    names = structure(specimen).coordinates
     rows = [names.index("x_pinion"), names.index("y_pinion")]
-    tangent = structure(chosen, specimen).stiffness[np.ix_(rows, rows)]
+    tangent = structure(specimen).stiffness[np.ix_(rows, rows)]
     by_structure = np.linalg.solve(tangent, BEARINGS * (after.force_n - before.force_n))
     # the spring has the mean stiffness over the cage's angles, the way is a mean of ways: 9 balls differ by 1 %
     np.testing.assert_allclose(by_structure, moved, rtol=0.02)
@@ -80,7 +80,7 @@ def test_a_shaft_that_hardly_bends_stands_on_its_bearings_as_without_shafts() ->
     stout = {"bearing_span_mm": 60.0, "diameter_mm": 38.0}
     plain = {"dynamics__model": "casing", "housing__kind": "rigid"}
     with_shafts = made(**plain, dynamics__shafts={"pinion": stout, "gear": stout})
-    short, without = (structure(one, draw_specimen(one, 0)) for one in (with_shafts, made(**plain)))
+    short, without = (structure(draw_specimen(one, 0)) for one in (with_shafts, made(**plain)))
     kept = [short.coordinates.index(name) for name in without.coordinates]
     for name, (force, _) in without.bearing_forces.items():
         size = np.abs(force).max()

@@ -65,7 +65,7 @@ def test_shares_of_the_face_add_up_and_a_whole_tooth_weighs_about_three_square_m
 def machine() -> tuple[Structure, GearPair]:
     config = config_with({"kind": "chip", "height_mm": 1.0})
     specimen = draw_specimen(config, 0)
-    return structure(config, specimen), specimen.pair
+    return structure(specimen), specimen.pair
 
 
 def forces_n(parts: Parts, angle_rad: float) -> dict[str, np.ndarray]:

@@ -17,12 +17,12 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, parse, parse_yaml, yaml_text
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
+from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.mode_table import seats_of
 from tests.config.mill import mill
 from tests.config.minimal import by_name, minimal
 from tests.sensing.resonances import accelerance

@@ -5,7 +5,6 @@ The reference is the whole machine with a push in its meshes, solved at once; wh
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +13,6 @@ import pytest
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.checks.loading import load_config
-from siggen.config import Config
 from siggen.dynamics.structure.forced_motion import forced_motion
 from siggen.dynamics.structure.makers import SEATS_OF_SET, planetary_train
 from siggen.dynamics.structure.structure import Structure
@@ -45,16 +43,16 @@ def modes(*high_hz: float) -> str:
     return "\n".join([*lines, ""])
 
 
-def machine(housing: dict[str, Any], **changes: Any) -> tuple[Config, Specimen]:
+def machine(housing: dict[str, Any], **changes: Any) -> Specimen:
     dynamics = {**planets()["dynamics"], "model": "casing"}
     lid = {**LID, "position_mm": [60.0, 110.0]} if housing["kind"] == "rigid" else LID
     config = load_config(planets(dynamics=dynamics, housing=housing, sensors=by_name([lid]), **changes))
-    return config, draw_specimen(config, 0)
+    return draw_specimen(config, 0)
 
 
-def way(config: Config, specimen: Specimen) -> dict[str, ChannelWay]:
+def way(specimen: Specimen) -> dict[str, ChannelWay]:
     """Return how the lid sees the housing, modes beyond those of the machine included."""
-    shown, housing = {Input(MOTION, "casing_lid/vertical"): 1.0}, specimen_housing(config, specimen)
+    shown, housing = {Input(MOTION, "casing_lid/vertical"): 1.0}, specimen_housing(specimen)
     if housing is None:
         return {"lid": ChannelWay(shown, None, None, SEATS_OF_SET)}
     beyond = slice(housing.coupled, None)
@@ -66,51 +64,50 @@ def pushed(structure: Structure, specimen: Specimen, directions: FloatArray, mot
     return forced_motion(structure, mean_meshes(specimen, structure), directions, motions, GRID)
 
 
-def set_free(config: Config, specimen: Specimen) -> ComplexArray:
+def set_free(specimen: Specimen) -> ComplexArray:
     """Return what a push in each mesh does to the lid (meshes, k): forces of the set on the ground, then set free."""
     ground = linear_structure(set_in_housing(specimen, None))
     pushes = np.array([mesh.vector for mesh in ground.meshes])
     held = pushed(ground, specimen, pushes).bearing_force
-    through = forces_through_housing(config, specimen, way(config, specimen), GRID)["lid"]
+    through = forces_through_housing(specimen, way(specimen), GRID)["lid"]
     return np.sum([held[seat] * row for seat, row in zip(SEATS_OF_SET, through, strict=True)], axis=0)
 
 
 @pytest.mark.parametrize("housing", [RIGID, {"kind": "modal", "modes": modes()}], ids=["rigid", "modal"])
 def test_forces_on_held_seats_set_free_move_the_housing_as_the_whole_machine_does(housing: dict[str, Any]) -> None:
-    config, specimen = machine(housing)
-    whole = linear_structure(linear_train(config, specimen))
+    specimen = machine(housing)
+    whole = linear_structure(linear_train(specimen))
     pushes = np.array([mesh.vector for mesh in whole.meshes])
     expected = pushed(whole, specimen, pushes, ("casing_lid/vertical",)).acceleration["casing_lid/vertical"]
-    found = set_free(config, specimen)
+    found = set_free(specimen)
     assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
     assert (np.abs(found - expected) < 1e-7 * np.abs(expected)).all()
 
 
 def test_modes_beyond_those_of_the_machine_give_way_as_if_they_were_in_it(
-    monkeypatch: pytest.MonkeyPatch, made_anew: Callable[[], None]
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    config, specimen = machine({"kind": "modal", "modes": modes(9.0e3, 11.0e3, 14.0e3)})
-    few = set_free(config, specimen)  # none of the three is below 1.5 kHz, but six move with the gears
+    specimen = machine({"kind": "modal", "modes": modes(9.0e3, 11.0e3, 14.0e3)})
+    few = set_free(specimen)  # none of the three is below 1.5 kHz, but six move with the gears
     monkeypatch.setattr("siggen.specimen.specimen_housing.MODES_ON_BOLTS", 4)
     monkeypatch.setattr("siggen.specimen.specimen_housing.COUPLED_HZ", 1500.0)
-    made_anew()
-    fewer = set_free(config, specimen)
+    fewer = set_free(specimen)
     low = GRID < 1000.0
     # quasi-static: (f/9 kHz)^2 of a part that is itself small
     assert (np.abs(few - fewer) < 5e-3 * np.abs(few))[:, low].all()
 
 
-def at_angles(config: Config, specimen: Specimen, turn: float) -> tuple[Structure, Structure]:
+def at_angles(specimen: Specimen, turn: float) -> tuple[Structure, Structure]:
     """Return the machine as siggen takes it, and with its carrier a part of a turn farther."""
-    places, housing = (turn, turn + 1 / 3, turn + 2 / 3), specimen_body(config, specimen)
+    places, housing = (turn, turn + 1 / 3, turn + 2 / 3), specimen_body(specimen)
     farther = planetary_train(replace(specimen.planets.stage, places_turns=places), housing)
-    return linear_structure(linear_train(config, specimen)), linear_structure(farther)
+    return linear_structure(linear_train(specimen)), linear_structure(farther)
 
 
 @pytest.mark.parametrize("turn", [0.04, 0.23])
 def test_the_machine_is_the_same_at_every_angle_of_the_carrier(turn: float) -> None:
-    config, specimen = machine(RIGID)
-    whole, turned = at_angles(config, specimen, turn)
+    specimen = machine(RIGID)
+    whole, turned = at_angles(specimen, turn)
     on_ring = np.array([whole.bearing_directions[seat] for seat in SEATS_OF_SET])
     first, second = (pushed(one, specimen, on_ring, ("casing_lid/vertical",)) for one in (whole, turned))
     for place, row in first.acceleration.items():
@@ -119,9 +116,9 @@ def test_the_machine_is_the_same_at_every_angle_of_the_carrier(turn: float) -> N
 
 @pytest.mark.parametrize("mesh", [0, 1])
 def test_a_planet_anywhere_moves_the_housing_by_three_waves_of_its_angle(mesh: int) -> None:
-    config, specimen = machine(RIGID)
+    specimen = machine(RIGID)
     turn = 0.17
-    whole, turned = at_angles(config, specimen, turn)
+    whole, turned = at_angles(specimen, turn)
     push = turned.meshes[3 * mesh].vector[None]
     expected = pushed(turned, specimen, push, ("casing_lid/vertical",)).acceleration["casing_lid/vertical"][0]
     kind = ("sun_meshes", "ring_meshes")[mesh]
@@ -134,8 +131,8 @@ def test_a_planet_anywhere_moves_the_housing_by_three_waves_of_its_angle(mesh: i
 
 def test_a_stiff_and_heavy_housing_is_the_ground_to_the_set() -> None:
     bolts = {"shear_stiffness_n_per_m": 1e13, "axial_stiffness_n_per_m": 1e13}
-    config, specimen = machine({"kind": "rigid", "mass_kg": 1e8, "bolts": bolts})
-    whole = linear_structure(linear_train(config, specimen))
+    specimen = machine({"kind": "rigid", "mass_kg": 1e8, "bolts": bolts})
+    whole = linear_structure(linear_train(specimen))
     ground = linear_structure(set_in_housing(specimen, None))
     push = (whole.meshes[0].vector, ground.meshes[0].vector)
     moved, held = (pushed(one, specimen, row[None]) for one, row in zip((whole, ground), push, strict=True))

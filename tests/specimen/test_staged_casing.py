@@ -30,7 +30,7 @@ def built(model: str, **housing: Any) -> Structure:
     raw = staged(dynamics={"model": model}, stages=[{**SLOW, "direction_deg": 35.0}], **more)
     parsed = parse(raw)
     assert parsed.config is not None, parsed.problems
-    return structure(parsed.config, draw_specimen(parsed.config, 0))
+    return structure(draw_specimen(parsed.config, 0))
 
 
 def at_rest(found: Structure, torque_nm: float = 20.0) -> np.ndarray:
@@ -78,7 +78,7 @@ def test_the_modes_of_a_rigid_casing_make_the_same_machine() -> None:
     parsed = parse(rigid)
     assert parsed.config is not None, parsed.problems
     specimen = draw_specimen(parsed.config, 0)
-    body = specimen_body(parsed.config, specimen)
+    body = specimen_body(specimen)
     alone = Drivetrain((body.body, GROUND), body.bolts)
     mass, _, stiffness = matrices(alone)
     values, shapes = eigh(stiffness, mass)
@@ -92,7 +92,7 @@ def test_the_modes_of_a_rigid_casing_make_the_same_machine() -> None:
     text = "\n".join([",".join(columns), *(",".join(repr(float(x)) for x in row) for row in rows), ""])
     modal = parse({**rigid, "housing": {"kind": "modal", "modes": text}})
     assert modal.config is not None, modal.problems
-    first, second = (structure(config, draw_specimen(config, 0)) for config in (parsed.config, modal.config))
+    first, second = (structure(draw_specimen(config, 0)) for config in (parsed.config, modal.config))
     expected, found = (natural_modes(one, MESH).frequency_hz for one in (first, second))
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-6)
     assert "slow_shaft/vertical" in second.motions

@@ -27,7 +27,7 @@ from siggen.gearbox.train import gear_stage
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.planning.stages import first_mesh, stage_config, stage_point, stage_specimen
+from siggen.planning.stages import stage_point, stage_specimen
 from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
@@ -157,16 +157,16 @@ def with_heavy(found: Structure, names: Sequence[str]) -> Structure:
 
 def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
     """Then the first stage is one whose gear stands still, and the second one whose pinion does."""
-    found, specimen, mesh, point = machine(*WITHOUT_FRICTION)
+    _, specimen, mesh, point = machine(*WITHOUT_FRICTION)
     middle = [f"{kind}_{gear}" for kind in ("x", "y", "theta") for gear in GEARS[1:3]]
     pitches = 18 * point.speed_hz * STEP_S * np.arange(8001) + 0.3
     both = specimen_motion(specimen.law, mesh.on(with_heavy(mesh.structure, middle)), point, STEP_S)
     velocities = dict(zip(both.structure.coordinates, run(both, pitches).T, strict=True))
 
-    alone, train = first_mesh(found), specimen.train
+    train = specimen.train
     assert train is not None
     single = replace(specimen, meshes=specimen.meshes[:1], train=replace(train, behind=()), stages=(), names=PAIR)
-    made = structure(alone, single)
+    made = structure(single)
     first = replace(mesh, structure=with_heavy(made, ["x_gear", "y_gear", "theta_gear"]), behind=())
     wanted = run(specimen_motion(single.law, first, point, STEP_S), pitches).T
     for name, expected in zip(made.coordinates[:4], wanted[:4], strict=True):
@@ -175,7 +175,7 @@ def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
 
     own, behind = stage_specimen(specimen, 0), mesh.behind[0]
     own = replace(own, train=replace(train, first=gear_stage(own.dynamics, own.pair), behind=()))
-    made = structure(stage_config(found, specimen, 0), own)
+    made = structure(own)
     second = replace(behind.mesh, structure=with_heavy(made, ["x_pinion", "y_pinion", "theta_pinion"]))
     turned = pitches * float(specimen.shaft_turns[1]) * 17 / 18 + behind.turned_pitches
     slow = specimen_motion(own.law, second, stage_point(point, float(specimen.shaft_turns[1])), STEP_S)
