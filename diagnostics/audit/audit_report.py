@@ -171,7 +171,7 @@ class AuditOptions:
     reference_fs_hz: float | None = None
 
 
-@single_thread
+@single_thread()
 def audit_set(
     dataset: Dataset,
     options: AuditOptions | None = None,

@@ -1,24 +1,22 @@
-"""A function whose numeric libraries use one thread: on a few hundred records threads mostly wait for each other."""
+"""Numeric libraries that use one thread: on a few hundred records threads mostly wait for each other."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import wraps
-from typing import ParamSpec, TypeVar
-
-Parameters = ParamSpec("Parameters")
-Result = TypeVar("Result")
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 
-def single_thread(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-    """Return the function, run with one thread per numeric library (BLAS, OpenMP); others get theirs back after it."""
+@contextmanager
+def single_thread() -> Iterator[None]:
+    """Give each numeric library (BLAS, OpenMP) one thread, in a block or as a decorator; afterwards as many as before.
 
-    @wraps(function)
-    def limited(*positional: Parameters.args, **named: Parameters.kwargs) -> Result:
+    Where scikit-learn is missing, nothing is limited: what needs it says so itself.
+    """
+    try:
         import sklearn.ensemble  # noqa: F401 - only libraries that are loaded can be limited
         from threadpoolctl import threadpool_limits
-
-        with threadpool_limits(1):
-            return function(*positional, **named)
-
-    return limited
+    except ImportError:
+        yield
+        return
+    with threadpool_limits(1):
+        yield

@@ -156,7 +156,7 @@ def damage_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Sta
             advance()
 
 
-@single_thread
+@single_thread()
 def _track(parts: tuple[PartRecords, ...], seed: int, referenced: bool) -> list[pa.Table]:
     return list(_predictions(parts, seed, silent_stage, referenced))
 

@@ -24,7 +24,7 @@ def question_of(config: Mapping[str, Any]) -> Question:
     return DAMAGE_QUESTION if config.get("life") is None else LIFE_QUESTION
 
 
-@single_thread
+@single_thread()
 def write_baselines(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Path:
     """Write what all baselines say of all test parts into the benchmark, from some processes; return the file."""
     rows = list(question_of(benchmark.learn().config).predictions(benchmark, seed, workers, stage))

@@ -198,12 +198,14 @@ def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: Set
     from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.set_page import LookOptions, write_set_page
     from diagnostics.indicators.own_indicator import load_indicators
+    from diagnostics.prediction.released_model import load_model
     from diagnostics.records.named_set import open_set
     from diagnostics.report.life_pictures import lives_of
     from diagnostics.scoring.truth import is_lives
 
     own, dataset = load_indicators(of_set.indicator), open_set(folder)
-    options = LookOptions(**asdict(amount), model=of_set.model, own=own)
+    model = None if of_set.model is None else load_model(of_set.model, own)
+    options = LookOptions(**asdict(amount), model=model, own=own)
     adds = lives_of if is_lives(dataset) else None
     return write_set_page(dataset, out or path_beside(dataset.path, "_explore.html"), options, terminal_stage, adds)
 

@@ -18,7 +18,7 @@ from diagnostics.explore.payload import PageSource, Shown
 from diagnostics.explore.set_source import set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
-from diagnostics.prediction.released_model import load_model
+from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.records.named_set import words_of
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import HEALTHY
@@ -49,10 +49,8 @@ print(table.labels["record_id"][values > limit])"""
 """What the page offers to copy; an indicator of the user's own is named besides."""
 
 
-def predicted_labels(
-    table: RecordTable, dataset: Dataset, folder: Path, own: Sequence[OwnIndicator] = ()
-) -> dict[str, np.ndarray]:
-    """Return columns `class`, `predicted`, `named`, `seen`, (records,) each, by a model folder's logistic regression.
+def predicted_labels(table: RecordTable, dataset: Dataset, released: ReleasedModel) -> dict[str, np.ndarray]:
+    """Return columns `class`, `predicted`, `named`, `seen`, (records,) each, by a model's logistic regression.
 
     A record is seen where its split is one that the model learnt from or was chosen on, of the very set.
 
@@ -62,23 +60,20 @@ def predicted_labels(
         Indicators of the whole set.
     dataset : siggen Dataset
         The set; what its classes are is for the model to say.
-    folder : Path
-        What `siggen-diagnostics report` wrote.
-    own : sequence of OwnIndicator
-        The user's indicators that the model takes.
+    released : ReleasedModel
+        What `load_model` returned.
 
     Raises
     ------
     UsageError
-        If the folder holds no model, or one of other channels.
+        If the model is one of other channels.
     """
-    released = load_model(folder, own)
     model = released.classifier
     labels, present = table.labels(), set(table.names())
     if lost := [name for name in model.features if name not in present]:
         raise UsageError(
-            f"{folder}: this model takes {len(lost)} columns that the set does not have, such as {lost[0]}; allowed: a "
-            f"model of the channels {', '.join(table.channels)}. Train one: siggen-diagnostics report"
+            f"{released.folder}: this model takes {len(lost)} columns that the set does not have, such as {lost[0]}; "
+            f"allowed: a model of the channels {', '.join(table.channels)}. Train one: siggen-diagnostics report"
         )
     probability = model.probability(table.values(model.features))
     predicted = np.array(model.classes)[probability.argmax(axis=1)]
@@ -118,8 +113,8 @@ class LookOptions:
         Whether all samples are kept, as far as 30 MB allow.
     workers : int
         Processes that take indicators.
-    model : Path, optional
-        Folder of a model that names every record.
+    model : ReleasedModel, optional
+        It names every record.
     own : sequence of OwnIndicator
         The user's indicators.
     first : sequence of int
@@ -131,7 +126,7 @@ class LookOptions:
     limit: int = LIMIT
     full: bool = False
     workers: int = 1
-    model: Path | None = None
+    model: ReleasedModel | None = None
     own: Sequence[OwnIndicator] = ()
     first: Sequence[int] = ()
     ranked: Sequence[str] = ()
@@ -182,7 +177,7 @@ def set_look(
     if table is None:
         with stage("indicators", labels.num_rows) as advance:
             table = record_table(dataset, own=options.own, workers=options.workers, advance=advance)
-    said = predicted_labels(table, dataset, options.model, options.own) if options.model else {}
+    said = predicted_labels(table, dataset, options.model) if options.model else {}
     lives = lives_of(dataset, table) if lives_of else NO_LIVES
     specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
     kept = chosen_records(specimens, options.limit, options.first)

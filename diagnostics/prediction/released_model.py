@@ -187,16 +187,19 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     size = sum(file.stat().st_size for file in files)
     tried_by = "diagnostics.prediction.model_with_network" if (folder / NETWORK_FILE).exists() else __name__
     with read_apart(folder / FACTS_FILE, f"{tried_by}:try_model", size=size):
-        return _loaded(folder, own)  # as it was just read within limits
+        return written_model(folder, own)  # as it was just read within limits
 
 
 def try_model(path: Path, _folder: Path) -> None:
     """Read a model as `load_model` does, to leave nothing: for the process with limits."""
-    _loaded(path.parent, None)
+    written_model(path.parent, None)
 
 
-def _loaded(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedModel:
-    """Return the model of a folder; without own indicators those that it needs are not looked for."""
+def written_model(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedModel:
+    """Return the model of a folder that this very program wrote, or has tried in a process with limits.
+
+    Without own indicators those that it needs are not looked for.
+    """
     check_files(folder, read_hashes(folder))
     facts, distance, referenced = read_facts(folder)
     accuracy = read_accuracy(folder)

@@ -12,6 +12,7 @@ import pyarrow as pa
 from diagnostics.audit.life_leaks import Leak, life_leaks
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.base.single_thread import single_thread
 from diagnostics.explore.look import Look
 from diagnostics.explore.set_page import LookOptions, set_look
 from diagnostics.page import html
@@ -46,6 +47,7 @@ KNOWN = (CONSTANT, AGE, AREAS, OUTLOOK)
 RESERVATION = "All lives are simulated, by a law whose parameters were published for one test bench."
 
 
+@single_thread()
 def write_life_report(
     dataset: Dataset,
     folder: Path,

@@ -14,6 +14,7 @@ import pyarrow as pa
 
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.base.single_thread import single_thread
 from diagnostics.explore.look import Look
 from diagnostics.explore.set_page import LookOptions, set_look
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
@@ -24,6 +25,8 @@ from diagnostics.indicators.table import RecordTable
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted
+from diagnostics.prediction.model_facts import FACTS_FILE
+from diagnostics.prediction.released_model import written_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.named_set import words_of
@@ -84,6 +87,7 @@ class PageOptions:
 ALL_RECORDS = PageOptions()
 
 
+@single_thread()
 def write_report(
     dataset: Dataset,
     folder: Path,
@@ -193,7 +197,7 @@ def _look(
     stage: Stage,
 ) -> Look:
     """Return the records on the page, with what the first classifier names them; those of its figures come first."""
-    known = models if models is not None and (models / "model.json").is_file() else None
+    known = written_model(models, own) if models is not None and (models / FACTS_FILE).is_file() else None
     options = LookOptions(
         *(page.limit, page.full),
         model=known,

@@ -155,7 +155,7 @@ class Detectors:
         return self.referenced.get(CHOSEN)
 
 
-@single_thread
+@single_thread()
 def judged_detectors(matrix: FeatureMatrix, training: Training | None, seed: int) -> Detectors:
     """Judge all detectors of a set.
 

@@ -31,7 +31,7 @@ class _Baseline(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # the ty
     classes_: np.ndarray
     model_: FeatureClassifier
 
-    @single_thread
+    @single_thread()
     def fit(self, X: Any, y: Any, groups: Any) -> Any:
         """Fit on records.
 

@@ -79,7 +79,7 @@ class Inspections:
         return float(np.nanmedian(self.age_h[first] + self.rul_h[first]))
 
 
-@single_thread
+@single_thread()
 def baseline_predictions(found: Inspections, seed: int, *, network: bool) -> dict[str, np.ndarray]:
     """Return what each baseline predicts, (n, 3) in hours at `QUANTILES`, always by the other gearboxes.
 
@@ -124,7 +124,7 @@ def _with_history(found: Inspections) -> np.ndarray:
     return np.concatenate([five, _changes(five, found.specimen), found.history, found.age_h[:, None]], axis=1)
 
 
-@single_thread
+@single_thread()
 def tree_predictions(
     values: np.ndarray, found: Inspections, seed: int, quantiles: Sequence[float] = QUANTILES
 ) -> np.ndarray:

@@ -86,7 +86,7 @@ class Training:
     nested: Nested | None = None
 
 
-@single_thread
+@single_thread()
 def train_models(
     dataset: Dataset,
     table: pa.Table,

@@ -133,7 +133,7 @@ def accused_of_traps(found: MeasuredSet, turns: int) -> None:
     print(f"accused of a trap: {share(accused, turns)} {dict(named)}", flush=True)
 
 
-@single_thread
+@single_thread()
 def main(path: str, turns: int, states: list[str]) -> None:
     """Print both shares."""
     begin = time.process_time()

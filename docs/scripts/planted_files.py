@@ -44,7 +44,7 @@ def findings(source: Path, folder: Path, leak: Leak) -> list[str]:
     return list(json.loads(judged.read_text()))
 
 
-@single_thread
+@single_thread()
 def main() -> None:
     """Print the table."""
     parser, begin = argparse.ArgumentParser(description=__doc__), time.process_time()

@@ -120,7 +120,7 @@ def test_predict_names_a_fault_and_says_so(
 
 
 def test_the_explorer_takes_faults_from_the_model(kinds: Any, measured_kinds: RecordTable, model: Path) -> None:
-    labels = predicted_labels(measured_kinds, kinds, model)
+    labels = predicted_labels(measured_kinds, kinds, load_model(model))
     states = measured_kinds.labels()["state"]
     assert dict(zip(states.tolist(), labels["class"].tolist(), strict=True)) == {
         "healthy": "healthy",

@@ -22,6 +22,7 @@ from diagnostics.explore.set_page import LookOptions, predicted_labels, set_look
 from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
+from diagnostics.prediction.released_model import load_model
 from diagnostics.training.training import Training
 from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
@@ -102,7 +103,8 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     split, specimen = (dataset.table.column(name).to_numpy(False) for name in ("split", "specimen_id"))
     dataset = replace(dataset, table=dataset.table.filter(pa.array((split == "test") | (specimen < 2))))
     shutil.copytree(models_folder, tmp_path / "report" / "models")
-    options = LookOptions(model=tmp_path / "report")
+    model = load_model(tmp_path / "report")
+    options = LookOptions(model=model)
     text = write_set_page(dataset, tmp_path / "page.html", options).read_text(encoding="utf-8")
     data = held(text)["look-data"]
     records = listed(data)
@@ -117,10 +119,10 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     seen = sum(record["split"] != "test" for record in records)
     assert f"learnt from the gearboxes of {seen} of {len(records)}, marked" in data["seen"]
     table, another = measured, replace(dataset, manifest={"identity": "another set"})
-    assert set(predicted_labels(table, another, tmp_path / "report")["seen"]) == {"no"}
+    assert set(predicted_labels(table, another, model)["seen"]) == {"no"}
     other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))
     with pytest.raises(UsageError, match="columns that the set does not have"):
-        predicted_labels(other, dataset, tmp_path / "report")  # type: ignore[arg-type]
+        predicted_labels(other, dataset, model)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
