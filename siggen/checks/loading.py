@@ -62,8 +62,8 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.checks.density_files import with_density_files
     from siggen.checks.mode_files import mode_problems, with_mode_file
     from siggen.checks.physical_problems import physical_problems
+    from siggen.checks.response_files import response_problems, with_measured_responses
     from siggen.checks.state_problems import state_problems
-    from siggen.specimen.measured_path import response_problems, with_measured_responses
 
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)

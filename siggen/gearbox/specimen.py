@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
@@ -11,13 +12,13 @@ from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
 from siggen.dynamics.time.sampling import Sampling
+from siggen.gearbox.channels import DrawnChannel
 from siggen.gearbox.housing import Housing
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.geometry.planetary import PlanetarySet
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.names import Names
-from siggen.sensors.sensor import SensorBase
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,10 +93,14 @@ class Specimen:
     law : how all teeth push and rub
     train, planets : its shafts; one of both
     housing : what carries its bearings; None for the ground
+    channels : of its sensors
+    points : at which it is measured
+    sensor_places_mm : sensor -> where it stands, as columns give it; of those that were put somewhere
     bearing_point : the operating point under whose load its bearings stand; None where they have one stiffness
     """
 
     specimen_id: int
+    seed: int
     names: Names
     sampling: Sampling
     meshes: tuple[ToothMesh, ...]
@@ -106,7 +111,9 @@ class Specimen:
     stiffness: Stiffness
     dynamics: Dynamics
     housing: Housing | None
-    sensors: tuple[SensorBase, ...]
+    channels: tuple[DrawnChannel, ...]
+    points: tuple[OperatingPoint, ...]
+    sensor_places_mm: Mapping[str, tuple[float, ...]]
     bearing_point: OperatingPoint | None = None
     stages: tuple[Stage, ...] = ()
     planetary: Planetary | None = None

@@ -9,6 +9,7 @@ from siggen.config.planetary import RING
 from siggen.config.planetary_problems import set_of
 from siggen.config.stages import Stage, with_idlers
 from siggen.dynamics.time.sampling import Sampling
+from siggen.gearbox.channels import drawn_channels
 from siggen.gearbox.housing import drawn_housing
 from siggen.gearbox.pair import gear_pair, mesh_options, stiffness_options
 from siggen.gearbox.planetary import planetary_stage
@@ -39,7 +40,6 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     own = gearbox_config(config, specimen_id)
     gears = named_uniforms(config.seed, Consumer.GEARS, specimen_id)
     supports = named_uniforms(config.seed, Consumer.SUPPORTS, specimen_id)
-    sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
     first, stiffness = draw(own.gears, gears, "gears"), draw(own.stiffness, gears, "stiffness")
     dynamics = draw(own.dynamics, supports, "dynamics")
     stages = tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages)))
@@ -54,9 +54,12 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         for (name, one), stage in zip(pairs, [None, *stages, *([None] if planets else [])], strict=True)
     )
     balls = ball_bearings(dynamics)
+    sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
     sensors = tuple(one.drawn(sensor) for one in own.sensors)
+    points = tuple(draw_operating_point(own, specimen_id, number) for number in range(len(own.operating_points)))
     return Specimen(
         specimen_id,
+        seed=own.seed,
         names=own.names,
         sampling=Sampling(own.fs_hz, own.duration_s, own.samples),
         meshes=meshes,
@@ -67,8 +70,10 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         stiffness=stiffness,
         dynamics=dynamics,
         housing=drawn_housing(own, specimen_id, dynamics, pair, sensors),
-        sensors=sensors,
-        bearing_point=draw_operating_point(own, specimen_id, 0) if balls else None,
+        channels=tuple(drawn_channels(own, specimen_id, sensors)),
+        points=points,
+        sensor_places_mm={one.name: tuple(map(constant, one.place_on_casing_mm)) for one in sensors},
+        bearing_point=points[0] if balls else None,
         stages=stages,
         planetary=section,
     )

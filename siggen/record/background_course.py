@@ -94,10 +94,3 @@ def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: 
         lambda name: named_generator(config.seed, Stage.BACKGROUND, record.specimen_id, name=name),
         lambda name: named_generator(config.seed, Stage.BACKGROUND_NOISE, *owner, name=name),
     )
-
-
-def noise_levels(config: Config, record: PlannedRecord) -> Callable[[str], float] | None:
-    """Return name -> uniform of a noise level of the gearbox; None without background, where records have their own."""
-    if config.background is None:
-        return None
-    return named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id)

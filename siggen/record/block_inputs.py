@@ -24,7 +24,7 @@ class BlockInputs:
     def __init__(
         self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument
     ) -> None:
-        self._samples, self._grid = config.samples, instrument.blocks.grid
+        self._samples, self._grid = specimen.sampling.samples, instrument.blocks.grid
         back, background = self._grid.back, instrument.background
         _refuse_undelivered(instrument, delivered(response))
         self._motions = MotionBlocks(response, back)
@@ -92,6 +92,6 @@ def _refuse_undelivered(instrument: Instrument, delivered: tuple[Input, ...]) ->
             if one not in delivered:
                 given = ", ".join(f"{kind} {name}" for kind, name in delivered)
                 raise ValueError(
-                    f"sensor {channel.sensor.name}: shows {one.kind} {one.name}, which the model does not give "
+                    f"sensor {channel.drawn.sensor}: shows {one.kind} {one.name}, which the model does not give "
                     f"(it gives {given})"
                 )

@@ -7,35 +7,33 @@ from functools import partial
 
 import numpy as np
 
-from siggen.config import Config
+from siggen.gearbox.channels import DrawnChannel
 from siggen.keys.number import at
 from siggen.noise.source import Draws
 from siggen.planning.plan import PlannedRecord
-from siggen.record.background_course import noise_levels
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.measurement import Measurement
-from siggen.sensors.path import MeasuredPath
 from siggen.specimen.drive import record_owner
 from siggen.specimen.instrument import ChannelInstrument
 
 
-def channel_draws(config: Config, record: PlannedRecord, channel: str) -> Draws:
-    """Return where the numbers of a channel come from."""
-    owner, levels = record_owner(record), noise_levels(config, record)
+def channel_draws(seed: int, record: PlannedRecord, channel: str, *, levelled: bool) -> Draws:
+    """Return where the numbers of a channel come from; noise that is `levelled` has that of the gearbox."""
+    owner, levels = record_owner(record), named_uniforms(seed, Stage.BACKGROUND, record.specimen_id)
     return Draws(
-        named_uniforms(config.seed, Stage.PATH, record.specimen_id),
-        named_uniforms(config.seed, Stage.NOISE, *owner),
-        partial(_named, config.seed, owner, channel),
-        None if levels is None else partial(_level, levels, channel),
+        named_uniforms(seed, Stage.PATH, record.specimen_id),
+        named_uniforms(seed, Stage.NOISE, *owner),
+        partial(_named, seed, owner, channel),
+        partial(_level, levels, channel) if levelled else None,
     )
 
 
 def white_noise(
-    config: Config, record: PlannedRecord, channel: ChannelInstrument, draws: Draws
+    seed: int, record: PlannedRecord, channel: DrawnChannel, draws: Draws
 ) -> tuple[np.random.Generator, float | None]:
     """Return the generator of a channel's white noise, and its floor; None without one."""
-    rng = named_generator(config.seed, Stage.NOISE, *record_owner(record), name=channel.name)
-    floor, u = channel.sensor.noise_floor, draws.level("noise", rng)
+    rng = named_generator(seed, Stage.NOISE, *record_owner(record), name=channel.name)
+    floor, u = channel.noise_floor, draws.level("noise", rng)
     return rng, None if floor is None else at(floor, u)
 
 
@@ -50,13 +48,13 @@ def _level(levels: Callable[[str], float], channel: str, name: str) -> float:
 def channel_labels(channel: ChannelInstrument, measured: Measurement) -> dict[str, object]:
     """Return the labels of a channel's measurement and of its path."""
     labels: dict[str, object] = {
-        f"noise_floor_{channel.name}_{channel.sensor.quantity.suffix}": measured.noise_floor,
+        f"noise_floor_{channel.name}_{channel.drawn.suffix}": measured.noise_floor,
         f"snr_{channel.name}_db": measured.snr_db,
         f"clipped_share_{channel.name}": measured.clipped_share,
     }
     if channel.accelerance is not None:
         labels[f"path_modes_{channel.name}"] = channel.path_modes
         labels[f"path_accelerance_{channel.name}_m_s2_per_n"] = channel.path_rms_m_s2_per_n
-        if isinstance(channel.sensor.through, MeasuredPath) and channel.sensor.through.is_family:
-            labels[f"path_number_{channel.name}"] = channel.path_number
+        if channel.drawn.path is not None and channel.drawn.path.of_several:
+            labels[f"path_number_{channel.name}"] = channel.drawn.path.number
     return labels

@@ -14,9 +14,10 @@ from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
+from siggen.gearbox.channels import DrawnChannel
+from siggen.gearbox.specimen import Specimen
 from siggen.noise.source import Draws, NoisyChannel
 from siggen.planning.plan import PlannedRecord
-from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
 from siggen.seeding import Stage, named_uniforms
@@ -24,16 +25,15 @@ from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.transducer import Running
 from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
-from siggen.specimen.instrument import ChannelInstrument, Instrument, specimen_instrument
+from siggen.specimen.instrument import Instrument, specimen_instrument
 
 
 class ChannelDisturbance:
     """What the sources of a channel add to it behind its amplifier, part after part, and the labels of it."""
 
-    def __init__(self, channel: ChannelInstrument, about: NoisyChannel, draws: Draws) -> None:
-        sources, suffix = channel.sensor.sources, channel.sensor.quantity.suffix
-        self._parts = {one.column(channel.name, suffix): one.part(about, draws) for one in sources}
-        self.follows_angle = any(one.follows_angle for one in sources)
+    def __init__(self, channel: DrawnChannel, about: NoisyChannel, draws: Draws) -> None:
+        self._parts = {one.column(channel.name, channel.suffix): one.part(about, draws) for one in channel.sources}
+        self.follows_angle = any(one.follows_angle for one in channel.sources)
 
     def take(self, first: int, angle_rad: FloatArray) -> FloatArray | None:
         """Return what is added (k,) from sample `first` on, at angles of the pinion (k,); None for nothing.
@@ -68,20 +68,21 @@ def measured_channels(
     """
     instrument = instrument or specimen_instrument(config, specimen)
     inputs = BlockInputs(config, specimen, record, response, instrument)
-    recorders = {channel.name: Recorder(config.samples, channel.gain) for channel in instrument.channels}
+    fs_hz, samples = specimen.sampling.fs_hz, specimen.sampling.samples
+    recorders = {channel.name: Recorder(samples, channel.drawn.gain) for channel in instrument.channels}
     rotation = _rotation(config, specimen, record)
-    whole: dict[str, list[FloatArray]] = {c.name: [] for c in instrument.channels if c.transducer is not None}
+    whole: dict[str, list[FloatArray]] = {c.name: [] for c in instrument.channels if c.drawn.transducer is not None}
     for seen in inputs.seen():
         for name, values in seen.items():
             (whole[name].append if name in whole else recorders[name].take)(values)
     if whole:
-        for name, reading in _readings(instrument, whole, _running(config, specimen, record, rotation, instrument)):
+        for name, reading in _readings(instrument, whole, _running(specimen, record, rotation)):
             recorders[name].take(reading)
-    disturbances = _disturbances(config, specimen, record, instrument, recorders, rotation)
-    for first in range(0, config.samples, BLOCK_SAMPLES):
-        count = min(BLOCK_SAMPLES, config.samples - first)
+    disturbances = _disturbances(specimen, record, instrument, recorders, rotation)
+    for first in range(0, samples, BLOCK_SAMPLES):
+        count = min(BLOCK_SAMPLES, samples - first)
         follows = any(disturbance.follows_angle for disturbance in disturbances.values())
-        angle = _angle_rad(rotation, config.fs_hz, first, count) if follows else np.zeros(count)
+        angle = _angle_rad(rotation, fs_hz, first, count) if follows else np.zeros(count)
         for name, recorder in recorders.items():
             recorder.convert(count, disturbances[name].take(first, angle))
     labels: dict[str, object] = {}
@@ -99,24 +100,22 @@ def _readings(
     """Yield channels that are read as a whole, with their readings (n,); last those that read other channels alone."""
     found: dict[str, FloatArray] = {}
     for channel in sorted(instrument.channels, key=lambda one: not one.seen):
-        if channel.transducer is not None:
+        if channel.drawn.transducer is not None:
             shown = np.concatenate(whole[channel.name]) if channel.seen else np.empty(0)
-            found[channel.name] = channel.transducer.reading(shown, replace(running, readings=found))
+            found[channel.name] = channel.drawn.transducer.reading(shown, replace(running, readings=found))
             yield channel.name, found[channel.name]
 
 
-def _running(
-    config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation, instrument: Instrument
-) -> Running:
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+def _running(specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> Running:
+    sampling = specimen.sampling
     return Running(
-        config.fs_hz,
-        _angle_rad(rotation, config.fs_hz, 0, config.samples),
+        sampling.fs_hz,
+        _angle_rad(rotation, sampling.fs_hz, 0, sampling.samples),
         specimen.names.of_turning(list(map(float, specimen.shaft_turns))),
-        point.torque_nm,
+        specimen.points[record.operating_point_id].torque_nm,
         _base_radii_m(specimen),
-        {channel.name: channel.sensor.place for channel in instrument.channels},
-        2.0 * np.pi * named_uniforms(config.seed, Stage.NOISE, *record_owner(record))("line.phase"),
+        {channel.name: channel.place for channel in specimen.channels},
+        2.0 * np.pi * named_uniforms(specimen.seed, Stage.NOISE, *record_owner(record))("line.phase"),
     )
 
 
@@ -130,7 +129,6 @@ def _base_radii_m(specimen: Specimen) -> dict[str, float]:
 
 
 def _disturbances(
-    config: Config,
     specimen: Specimen,
     record: PlannedRecord,
     instrument: Instrument,
@@ -138,25 +136,26 @@ def _disturbances(
     rotation: Rotation,
 ) -> dict[str, ChannelDisturbance]:
     """Return channel -> what is added to it; its recorder learns its noise and its converter."""
-    largest = _largest_step_rad(config, rotation)
+    largest, fs_hz = _largest_step_rad(specimen, rotation), specimen.sampling.fs_hz
+    levelled = instrument.background is not None
     gear_order = specimen.pair.pinion.teeth / specimen.pair.gear.teeth
     found = {}
     for channel in instrument.channels:
-        draws = channel_draws(config, record, channel.name)
+        drawn, draws = channel.drawn, channel_draws(specimen.seed, record, channel.name, levelled=levelled)
         about = NoisyChannel(
-            gain=channel.gain,
+            gain=drawn.gain,
             response=channel.sensor_response,
-            coupling_hz=channel.high_pass_hz,
-            fs_hz=config.fs_hz,
+            coupling_hz=drawn.coupling_hz,
+            fs_hz=fs_hz,
             length=instrument.length,
             gear_order=gear_order,
             largest_step_rad=largest,
         )
-        found[channel.name] = ChannelDisturbance(channel, about, draws)
-        rng, floor = white_noise(config, record, channel, draws)
+        found[channel.name] = ChannelDisturbance(drawn, about, draws)
+        rng, floor = white_noise(specimen.seed, record, drawn, draws)
         recorders[channel.name].begin_conversion(
-            limit=channel.sensor.limit,
-            bits=channel.sensor.converter_bits,
+            limit=drawn.limit,
+            bits=drawn.bits,
             rng=rng,
             noise_floor=floor,
         )
@@ -164,7 +163,7 @@ def _disturbances(
 
 
 def _rotation(config: Config, specimen: Specimen, record: PlannedRecord) -> Rotation:
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    point = specimen.points[record.operating_point_id]
     return record_rotation(config, point, record, start_angle_rad(config, specimen, record))
 
 
@@ -172,12 +171,13 @@ def _angle_rad(rotation: Rotation, fs_hz: float, first: int, count: int) -> Floa
     return rotation.angle_rad((np.arange(count) + first) / fs_hz)
 
 
-def _largest_step_rad(config: Config, rotation: Rotation) -> float:
+def _largest_step_rad(specimen: Specimen, rotation: Rotation) -> float:
     """Return how far the pinion turns in a sample at most; 0 where nobody asks."""
-    if not any(source.asks_largest_step for sensor in config.sensors for source in sensor.sources):
+    if not any(source.asks_largest_step for channel in specimen.channels for source in channel.sources):
         return 0.0
+    fs_hz, samples = specimen.sampling.fs_hz, specimen.sampling.samples
     steps = (
-        np.diff(_angle_rad(rotation, config.fs_hz, first, min(BLOCK_SAMPLES, config.samples - first) + 1)).max()
-        for first in range(0, config.samples, BLOCK_SAMPLES)
+        np.diff(_angle_rad(rotation, fs_hz, first, min(BLOCK_SAMPLES, samples - first) + 1)).max()
+        for first in range(0, samples, BLOCK_SAMPLES)
     )
     return float(max(steps))

@@ -19,7 +19,6 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
-from siggen.keys.number import constant
 from siggen.names import ROLES, SEVERAL
 from siggen.planning.gearbox import pair_of
 from siggen.planning.specimen import OperatingPoint, Specimen
@@ -79,8 +78,8 @@ def state_labels(config: Config, state_id: int) -> dict[str, object]:
 def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
     """Return what a gearbox draws as a whole: pair, oil, housing, places of sensors; nothing that all share."""
     oil = {"oil": specimen.law.friction.oil} if draws_oil(config) else {}
-    positions = {i: sensor.place_on_casing_mm for i, sensor in enumerate(specimen.sensors)}
-    places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
+    drawn = drawn_places(config)
+    places = {name: specimen.sensor_places_mm[config.sensors[i].name][axis] for i, axis, name in drawn}
     return {**_pair_labels(config, specimen), **oil, **_housing_labels(specimen), **places}
 
 

@@ -14,6 +14,8 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.errors import counted
 
+MEMORY_S = 0.6
+"""Of a measured path: what comes later is cut off."""
 LOWEST_HZ = 50.0
 """A measured response may begin up to here; below, the accelerance of anything on feet goes to zero."""
 TOP_SHARE = 0.45

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial, reduce
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +13,12 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.dynamics.time.decimation import PASS_EDGE
-from siggen.keys.number import constant
-from siggen.planning.specimen import Specimen
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.gearbox.channels import DrawnChannel, MeasuredWay
+from siggen.gearbox.specimen import Specimen
 from siggen.sensing.block_filter import TOGETHER, BlockGrid, block_grid, limited
+from siggen.sensing.frequency_response import MEMORY_S
 from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input
 from siggen.sensing.spectral_filter import frequencies
-from siggen.sensors.path import MeasuredPath
-from siggen.sensors.sensor import AxisDraws, SensorBase
-from siggen.sensors.transducer import Transducer
 from siggen.specimen.background import (
     SpecimenBackground,
     background_history_s,
@@ -30,7 +27,6 @@ from siggen.specimen.background import (
 )
 from siggen.specimen.forced_ways import ChannelWay
 from siggen.specimen.housing import housing_settle_s, specimen_housing
-from siggen.specimen.measured_path import MEMORY_S, decoded_response
 from siggen.specimen.set_on_housing import forces_through_housing
 from siggen.specimen.specimen_housing import SpecimenHousing
 from siggen.specimen.structure import moved_along
@@ -68,33 +64,30 @@ BAND_HZ = 100.0
 
 @dataclass(frozen=True, slots=True)
 class ChannelInstrument:
-    """One axis of one sensor.
+    """A channel behind what carries its sensor.
 
     Attributes
     ----------
-    name, sensor, gain : of the channel
+    drawn : what the gearbox has of it
     seen : what of the model it shows -> factor on it; several with cross-axis sensitivity
     accelerance : (forces, k) m/s² per N from bearing forces, before the sensor; None without a path
     sensor_response : (k,) of mounting, sensor and coupling; None without
     path_modes, path_rms_m_s2_per_n : number of modes, and rms accelerance over inputs and band; 0 without a path
-    path_number : which of several measured paths
-    high_pass_hz : corner of the coupling, None without
-    transducer : what makes a reading of the whole record; None where it reads what it shows
     forces : bearing forces that its path begins at
     """
 
-    name: str
-    sensor: SensorBase
-    gain: float
+    drawn: DrawnChannel
     seen: Mapping[Input, float]
     accelerance: ComplexArray | None
     sensor_response: ComplexArray | None
     path_modes: int
     path_rms_m_s2_per_n: float
-    path_number: int = 0
-    high_pass_hz: float | None = None
-    transducer: Transducer | None = None
     forces: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Name of the channel."""
+        return self.drawn.name
 
     @property
     def is_plain(self) -> bool:
@@ -120,7 +113,7 @@ class Instrument:
 
 def settle_s(specimen: Specimen) -> float:
     """Return the time before the first sample over which what lies between bearings and sensors settles [s]."""
-    measured = any(isinstance(sensor.through, MeasuredPath) for sensor in specimen.sensors)
+    measured = any(channel.path is not None for channel in specimen.channels)
     return max(housing_settle_s(specimen), MEMORY_S if measured else 0.0)
 
 
@@ -135,22 +128,15 @@ def history_s(specimen: Specimen) -> float:
 
 def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
-    section = drawn_background(config, specimen.specimen_id)
+    section, fs_hz = drawn_background(config, specimen.specimen_id), specimen.sampling.fs_hz
     history = max(history_s(specimen), background_history_s(section))
-    blocks = block_grid(round(history * config.fs_hz), config.samples)
+    blocks = block_grid(round(history * fs_hz), specimen.sampling.samples)
     housing = specimen_housing(specimen)
-    uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
-    named = partial(_named, config.seed, specimen.specimen_id)
-    grid = frequencies(blocks.memory, config.fs_hz)
-    along = moved_along(specimen)
-    channels, ways = [], {}
-    paths = _Paths(housing, grid, along, config.places.pressed)
-    for sensor in specimen.sensors:
-        for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
-            draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}", named)
-            channel, ways[sensor.channel_name(axis)] = _channel(sensor, axis, constant(gain), draw, paths)
-            channels.append(channel)
-    if config.turns_in_housing:
+    grid = frequencies(blocks.memory, fs_hz)
+    paths = _Paths(housing, grid, moved_along(specimen))
+    found = [_channel(channel, paths) for channel in specimen.channels]
+    channels, ways = [channel for channel, _ in found], {channel.name: way for channel, way in found}
+    if specimen.planets is not None and specimen.housed:
         through = forces_through_housing(specimen, ways, grid)
         channels = [_on_set(channel, through[channel.name], grid) for channel in channels]
     background = None
@@ -161,7 +147,7 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     )
     if background is not None:  # nobody asks for them again
         background = replace(background, responses={})
-    return Instrument(blocks.memory, config.fs_hz, tuple(channels), filters, background)
+    return Instrument(blocks.memory, fs_hz, tuple(channels), filters, background)
 
 
 def _on_set(channel: ChannelInstrument, accelerance: ComplexArray, grid: FloatArray) -> ChannelInstrument:
@@ -190,31 +176,23 @@ def channel_ways(
     return ways
 
 
-def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
-    return named_generator(seed, Stage.SENSOR, specimen_id, name=name)
-
-
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing, a grid of frequencies (k,), motions along the shafts, and bearing forces."""
+    """A housing, a grid of frequencies (k,), and motions along the shafts."""
 
     housing: SpecimenHousing | None
     grid: FloatArray
     along: tuple[str, ...]
-    pressed: tuple[str, ...]
 
 
-def _channel(
-    sensor: SensorBase, axis: str, gain: float, draw: AxisDraws, paths: _Paths
-) -> tuple[ChannelInstrument, ChannelWay]:
+def _channel(drawn: DrawnChannel, paths: _Paths) -> tuple[ChannelInstrument, ChannelWay]:
     """Return a channel and what it sees of forces that the model does not make."""
-    housing, grid, shown = paths.housing, paths.grid, sensor.shows(axis, draw)
+    housing, grid, shown = paths.housing, paths.grid, drawn.shown
     motions = {one.name: weight for one, weight in shown.items() if one.kind == MOTION}
     accelerance, beyond, entries = None, None, None
     forces = () if housing is None else housing.forces
-    if isinstance(sensor.through, MeasuredPath):
-        weights = sensor.weights(axis, draw)
-        forces, accelerance = _measured(sensor, weights, draw, paths)
+    if drawn.path is not None:
+        forces, accelerance = drawn.path.forces, _measured(drawn.path, grid)
         beyond = accelerance
     elif housing is not None and motions:
         coupled, others = slice(housing.coupled), slice(housing.coupled, None)
@@ -222,18 +200,13 @@ def _channel(
         entries = housing.shown_accelerance(motions, tuple(housing.entries), grid, others)
         accelerance = beyond + housing.shown_accelerance(motions, forces, grid, coupled)
     channel = ChannelInstrument(
-        name=sensor.channel_name(axis),
-        sensor=sensor,
-        gain=gain,
+        drawn,
         seen=_of_model(shown, housing, paths.along),
-        forces=forces,
         accelerance=accelerance,
-        sensor_response=sensor.response(draw, grid),
-        high_pass_hz=sensor.coupling_hz(draw),
+        sensor_response=drawn.response(grid),
         path_modes=0 if housing is None or entries is None else housing.modes.frequency_hz.size,
         path_rms_m_s2_per_n=0.0 if accelerance is None else _band_rms(accelerance, grid),
-        path_number=path_number(sensor, draw.uniform),
-        transducer=sensor.transducer(axis, draw),
+        forces=forces,
     )
     return channel, ChannelWay(shown, beyond, entries, forces)
 
@@ -253,22 +226,9 @@ def _of_model(
     }
 
 
-def path_number(sensor: SensorBase, uniform: Callable[[str], float]) -> int:
-    """Return which file of a measured path a gearbox drew, from 0; sensors with as many files have the same."""
-    family = sensor.through.family if isinstance(sensor.through, MeasuredPath) else ()
-    return min(int(uniform("path.number") * len(family)), len(family) - 1) if len(family) > 1 else 0
-
-
-def _measured(
-    sensor: SensorBase, weights: Mapping[str, float], draw: AxisDraws, paths: _Paths
-) -> tuple[tuple[str, ...], ComplexArray]:
-    """Return bearing forces, and the accelerance (forces, k) from them that was measured."""
-    assert isinstance(sensor.through, MeasuredPath)
-    response = decoded_response(sensor.through.family[path_number(sensor, draw.uniform)])
-    known = {force for _, force in response.curves}
-    forces = tuple(force for force in paths.pressed if force in known)
-    rows = (weight * response.accelerance(d, forces, paths.grid) for d, weight in weights.items())
-    return forces, reduce(np.add, rows)
+def _measured(path: MeasuredWay, grid: FloatArray) -> ComplexArray:
+    """Return the accelerance (forces, k) that was measured."""
+    return reduce(np.add, (w * path.response.accelerance(d, path.forces, grid) for d, w in path.weights.items()))
 
 
 def _band_rms(accelerance: ComplexArray, grid: FloatArray) -> float:

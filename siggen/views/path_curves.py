@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,7 +54,9 @@ class PathCurves:
     @property
     def _step(self) -> int:
         """Rows that are left out between two: as few as make a file that can be read again, as many as modes allow."""
-        numbers = self.frequency_hz.size * (1 + 2 * max(len(c.forces) * len(c.sensor.axes) for c in self.channels))
+        of_sensors = Counter(channel.drawn.sensor for channel in self.channels)
+        widest = max(len(channel.forces) * of_sensors[channel.drawn.sensor] for channel in self.channels)
+        numbers = self.frequency_hz.size * (1 + 2 * widest)
         wide = MODES_PER_MEMORY / max(self.memory_s, 1e-9) / (self.frequency_hz[1] - self.frequency_hz[0])
         return max(min(-(-numbers // FILE_NUMBERS), int(wide)), 1)
 

@@ -103,7 +103,7 @@ def response_ways(config: Config, specimen: Specimen) -> dict[str, complex]:
     frequency = np.array([0.0, 0.45 * config.fs_hz])
     ways = {
         f"{one.name}_vertical": ChannelWay({Input(MOTION, f"casing_{one.name}/vertical"): 1.0}, None, None)
-        for one in specimen.sensors
+        for one in config.sensors
     }
     found = specimen_background(config, specimen, section, ways, frequency)
     assert found.inputs == ("second_stage",)

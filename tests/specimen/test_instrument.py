@@ -23,9 +23,9 @@ INPUTS = seats_of(PAIR)
 def test_a_force_that_also_comes_through_a_path_counts_twice() -> None:
     shown, bins = Input(FORCE, INPUTS[0]), 9
     channel = ChannelInstrument(
-        name="a_vertical", sensor=Accelerometer(name="a"), gain=1.0, seen={shown: 3.0},
+        draw_specimen(load_config("tests/configs/ideal.yaml"), 0).channels[0], seen={shown: 3.0},
         accelerance=np.full((len(INPUTS), bins), 2.0 + 0.0j), sensor_response=None,
-        path_modes=0, path_rms_m_s2_per_n=0.0, path_number=0, forces=INPUTS,
+        path_modes=0, path_rms_m_s2_per_n=0.0, forces=INPUTS,
     )  # fmt: skip
     found = channel_ways(channel, None, bins)
     assert {one: row[0] for one, row in found.items()} == {Input(FORCE, n): 2.0 for n in INPUTS} | {shown: 5.0}

@@ -8,14 +8,12 @@ The sensor's name and _ may stand before them; then those of other sensors are p
 
 from __future__ import annotations
 
-import base64
 import hashlib
 import io
 import re
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +25,9 @@ from siggen.config.consistency import places_of
 from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.errors import Problem
 from siggen.keys.problems import received_text
-from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
+from siggen.sensing.frequency_response import MEMORY_S, FrequencyResponse, curve_problems, grid_problems
 from siggen.sensors.path import MeasuredPath
+from siggen.sensors.response_text import SINGLE, ResponseRefusal, decoded_response, encoded_response
 
 UNIT = "m_s2_per_n"
 UNITS = {"real": (UNIT,), "imag": (UNIT,), "magnitude": (UNIT,), "phase": ("rad", "deg")}
@@ -42,22 +41,8 @@ MOST_NUMBERS = 400_000
 """Numbers that a response may have: they become part of the configuration, 11 bytes each."""
 
 
-MEMORY_S = 0.6
-"""Of a measured path: what comes later is cut off."""
 NUMBER_BYTES = 8
 """Of a number in a file of numpy."""
-
-
-SINGLE = "f4;"
-"""Before a response whose numbers are float32."""
-
-
-class ResponseRefusal(Exception):  # noqa: N818 - becomes a problem of the configuration, never seen outside
-    """What was received instead of a usable response, and what is allowed."""
-
-    def __init__(self, received: str, allowed: str) -> None:
-        self.received, self.allowed = received, allowed
-        super().__init__(f"{received}; {allowed}")
 
 
 def with_measured_responses(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[str, Any], list[Problem]]:
@@ -258,35 +243,3 @@ def _complex(key: tuple[str, str], parts: Mapping[str, FloatArray]) -> NDArray[n
             return np.asarray(parts["magnitude"] * np.exp(1j * parts["phase"]))
     received = f"{' and '.join(sorted(parts))} of {key[0]}_from_{key[1].replace('/', '_')}"
     raise ResponseRefusal(received, "allowed: real and imag, or magnitude and phase")
-
-
-def encoded_response(response: FrequencyResponse, numbers_as: str = "") -> str:
-    """Return a response as a text: one line that names its curves, and its numbers in base64.
-
-    With SINGLE numbers are float32, 1e-7 of a path that nobody knows to a per cent: a family fits into a file.
-    """
-    curves = [response.frequency_hz, *(part for c in response.curves.values() for part in (c.real, c.imag))]
-    names = [f"{direction} {name}" for direction, name in response.curves]
-    numbers = np.ascontiguousarray(curves, dtype="<f4" if numbers_as == SINGLE else "<f8").tobytes()
-    return numbers_as + ",".join(names) + ":" + base64.b64encode(numbers).decode()
-
-
-@lru_cache(maxsize=64)
-def decoded_response(text: str) -> FrequencyResponse:
-    """Return the response that a text stands for.
-
-    Raises
-    ------
-    ResponseRefusal
-        If it is none.
-    """
-    try:
-        head, _, body = text.removeprefix(SINGLE).partition(":")
-        keys = [(name.split(" ")[0], name.split(" ")[1]) for name in head.split(",")]
-        width = "<f4" if text.startswith(SINGLE) else "<f8"
-        raw = np.frombuffer(base64.b64decode(body, validate=True), width)
-        numbers = raw.astype(np.float64).reshape(1 + 2 * len(keys), -1)
-    except (ValueError, IndexError):
-        raise ResponseRefusal("a text that holds no response", "allowed: what siggen filled in itself") from None
-    curves = {key: numbers[1 + 2 * i] + 1j * numbers[2 + 2 * i] for i, key in enumerate(keys)}
-    return FrequencyResponse(numbers[0], curves)
