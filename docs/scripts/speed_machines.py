@@ -30,6 +30,7 @@ from diagnostics.signal.shaft_angle import AGREEMENT, shaft_angle
 from siggen.checks.face_accuracy import covering_classes
 from siggen.config import inherited, parse_yaml
 from siggen.errors import UsageError
+from siggen.keys.merging import in_keys, merged
 from siggen.rig.rig_answers import rig_of
 from siggen.rig.rig_text import rig_text
 
@@ -72,14 +73,14 @@ def machine(index: int) -> tuple[dict[str, Any], tuple[int, int]]:
     raw = inherited(parse_yaml(rig_text(rig, "rig", "bench"), "rig"))
     torque_nm, seed = rig.torque_nm[1] * float(rng.uniform(0.3, 1.0)), int(rng.integers(1 << 30))
     drift = float(np.exp(rng.uniform(*np.log(DRIFTS))) * rng.choice([-1.0, 1.0]))
-    speed = {**raw["variation"]["speed"], "start_ratio": 1.0 - 0.5 * drift, "end_ratio": 1.0 + 0.5 * drift}
+    speed = {"start_ratio": 1.0 - 0.5 * drift, "end_ratio": 1.0 + 0.5 * drift}
     order = int(rng.integers(17, 29)) * teeth[0] / teeth[1]
     stage = {"order": order, "force_share": float(np.exp(rng.uniform(np.log(0.005), np.log(0.1))))}
     changes = {
         "specimens": 1, "repeats": 1, "duration_s": DURATION_S, "seed": seed,
         "operating_points": [{"speed_hz": speed_hz, "torque_nm": torque_nm}],
         "states": chosen_states(raw["states"], STATES),
-        "variation": {**raw["variation"], "speed": speed},
+        "variation": merged(in_keys(raw["variation"]), {"speed": speed}),
         "background": {**raw["background"], "second_stage": stage if index % 3 else None},
     }  # fmt: skip
     return {**raw, **changes}, teeth

@@ -15,6 +15,7 @@ from schema_keys import Key, Schema, is_number_part
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
+from siggen.keys.catalogue import CATALOGUE
 from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform, is_written_number, written_text
 
 SECTION_DEFAULT = "by its keys"
@@ -43,6 +44,18 @@ Any Number may be written in one of these forms. Every gearbox draws its own val
 Two numbers in a list are always a range. `{each: [1.0, [0.9, 1.1]]}` gives a number or range for each of several
 things, where a key says so; a place `[x, y]` has a number or range for each of its two.
 """
+
+CATALOGUES_TEXT = """## Catalogues
+
+A word stands for the numbers of its line. Keys beside it go before them: `{model: laboratory, range_m_s2: 2000}`;
+`background: {like: laboratory, base: null}`. The set's own `config.yaml` holds the numbers.
+"""
+PLACES_OF_WORDS = {
+    "variation": "variation",
+    "background": "background",
+    "model": "sensors.NAME.model",
+    "mount": "sensors.NAME.mount",
+}
 
 
 def digits(value: float) -> str:
@@ -282,7 +295,7 @@ def page() -> str:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
                 lines += ["### " + re.sub(r" \(kind: \w+\)", "", place), ""]
             lines += [*listing_of(schema, rows)]
-    lines += [RANGES_TEXT, *ranges(schema)]
+    lines += [RANGES_TEXT, *ranges(schema), "", CATALOGUES_TEXT, *catalogues()]
     return "\n".join(lines).rstrip() + "\n"
 
 
@@ -292,6 +305,16 @@ def ranges(schema: Schema) -> Iterator[str]:
     yield row("---", "---")
     for model in (Uniform, LogUniform, Normal, Choice):
         yield row(f"`{model.form}`", described(schema, schema.content["$defs"][model.__name__]))
+
+
+def catalogues() -> Iterator[str]:
+    """Yield the table of the words of all catalogues."""
+    yield row("key", "word", "stands for", "source")
+    yield row("---", "---", "---", "---")
+    for key, words in CATALOGUE.items():
+        for word, entry in words.items():
+            keys = "; ".join(f"`{name}: {written_text(value)}`" for name, value in entry.keys.items())
+            yield row(f"`{PLACES_OF_WORDS[key]}`", f"`{word}`", keys, entry.source)
 
 
 if __name__ == "__main__":

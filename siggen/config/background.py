@@ -8,10 +8,11 @@ a published number, "assumed" an engineering judgement.
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from siggen.keys.catalogue import CatalogueWord, with_entries
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
@@ -89,6 +90,9 @@ class ForeignMesh(Section):
 class Background(Section):
     """A healthy machine around the gears; with this section, noise levels belong to the gearbox."""
 
+    like: Annotated[str | None, CatalogueWord("background")] = Field(
+        default=None, description="word of the catalogue whose parts it takes over beside its own", exclude=True
+    )
     base: Base | None = Field(default=None, description="null: bolts stand on the ground")
     rubbing: Rubbing | None = Field(default=None, description="null: none")
     bearings: Bearings | None = Field(default=None, description="null: none")
@@ -96,3 +100,8 @@ class Background(Section):
     shafts: ShaftLines | None = Field(default=None, description="null: none")
     second_stage: ForeignMesh | None = Field(default=None, description="a stage that shares a shaft; null: none")
     auxiliary_drive: ForeignMesh | None = Field(default=None, description="a pump or other drive; null: none")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_entry(cls, value: Any) -> Any:
+        return with_entries(value, like="background")

@@ -7,7 +7,7 @@ import json
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_serializer, model_validator
+from pydantic import BeforeValidator, Field, field_serializer, model_validator
 
 from siggen.config.background import Background
 from siggen.config.changes import Change
@@ -28,6 +28,7 @@ from siggen.config.variation import Variation
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.keys.by_name import ByName, written_by_name
+from siggen.keys.merging import in_keys
 from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
@@ -76,6 +77,10 @@ class OperatingRange(Section):
     )
 
 
+VARIATION = AllowedText("a word of the catalogue, laboratory or plant, or a mapping with like, speed and torque")
+BACKGROUND = AllowedText(
+    "a word of the catalogue, laboratory, or a mapping with like and parts of the background; null"
+)
 STATES = ByName("{healthy: {}, slight: {damage: {kind: irregular, ...}}}")
 SENSORS = ByName("{lid: {place: lid}, side: {place: gear_end}}")
 OPERATING_POINTS = AllowedText("a list of at least one mapping with speed_hz and torque_nm")
@@ -127,13 +132,17 @@ class Config(Section):
         description="what measures; of kind accelerometer unless it says otherwise"
     )
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
-    variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
+    variation: Annotated[Variation, BeforeValidator(in_keys, json_schema_input_type=Variation | str), VARIATION] = (
+        Field(default=Variation(), description="how speed and torque vary within a record, or a word of the catalogue")
+    )
     internals: Internals | None = Field(default=None, description="what no sensor sees; null: not stored")
     housing: Housing = Field(
         default=PlateHousing(),
         description="what carries the bearings with dynamics.model: casing; plates, modal or rigid",
     )
-    background: Background | None = Field(default=None, description="what a healthy machine adds; null: nothing")
+    background: Annotated[
+        Background | None, BeforeValidator(in_keys, json_schema_input_type=Background | str | None), BACKGROUND
+    ] = Field(default=None, description="what a healthy machine adds, or a word of the catalogue; null: nothing")
 
     @field_serializer("states", "sensors")
     def _by_name(self, sections: tuple[Section, ...]) -> dict[str, Any]:

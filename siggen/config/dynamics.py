@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.config.mesh import Friction, Mesh
 from siggen.faults.ball_geometry import BallGeometry
@@ -41,8 +42,16 @@ class Unbalance(Section):
     )
 
 
-BEARINGS = "both bearings of the shaft, horizontal (x) and vertical (y); along it (z), where helical teeth push"
+BEARINGS = (
+    "both bearings of the shaft, horizontal (x) and vertical (y), where x counts for y too unless that is given; "
+    "along it (z), where helical teeth push"
+)
 DAMPED = "the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+ALIKE = {
+    f"bearing_{what}_y_{unit}": f"bearing_{what}_x_{unit}"
+    for what, unit in (("stiffness", "n_per_m"), ("damping", "n_s_per_m"))
+}
+"""Key of the vertical direction -> that of the horizontal one, whose value it has where it is not given."""
 MACHINE = "of the machine that drives, or is driven"
 
 
@@ -59,6 +68,14 @@ class PlainRotor(Section):
     bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
     bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
     bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _alike(cls, value: Any) -> Any:
+        """Give y what x has where it has nothing of its own."""
+        if not isinstance(value, Mapping):
+            return value
+        return {**{key: value[other] for key, other in ALIKE.items() if other in value}, **value}
 
 
 class Rotor(PlainRotor):

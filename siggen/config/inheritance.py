@@ -10,17 +10,13 @@ from siggen.config.data_file import is_file
 from siggen.config.presets import config_file
 from siggen.config.yaml_source import read_yaml
 from siggen.errors import ConfigError, Problem, UsageError
-from siggen.keys.distributions import WORDS
+from siggen.keys.merging import merged
 from siggen.keys.problems import received_text
 
 EXTENDS = "extends"
-OTHERS = "others"
-"""Key of a mapping that takes nothing over where it is null."""
 REPLACED = ("gears", "stages", "planetary")
 """Sections that a machine takes the place of."""
 REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
-REPLACING = ("kind", "like", "times", "add", *WORDS)
-"""Keys of a mapping that stands for itself: it takes nothing from the one that it replaces."""
 DEEPEST = 8
 """Files that may extend each other in a row."""
 
@@ -115,24 +111,3 @@ def _beside(folder: Path, names: Any) -> Any:
     if isinstance(names, (list, tuple)):
         return [_beside(folder, name) for name in names]
     return str(folder / names) if isinstance(names, str) else names
-
-
-def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `base` with the values of `own`; see `inherited` for what is merged and what is replaced.
-
-    A key that is new stands behind the one before it in `own`, and at the end where there is none.
-    """
-    if OTHERS in own and own[OTHERS] is None:
-        return {key: value for key, value in own.items() if key != OTHERS}
-    keys = [*base]
-    at = len(keys) - 1
-    for key in own:
-        at = keys.index(key) if key in keys else at + 1
-        keys[at:at] = [] if key in keys else [key]
-    result = {key: base.get(key) for key in keys}
-    for key, value in own.items():
-        below = result[key]
-        both = isinstance(below, Mapping) and isinstance(value, Mapping)
-        replaces = not both or any(word in value for word in REPLACING)
-        result[key] = value if replaces else merged(below, value)  # type: ignore[arg-type]
-    return result

@@ -9,6 +9,7 @@ from typing import Any
 from siggen.config.yaml_source import yaml_value
 from siggen.errors import ConfigError, Problem
 from siggen.keys.by_name import BY_NAME, named_entries
+from siggen.keys.merging import BY_WORD, in_keys
 from siggen.keys.problems import nearest, received_text
 
 FORM = "allowed: a path and a value, such as gears.module_mm=3.5 or operating_points.0.speed_hz=25"
@@ -75,6 +76,8 @@ def _below(place: Any, part: str, path: str) -> Any:
         raise _not_a_container(place, path)
     if place.get(part) is None:
         place[part] = {}
+    if not path and part in BY_WORD:
+        place[part] = in_keys(place[part])
     return place[part]
 
 

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from typing import Any
 
-from siggen.config.dynamics import Rotor
+from siggen.config.dynamics import ALIKE, Rotor
 from siggen.config.gears import ToothForm, Wheel
 from siggen.config.inheritance import REPLACED
 from siggen.config.machine import Machine, MachineMesh
@@ -173,9 +173,9 @@ def _rotors(machine: Machine) -> dict[str, Any]:
 
 
 def _given(section: Section, model: type[Section]) -> dict[str, Any]:
-    """Return what a section has of a model's keys beside its defaults."""
+    """Return what a section has of a model's keys beside its defaults, and what would follow from another key."""
     values = {key: getattr(section, key) for key in model.model_fields}
-    return {key: value for key, value in values.items() if value != model.model_fields[key].default}
+    return {key: value for key, value in values.items() if key in ALIKE or value != model.model_fields[key].default}
 
 
 def _words(names: Names) -> Iterator[tuple[str, str, dict[str, str]]]:

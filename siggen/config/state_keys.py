@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from siggen.config.inheritance import merged
 from siggen.errors import Problem
+from siggen.keys.merging import merged
 from siggen.keys.problems import nearest_word, received_text
 
 OF_ACTING_DAMAGE = ("fault", "severity")

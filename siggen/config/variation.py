@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from siggen.keys.catalogue import CatalogueWord, with_entries
 from siggen.keys.number import Number, Within, bounds
 from siggen.keys.section import Section
 from siggen.keys.usual import Usual
@@ -58,8 +59,16 @@ class TorqueVariation(Section):
 class Variation(Section):
     """What varies within a record; nothing by default."""
 
+    like: Annotated[str | None, CatalogueWord("variation")] = Field(
+        default=None, description="word of the catalogue whose numbers it takes over beside its own", exclude=True
+    )
     speed: SpeedVariation = Field(default=SpeedVariation(), description="rotation of the input shaft")
     torque: TorqueVariation = Field(default=TorqueVariation(), description="torque of motor and load")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_entry(cls, value: Any) -> Any:
+        return with_entries(value, like="variation")
 
     @property
     def active(self) -> bool:

@@ -226,19 +226,7 @@ def _sensors(rig: Rig) -> str:
 
 def _sensor(i: int) -> str:
     place, axis = PLACES[i % len(PLACES)]
-    own = f"""place: {place}
-    axes: [{axis}]"""
-    if i:
-        return f"  sensor_{i + 1}:\n    <<: *sensor\n    {own}"
-    return f"""\
-  sensor_{i + 1}: &sensor
-    {own}
-    gain: {{normal: [1.0, 0.05], within: [0.9, 1.1]}}
-    noise: {{floor_m_s2: {{log: [0.003, 0.01]}}}}
-    range_m_s2: 500.0
-    bits: noise
-    high_pass_hz: {{log: [0.5, 2.0]}}
-    mounting: {{frequency_hz: [6000, 15000], damping_ratio: 0.06}}"""
+    return f"  sensor_{i + 1}: {{place: {place}, axes: [{axis}], model: laboratory, mount: any}}"
 
 
 def _spread(value: float) -> str:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from math import cos, pi, sin
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.errors import Problem
+from siggen.keys.catalogue import CatalogueWord, with_entries
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import received_text
 from siggen.keys.scaling import Grows
@@ -70,6 +71,12 @@ class Accelerometer(SourceKeys, SensorBase):
     axes: Annotated[tuple[Literal["vertical", "horizontal", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="what it measures, one channel each"
     )
+    model: Annotated[str | None, CatalogueWord("model")] = Field(
+        default=None, description="word of the catalogue; keys beside it go before its own", exclude=True
+    )
+    mount: Annotated[str | None, CatalogueWord("mount")] = Field(
+        default=None, description="how it is fixed, by the catalogue: its `mounting`", exclude=True
+    )
     noise: Annotated[NoiseFloor | None, AllowedText("null, or a mapping with floor_m_s2")] = Field(
         default=None, description="added before clipping and quantisation"
     )
@@ -87,6 +94,11 @@ class Accelerometer(SourceKeys, SensorBase):
     cross_axis: Annotated[Number, Within(least=0, most=0.2), Usual(0.002, 0.2)] = Field(
         default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_entries(cls, value: Any) -> Any:
+        return with_entries(value, model="model", mount="mount")
 
     @property
     def drawn_by_name(self) -> bool:

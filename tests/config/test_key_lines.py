@@ -68,7 +68,8 @@ BAD = [
     ("      bearing_span_mm: ", "      bearing_span_mm: 0.0 #", "dynamics.shafts.pinion.bearing_span_mm"),
     ("  lead_misalignment_um: ", "  lead_misalignment_um: 1e6 #", "manufacture.lead_misalignment_um"),
     ("  crowning_um: ", "  crowning_um: -1 #", "manufacture.crowning_um"),
-    ("  machines: {}\n", "  machines:\n    density_n_per_sqrt_hz: 1e9\n", "background.machines.density_n_per_sqrt_hz"),
+    ("  like: laboratory\n", "  like: laboratory\n  machines: {density_n_per_sqrt_hz: 1e9}\n",
+     "background.machines.density_n_per_sqrt_hz"),
     ("states:\n", "states:\n  x: {severity: slight, damage: {kind: irregular, profile_length_mm: 0.2, "
      "face_share: 1.0, skew_mm_per_10mm: [-2, 2]}}\n", "states.x.damage.skew_mm_per_10mm"),
     ("states:\n", "states:\n  x: {severity: slight, damage: {kind: irregular, profile_length_mm: 9, "
