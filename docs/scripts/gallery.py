@@ -7,11 +7,10 @@ from matplotlib.figure import Figure
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
-from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.tooth_damage import pits_of
 from siggen.gears.stiffness.sections import contact_length_loss
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.damage import state_damage
+from siggen.specimen.mesh_teeth import all_teeth
 from siggen.views.flank_figure import save_flank_figure
 from siggen.views.flank_views import flank_damage_table, flank_views
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
@@ -61,8 +60,8 @@ def curves(config: Config, state: str) -> tuple[StiffnessCurve, StiffnessCurve]:
 
 def contact_extent(config: Config, state: str) -> tuple[float, float, float]:
     """Return first and last pinion angle at which the contact meets pits [deg], and the largest lost length [mm]."""
-    pair = gear_pair(draw_specimen(config, 0).gears)
-    damage = state_damage(config, 0, pair, STATES.index(state))
+    teeth = all_teeth(draw_specimen(config, 0))[0]
+    pair, damage = teeth.pair, teeth.damage(STATES.index(state))
     pits = pits_of(damage, "pinion", damage[0].tooth)
     ends = [p.height_m + sign * p.semi_axis_profile_m for p in pits for sign in (-1, 1)]
     gear = pair.pinion

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from siggen.checks.bearing_problems import bearing_problems
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.housing_problems import housing_problems
+from siggen.checks.mesh_sections import first_sections, ring_sections, stage_sections
 from siggen.checks.pair_problems import pair_problems
 from siggen.checks.ring_problems import ring_problems, rings_round
 from siggen.checks.shaft_problems import shaft_problems
@@ -26,7 +27,7 @@ from siggen.config import Dynamics, Gears, ParsedConfig, Stiffness
 from siggen.config.short_form import names_in
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.flank_place import allowed_text, found_problems, in_mm
+from siggen.faults.flank_place import allowed_text, found_problems, in_mm, mesh_of_gear
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
@@ -35,7 +36,6 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
-from siggen.planning.stages import first_sections, ring_sections, stage_of, stage_sections
 
 KEYS = {
     "teeth": "teeth",
@@ -67,7 +67,7 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
 def _has_stages(sections: Mapping[str, Any]) -> bool:
     """Return whether there are further meshes, or damage names one."""
     damages = (one for state in sections.get("states", {}).values() for one in state.damages)
-    return bool(sections.get("stages")) or any(stage_of(one) for one in damages)
+    return bool(sections.get("stages")) or any(mesh_of_gear(one.hit_gear) for one in damages)
 
 
 def _located_in(path: str, problem: Problem) -> Problem:

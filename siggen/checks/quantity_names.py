@@ -16,9 +16,9 @@ from siggen.keys.drawing import corners
 from siggen.names import Names
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
-from siggen.specimen.flank_waves import WavyTeeth
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.structure import structure
+from siggen.specimen.wavy_teeth import WavyTeeth
 
 NEAREST = 3
 
@@ -71,7 +71,7 @@ def _tabulated(
     pair: GearPair, specimen: Specimen, assembled: Structure, reach: float = CORNER_REACH_PITCHES
 ) -> SpecimenMesh:
     """Return a healthy mesh of a gearbox, whose corners are followed for a reach."""
-    tables = mesh_tables(pair, (), specimen.meshes[0].options, points=TABLE_POINTS)
+    tables = mesh_tables(pair, (), specimen.meshes[0].teeth.options, points=TABLE_POINTS)
     teeth = WavyTeeth(teeth_missing(specimen.law, pair, TABLE_POINTS, reach), pair)
     return SpecimenMesh(pair, assembled, tables, teeth)
 

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.checks.mesh_sections import stage_sections
 from siggen.config import Gears, Stage
 from siggen.config.gears import Pair
 from siggen.config.short_form import names_in
@@ -26,7 +27,6 @@ from siggen.gears.geometry.gear_pair import geometry_problems
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, bounds
 from siggen.names import Names
-from siggen.planning.stages import stage_sections
 from siggen.specimen.staged_structure import LEAST_SPAN
 
 ON_ONE_AXIS_MM = 0.02

@@ -26,12 +26,12 @@ from siggen.dynamics.structure.gear_stage import Shaft as Beam
 from siggen.dynamics.structure.gear_stage import cantilever_compliance_m_per_n
 from siggen.errors import Problem
 from siggen.gearbox.pair import stiffness_options
+from siggen.gearbox.teeth import largest_force_n
 from siggen.gears.contact.table_columns import approach_under_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, at, bounds
-from siggen.specimen.contact import largest_force_n
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 
 NEEDED = ("dynamics", "operating_points", "stiffness")

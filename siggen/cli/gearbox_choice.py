@@ -20,8 +20,8 @@ class GearboxChoice:
         str | None, typer.Option("--stage", help="Which mesh: the name of a further stage; by default the first one.")
     ] = None
 
-    def of(self, config: Config) -> Config:
-        """Return the configuration of the chosen mesh alone.
+    def mesh(self, config: Config) -> int:
+        """Return the number of the chosen mesh, 0 for the first one.
 
         Raises
         ------
@@ -30,4 +30,4 @@ class GearboxChoice:
         """
         from siggen.views.chosen_mesh import chosen_mesh
 
-        return chosen_mesh(config, self.specimen, self.stage, "--stage")
+        return chosen_mesh(config, self.stage, "--stage")

@@ -96,16 +96,17 @@ def tvms(
     png = picture.place("tvms")
     check_wanted(out, png, "tvms")
     with working("computing the mesh stiffness of every state"):
-        usable = gearbox.of(load_config(config, overrides or ()))
-        torque = static_torque_nm(usable, gearbox.specimen) if torque_nm is None else torque_nm
+        usable = load_config(config, overrides or ())
+        mesh = gearbox.mesh(usable)
+        torque = static_torque_nm(usable, gearbox.specimen, mesh) if torque_nm is None else torque_nm
         if study.vary:
             loaded = (
-                (label, gearbox.of(load_config(config, [*(overrides or ()), *changes])), state)
+                (label, load_config(config, [*(overrides or ()), *changes]), state)
                 for label, changes, state in varied(study.vary, usable)
             )
-            curves = varied_curves(loaded, gearbox.specimen, torque)
+            curves = varied_curves(loaded, gearbox.specimen, torque, mesh)
         else:
-            curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque)
+            curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque, mesh=mesh)
         meaning = stiffness_meaning(across_the_face=usable.dynamics.mesh.law == "pairs", torque_nm=torque)
     if out is not None:
         table = curve_table(curves, **asdict(further))
@@ -114,7 +115,7 @@ def tvms(
         with working("drawing the picture", compiles=False):
             save_stiffness_figure(curves, png, **asdict(further), title=meaning)
     echo(meaning, err=True)
-    for note in model_notes(usable):
+    for note in model_notes(usable, mesh):
         echo(f"note: {note}", err=True)
     if out is not None:
         echo(str(out))

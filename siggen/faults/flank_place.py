@@ -82,9 +82,13 @@ GO_ON = {"contact": ", or dynamics.mesh.law: pairs"}
 """What else to do about a problem, by its name."""
 
 
+DOT = "."
+"""Between the name of a stage and that of its gear, where damage names both."""
+
+
 def mesh_of_gear(gear: str) -> str:
     """Return the further stage in the name of a gear, or `ring`; empty for the first mesh and no gear."""
-    return gear if gear == "ring" else gear.rpartition(".")[0]
+    return gear if gear == "ring" else gear.rpartition(DOT)[0]
 
 
 def height_m_of(pair: GearPair, which: str, height_mm: float | str, reading: str) -> float:

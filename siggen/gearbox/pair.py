@@ -58,9 +58,10 @@ def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
     return replace(options, coupling="none") if isinstance(pair, InternalPair) else options
 
 
-def model_notes(config: Config) -> tuple[str, ...]:
-    """Return what to know about the stiffness model of a set, at the bounds of its gears, each sentence once."""
+def model_notes(config: Config, mesh: int = 0) -> tuple[str, ...]:
+    """Return what to know about the stiffness model of a mesh, at the bounds of its gears, each sentence once."""
     options = stiffness_options(config.stiffness)
-    gears = [gear.word for gear in config.names.first.gears]
-    notes = (note for corner in corners(config.gears) for note in stiffness_notes(gear_pair(corner), options, gears))
+    gears = [gear.word for gear in config.names.meshes[mesh].gears]
+    section = config.stages[mesh - 1].gears if mesh else config.gears
+    notes = (note for corner in corners(section) for note in stiffness_notes(gear_pair(corner), options, gears))
     return tuple(dict.fromkeys(notes))

@@ -1,5 +1,9 @@
-"""A drawn planetary set in SI: its bodies on their supports.
+"""A drawn planetary set in SI: its bodies on their supports, and the teeth of its 2N meshes.
 
+The sun meshes with each planet, then each planet with the ring. Each mesh is a pair of its own, with teeth drawn for
+it; the sun and the ring are one and the same in all of theirs. A planet's flanks towards the sun are not those towards
+the ring, so damage of a planet is in one mesh: that of the first planet with the sun. Damage of sun and ring is in all
+of their meshes, as its teeth come round.
 Bodies are steel discs, the ring an annulus: r²/2 (outer and inner) about the axis. A body of mass m on a support k is
 damped by 2 ζ √(k m). What holds the ring round its rim keeps it from turning too: evenly spread springs and dampers
 that resist along and across make k R² (derived).
@@ -7,14 +11,17 @@ that resist along and across make k R² (derived).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import pi, sqrt
 
-from siggen.config import Dynamics, PlainRotor, Planetary
+from siggen.config import Dynamics, PlainRotor, Planetary, Rotor
+from siggen.config.planetary import RING
 from siggen.dynamics.structure.gear_stage import PlanetaryBody, PlanetaryStage
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3
+from siggen.gearbox.teeth import Drawing, Teeth, mesh_seed, on_one_body, sharing
 from siggen.gearbox.train import coupling_numbers, rotor_numbers
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.internal_pair import InternalPair
+from siggen.gears.geometry.internal_pair import InternalPair, ring_begins_pitches
 from siggen.gears.geometry.planetary import PlanetarySet
 from siggen.keys.number import Number, constant
 
@@ -72,3 +79,37 @@ def _carrier(section: Planetary, pair: GearPair) -> PlanetaryBody:
     radius = pair.working_centre_distance_m
     mass = STEEL_DENSITY_KG_M3 * pi * radius**2 * pair.face_width_m
     return _body(radius, (mass, 0.5 * mass * radius**2), section.carrier_stiffness_n_per_m)
+
+
+def planetary_teeth(
+    drawing: Drawing, rotors: Sequence[Rotor], seed: int, teeth: PlanetarySet, pair: GearPair, ring: InternalPair
+) -> tuple[Teeth, ...]:
+    """Return the teeth of the sun with each planet, then of each planet with the ring.
+
+    Parameters
+    ----------
+    drawing : draws the teeth of one mesh
+    rotors : of every pinion and gear, for how far their seats lie off their bearings
+    seed : int, of the gearbox
+    teeth : PlanetarySet
+    pair, ring : sun and planet; planet and ring
+    """
+    later, of_ring = _axes_later_rad(teeth, pair, ring), mesh_seed(seed, RING)
+    first = drawing(pair, rotors, seed, "", 1.0)
+    suns, rings = [first], [on_one_body(drawing(ring, rotors, of_ring, RING, 1.0), first, later[0])]
+    for i in range(1, len(later)):
+        suns.append(sharing(drawing(pair, rotors, mesh_seed(seed, f"planet_{i}"), "", 1.0), first, "pinion"))
+        own = sharing(drawing(ring, rotors, mesh_seed(of_ring, f"planet_{i}"), RING, 1.0), rings[0], "gear")
+        rings.append(on_one_body(own, suns[i], later[i]))
+    return *suns, *rings
+
+
+def _axes_later_rad(teeth: PlanetarySet, pair: GearPair, inner: InternalPair) -> list[float]:
+    """Return by how much the phase of a planet's eccentricity is later in its mesh with the ring than with the sun.
+
+    Derived: moved by e at the angle β from the radius outwards, a planet stands back from the sun by e sin(β + α_s),
+    from the ring by e sin(β - α_r); both phases count its turning, opposite to β, from where that mesh has turned none.
+    """
+    angles = pair.working_pressure_angle_rad + inner.working_pressure_angle_rad
+    lag, both = ring_begins_pitches(pair, inner), zip(teeth.sun_begins, teeth.ring_begins, strict=True)
+    return [angles - 2.0 * pi * (lag + float(ring - sun)) / teeth.planet for sun, ring in both]

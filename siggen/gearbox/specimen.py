@@ -14,10 +14,10 @@ from siggen.dynamics.structure.gear_stage import GearStage, NextStage, Planetary
 from siggen.dynamics.time.sampling import Sampling
 from siggen.gearbox.channels import DrawnChannel
 from siggen.gearbox.housing import Housing
+from siggen.gearbox.teeth import Teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.geometry.planetary import PlanetarySet
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.names import Names
 
 
@@ -28,6 +28,10 @@ class OperatingPoint:
     speed_hz: float
     torque_nm: float
 
+    def turned(self, turning: float) -> OperatingPoint:
+        """Return the point as a shaft has it that turns `turning` times per turn of the first one."""
+        return OperatingPoint(self.speed_hz * turning, self.torque_nm / turning)
+
 
 @dataclass(frozen=True, slots=True)
 class ToothMesh:
@@ -36,17 +40,20 @@ class ToothMesh:
     Attributes
     ----------
     inner : its name in sections; empty for the first one
-    pair : its gears
-    options : how their teeth bend
+    teeth : of its gears
     idler : whether its driver is the driven gear of the mesh in front
     direction_rad : from the driver's axis to that of its mate, against the first mesh
     """
 
     inner: str
-    pair: GearPair
-    options: StiffnessOptions
+    teeth: Teeth
     idler: bool = False
     direction_rad: float = 0.0
+
+    @property
+    def pair(self) -> GearPair:
+        """Its gears."""
+        return self.teeth.pair
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +70,8 @@ class PairTrain:
 class PlanetaryGears:
     """A planetary set: its teeth in numbers, sun and planet, planet and ring, and its bodies.
 
-    `pin_errors_m`: how far each planet's pin is ahead of its place along the tangent.
+    `pin_errors_m`: how far each planet's pin is ahead of its place along the tangent; `meshes` are the teeth of the sun
+    with each planet, then of each planet with the ring.
     """
 
     teeth: PlanetarySet
@@ -71,6 +79,7 @@ class PlanetaryGears:
     ring: InternalPair
     stage: PlanetaryStage
     pin_errors_m: tuple[float, ...]
+    meshes: tuple[Teeth, ...]
 
     @property
     def hunting_turns(self) -> float:
@@ -147,6 +156,11 @@ class Specimen:
         if self.planets is not None:
             return self.planets.hunting_turns
         return lcm(*(turns.denominator for turns in self.shaft_turns))
+
+    @property
+    def all_teeth(self) -> tuple[Teeth, ...]:
+        """Teeth of all meshes, in the order of power; of a planetary set as `PlanetaryGears.meshes`."""
+        return tuple(mesh.teeth for mesh in self.meshes) if self.planets is None else self.planets.meshes
 
     def under(self, point: OperatingPoint) -> Specimen:
         """Return the gearbox at an operating point; itself where its bearings have one stiffness."""

@@ -149,12 +149,14 @@ def _of_gearbox(
     gearbox: Gearbox, state: object, torque_nm: float | None, mesh: str | None, points_per_pitch: int
 ) -> Curve:
     name = one_of("damages", state, [one.name for one in gearbox.states])
-    whole = gearbox._with_passed(gearbox._config)
+    config = gearbox._with_passed(gearbox._config)
     with saying({"torque": "torque_nm"}):
-        config = chosen_mesh(whole, gearbox.number, mesh, "mesh")
-        torque = static_torque_nm(config, gearbox.number)
+        number = chosen_mesh(config, mesh, "mesh")
+        torque = static_torque_nm(config, gearbox.number, number)
         torque = torque if torque_nm is None else finite("torque_nm", torque_nm, "a number above 0", 1e-9)
-        (curve,) = stiffness_curves(config, gearbox.number, points_per_pitch, torque_nm=torque, states=(name,))
+        (curve,) = stiffness_curves(
+            config, gearbox.number, points_per_pitch, torque_nm=torque, states=(name,), mesh=number
+        )
     return Curve(
         curve.angle_rad,
         curve.mesh_stiffness_n_per_m,

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from functools import partial
 from math import radians
 
-from siggen.config import Config, Dynamics, Gears, Planetary
+from siggen.config import Config, Dynamics, Gears, Planetary, Rotor
 from siggen.config.planetary import RING
 from siggen.config.planetary_problems import set_of
-from siggen.config.stages import Stage, with_idlers
+from siggen.config.stages import Stage, turned, with_idlers
 from siggen.dynamics.time.sampling import Sampling
 from siggen.gearbox.channels import drawn_channels
 from siggen.gearbox.housing import drawn_housing
-from siggen.gearbox.pair import gear_pair, mesh_options, stiffness_options
-from siggen.gearbox.planetary import planetary_stage
+from siggen.gearbox.pair import gear_pair, stiffness_options
+from siggen.gearbox.planetary import planetary_stage, planetary_teeth
 from siggen.gearbox.specimen import OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
+from siggen.gearbox.teeth import Drawing, drawn_teeth, mesh_seed, on_one_body
 from siggen.gearbox.tooth_law import tooth_law
 from siggen.gearbox.train import ball_bearings, bending_shafts, gear_stage, next_stages
+from siggen.gears.geometry.idler import idler_later_rad
 from siggen.gears.geometry.internal_pair import ring_round
 from siggen.keys.drawing import draw
 from siggen.keys.number import at, constant
@@ -44,15 +48,13 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     dynamics = draw(own.dynamics, supports, "dynamics")
     stages = tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages)))
     section = None if own.planetary is None else draw(own.planetary, supports, "planetary")
-    pair = gear_pair(first)
-    planets = None if section is None else _planets(own, section, first, dynamics, specimen_id)
-    pairs = [("", pair), *((stage.name, gear_pair(stage.gears)) for stage in stages)]
-    pairs += [] if planets is None else [(RING, planets.ring)]
-    options = stiffness_options(stiffness)
-    meshes = tuple(
-        ToothMesh(name, one, mesh_options(one, options), stage is not None and stage.idler, _direction_rad(stage))
-        for (name, one), stage in zip(pairs, [None, *stages, *([None] if planets else [])], strict=True)
-    )
+    drawing, rotors = partial(drawn_teeth, own, specimen_id, stiffness_options(stiffness)), _rotors(own.dynamics)
+    planets = None
+    if section is None:
+        meshes = tuple(_meshes(first, rotors, stages, own.seed, drawing))
+    else:
+        planets = _planets(own, section, first, dynamics, specimen_id, drawing)
+        meshes = ToothMesh("", planets.meshes[0]), ToothMesh(RING, planets.meshes[len(planets.pin_errors_m)])
     balls = ball_bearings(dynamics)
     sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
     sensors = tuple(one.drawn(sensor) for one in own.sensors)
@@ -69,7 +71,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         gears=first,
         stiffness=stiffness,
         dynamics=dynamics,
-        housing=drawn_housing(own, specimen_id, dynamics, pair, sensors),
+        housing=drawn_housing(own, specimen_id, dynamics, meshes[0].pair, sensors),
         channels=tuple(drawn_channels(own, specimen_id, sensors)),
         points=points,
         sensor_places_mm={one.name: tuple(map(constant, one.place_on_casing_mm)) for one in sensors},
@@ -79,8 +81,21 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     )
 
 
-def _direction_rad(stage: Stage | None) -> float:
-    return 0.0 if stage is None else radians(constant(stage.direction_deg))
+def _rotors(dynamics: Dynamics) -> tuple[Rotor, Rotor]:
+    return dynamics.pinion, dynamics.gear
+
+
+def _meshes(
+    gears: Gears, rotors: Sequence[Rotor], stages: tuple[Stage, ...], seed: int, drawing: Drawing
+) -> Iterator[ToothMesh]:
+    """Yield the meshes of a train; the axis of an idler is that which it has in the mesh in front."""
+    front = drawing(gear_pair(gears), rotors, seed, "", 1.0)
+    yield ToothMesh("", front)
+    for stage, turning in zip(stages, turned(gears, stages), strict=False):
+        pair, of_stage = gear_pair(stage.gears), mesh_seed(seed, stage.name)
+        own = drawing(pair, (Rotor(), Rotor()), of_stage, stage.name, float(turning))
+        front = on_one_body(own, front, idler_later_rad(front.pair, pair)) if stage.idler else own
+        yield ToothMesh(stage.name, front, stage.idler, radians(constant(stage.direction_deg)))
 
 
 def _train(dynamics: Dynamics, stages: tuple[Stage, ...], meshes: tuple[ToothMesh, ...]) -> PairTrain:
@@ -90,13 +105,16 @@ def _train(dynamics: Dynamics, stages: tuple[Stage, ...], meshes: tuple[ToothMes
     return PairTrain(first, behind, bending, ball_bearings(dynamics))
 
 
-def _planets(config: Config, section: Planetary, gears: Gears, dynamics: Dynamics, specimen_id: int) -> PlanetaryGears:
+def _planets(
+    config: Config, section: Planetary, gears: Gears, dynamics: Dynamics, specimen_id: int, drawing: Drawing
+) -> PlanetaryGears:
     teeth, pair = set_of(gears, section), gear_pair(gears)
     ring = ring_round(pair, teeth.ring)
     rng = named_generator(config.seed, Consumer.GEARS, specimen_id, name="planetary.pin_error_um")
-    drawn = rng.standard_normal(len(section.positions_deg))
-    errors = tuple((1e-6 * constant(section.pin_error_um) * drawn).tolist())
-    return PlanetaryGears(teeth, pair, ring, planetary_stage(section, dynamics, pair, ring, teeth), errors)
+    errors = 1e-6 * constant(section.pin_error_um) * rng.standard_normal(len(section.positions_deg))
+    stage = planetary_stage(section, dynamics, pair, ring, teeth)
+    meshes = planetary_teeth(drawing, _rotors(config.dynamics), config.seed, teeth, pair, ring)
+    return PlanetaryGears(teeth, pair, ring, stage, tuple(errors.tolist()), meshes)
 
 
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:

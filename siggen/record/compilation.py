@@ -76,12 +76,12 @@ def _run_teeth(config: Config) -> None:
     from siggen.planning.gearbox import gearbox_config
     from siggen.planning.specimen import draw_specimen
     from siggen.record.specimen_state import state_teeth
-    from siggen.specimen.made_gears import MadeGears
+    from siggen.specimen.mesh_teeth import MeshTeeth
 
     specimen, own = draw_specimen(config, 0), gearbox_config(config, 0)
-    made = MadeGears(own, specimen)
+    teeth = MeshTeeth(specimen.law, specimen.meshes[0].teeth)
     for state_id in _damaged(own):
-        state_teeth(own, specimen, state_id, made)
+        state_teeth(specimen.law, teeth, own.states[state_id], state_id)
 
 
 def _damaged(config: Config) -> Sequence[int]:

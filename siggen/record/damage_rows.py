@@ -6,24 +6,24 @@ from functools import lru_cache
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
 from siggen.config import Config
-from siggen.config.planetary import RING
+from siggen.faults.flank_place import DOT
 from siggen.gears.damage.part import Part, Parts
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.planning.stages import DOT, ring_config, stage_config
 from siggen.planning.state_config import state_config
 from siggen.specimen.bearing_spalls import drawn_labels
-from siggen.specimen.damage import state_damage
+from siggen.specimen.mesh_teeth import MeshTeeth
 
 
-def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
-    """Return one row per part of a record's damage, lengths in mm; none for a healthy record."""
+def damage_rows(config: Config, record_id: int, mesh: int | None = None) -> list[dict[str, object]]:
+    """Return one row per part of a record's damage, lengths in mm; none for a healthy record; `mesh`: of one alone."""
     record = planned_record(config, record_id)
     placed, shared = _damage(config, record.specimen_id, record.state_id)
     empty = {column.name: nothing_of(column) for column in (*DAMAGE_COLUMNS, *kind_columns(config))}
     return [
         {**empty, "record_id": record_id, **shared, **_row(config, one, name), **drawn_labels(config, record, one)}
-        for name, parts in placed.items()
+        for number, (name, parts) in enumerate(placed.items())
+        if mesh in (None, number)
         for one in parts
     ]
 
@@ -40,12 +40,8 @@ def _row(config: Config, part: Part, stage: str) -> dict[str, object]:
 def _damage(config: Config, specimen_id: int, state_id: int) -> tuple[dict[str, Parts], dict[str, object]]:
     """Return the damage of a state by stage, and in sets that store edges those of damage that states none itself."""
     specimen = draw_specimen(state_config(config, specimen_id, state_id), specimen_id)
-    damage = {"": state_damage(config, specimen_id, specimen.pair, state_id)}
-    if specimen.planets is not None:
-        damage[RING] = state_damage(ring_config(config), specimen_id, specimen.planets.ring, state_id)
-    for index, mesh in enumerate(specimen.behind):
-        own = stage_config(config, specimen, index)
-        damage[mesh.inner] = state_damage(own, specimen_id, mesh.pair, state_id)
+    meshes = [(mesh.inner, mesh.teeth) for mesh in specimen.meshes]
+    damage = {name: MeshTeeth(specimen.law, teeth).damage(state_id) for name, teeth in meshes}
     if not has_drawn_edges(config):
         return damage, {}
     return damage, {"edge_radius_mm": 1e3 * specimen.law.edge_radius_m, "strip_depth_mm": []}

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from siggen.config import Config
+from siggen.config import Config, StateSection
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.labels import damage_labels
 from siggen.record.stage_labels import LARGEST
-from siggen.specimen.made_gears import MadeGears
-from siggen.specimen.planetary_meshes import made_meshes
+from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 
 
 def damage_sizes(config: Config, specimen_id: int) -> dict[str, Mapping[str, object]]:
@@ -19,23 +18,18 @@ def damage_sizes(config: Config, specimen_id: int) -> dict[str, Mapping[str, obj
 
     A state whose damage cannot be drawn is left out.
     """
-    shared = _made(gearbox_config(config, specimen_id), specimen_id)
+    shared = _teeth(gearbox_config(config, specimen_id), specimen_id)
     found: dict[str, Mapping[str, object]] = {}
     for state_id, name in enumerate(config.state_names):
         changed = bool(config.changes_of(state_id))
-        meshes = _made(state_config(config, specimen_id, state_id), specimen_id) if changed else shared
+        states, teeth = _teeth(state_config(config, specimen_id, state_id), specimen_id) if changed else shared
         try:
-            rows = [_labels(one, state_id) for one in meshes]
+            rows = [damage_labels(states[state_id], one.pair, one.damage(state_id), one.options) for one in teeth]
         except ValueError:
             continue
         found[name] = {key: max(row[key] for row in rows) for key in LARGEST}  # type: ignore[type-var]
     return found
 
 
-def _made(config: Config, specimen_id: int) -> list[MadeGears]:
-    made = MadeGears(config, draw_specimen(config, specimen_id))
-    return [made, *made.stages] if made.specimen.planets is None else made_meshes(made, config)
-
-
-def _labels(made: MadeGears, state_id: int) -> dict[str, object]:
-    return damage_labels(made.config.states[state_id], made.pair, made.damage(state_id), made.options)
+def _teeth(config: Config, specimen_id: int) -> tuple[Sequence[StateSection], Sequence[MeshTeeth]]:
+    return config.states, all_teeth(draw_specimen(config, specimen_id))

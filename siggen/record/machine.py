@@ -6,11 +6,12 @@ same uniforms.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from siggen.config import Config
+from siggen.dynamics.structure.structure import Structure
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
@@ -18,16 +19,18 @@ from siggen.record.labels import gearbox_labels
 from siggen.record.specimen_state import refused_as
 from siggen.record.stage_times import stage
 from siggen.specimen.instrument import Instrument, specimen_instrument
-from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
+from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """Configuration of a gearbox, its numbers, its gears, its instrument, and the labels that all its records share."""
+    """Configuration of a gearbox, its numbers, its teeth, structure and instrument, and the labels of all records."""
 
     config: Config
     specimen: Specimen
-    gears: MadeGears
+    teeth: Sequence[MeshTeeth]
+    structure: Structure
     instrument: Instrument
     labels: dict[str, object]
 
@@ -51,7 +54,7 @@ def machines(whole: Config, specimen_id: int) -> Callable[[int], Machine]:
 def _machine(whole: Config, config: Config, specimen_id: int) -> Machine:
     with refused_as("outside_model"), stage("plan"):
         specimen = draw_specimen(config, specimen_id)
-        labels = gearbox_labels(whole, specimen)
-        gears = MadeGears(config, specimen)
+        labels, assembled = gearbox_labels(whole, specimen), structure(specimen)
     with stage("sensing"):
-        return Machine(config, specimen, gears, specimen_instrument(config, specimen), labels)
+        instrument = specimen_instrument(config, specimen)
+    return Machine(config, specimen, all_teeth(specimen), assembled, instrument, labels)

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from siggen.columns.manufacture_columns import error_columns, wave_columns
-from siggen.columns.planetary_columns import EACH
-from siggen.config import Config
 from siggen.config.planetary import RING
-from siggen.names import DRIVEN, SEVERAL
+from siggen.names import SEVERAL
 from siggen.planning.specimen import Specimen
 from siggen.record.stage_labels import ADDED, LARGEST, LOSS
 from siggen.specimen.static_mesh import StaticMesh
 
 
-def with_ring_labels(config: Config, suns: Sequence[Mapping[str, Any]], ring: Mapping[str, Any]) -> dict[str, object]:
-    """Return the labels of a state by those of its sun with each planet, and those of the first planet in the ring.
+def with_ring_labels(first: Mapping[str, Any], ring: Mapping[str, Any]) -> dict[str, object]:
+    """Return the labels of a state by those of its sun with the first planet, and of that planet in the ring.
 
     Counts and areas add up; of shares, lengths and losses the largest counts.
     """
-    first = suns[0]
     gears = [str(one) for one in (first["faulty_gear"],) if one != "none"]
     gears += [RING] * (ring["faulty_gear"] != "none")
     return {
@@ -29,18 +25,7 @@ def with_ring_labels(config: Config, suns: Sequence[Mapping[str, Any]], ring: Ma
         **{key: max(first[key], ring[key]) for key in LARGEST},
         "faulty_gear": SEVERAL if len(gears) > 1 else next(iter(gears), "none"),
         "faulty_teeth_ring": ring["faulty_teeth_gear"],
-        **_errors_of_others(config, suns, ring),
     }
-
-
-def _errors_of_others(config: Config, suns: Sequence[Mapping[str, Any]], ring: Mapping[str, Any]) -> dict[str, object]:
-    """Return the errors of the ring, and of each planet towards the sun, by those of driven gears of pairs."""
-    section = config.manufacture
-    if section is None:
-        return {}
-    errors, waves = error_columns(section), wave_columns(section)
-    of_ring = {one.name.format(RING): ring[one.name.format(DRIVEN)] for one in (*errors, *waves)}
-    return of_ring | {one.name.format(EACH): [sun[one.name.format(DRIVEN)] for sun in suns] for one in errors}
 
 
 def planetary_labels(

@@ -2,35 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
-from siggen.config import Config
+from siggen.columns.planetary_columns import EACH
+from siggen.config import Config, StateSection
+from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import SolverFailure
-from siggen.gearbox.specimen import PlanetaryGears
+from siggen.gearbox.specimen import PlanetaryGears, Specimen
+from siggen.gearbox.tooth_errors import SpecimenErrors, lead_of
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
-from siggen.planning.specimen import Specimen
 from siggen.record.labels import damage_labels
 from siggen.record.planetary_state import with_ring_labels
 from siggen.record.stage_labels import stage_labels
+from siggen.record.tooth_labels import ring_and_planet_labels, tooth_labels
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_uniforms
 from siggen.specimen.back_flanks import with_back_flanks, with_static_back
 from siggen.specimen.clocking import clocked_pitches
-from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
-from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
-from siggen.specimen.flank_waves import wave_labels
+from siggen.specimen.contact import ToothTables, tooth_tables
 from siggen.specimen.lost_mass import MeshPlace
-from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from siggen.specimen.motion import MeshBehind, SpecimenMesh
-from siggen.specimen.planetary_meshes import made_meshes, with_planets
+from siggen.specimen.planetary_meshes import with_planets
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
+from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,7 @@ class SpecimenState:
 
 @dataclass(frozen=True, slots=True)
 class StateTeeth:
-    """Gears of one specimen in one state, with their damage, errors and tables."""
+    """Gears of one mesh in one state, with their damage, errors and tables."""
 
     pair: GearPair
     options: StiffnessOptions
@@ -81,92 +83,111 @@ class StateTeeth:
     parts: Parts
 
 
-def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGears) -> StateTeeth:
-    """Return the teeth of one specimen in one state.
+def state_teeth(law: ToothLaw, teeth: MeshTeeth, section: StateSection, state_id: int) -> StateTeeth:
+    """Return the teeth of one mesh in one state.
 
     Raises
     ------
     SolverFailure
         If what was drawn cannot be built (named in the reason).
     """
-    pair = made.pair
-    options = made.options
+    pair, options = teeth.pair, teeth.options
     with refused_as("impossible_damage"):
-        parts = made.damage(state_id)
+        parts = teeth.damage(state_id)
         damage = on_teeth(parts)
-        errors = made.errors(state_id)
-        tables = tooth_tables(
-            specimen.law, pair, damage, options, TABLE_POINTS,
-            largest_force_n(config.operating_points, pair), lead_of(errors),
-        )  # fmt: skip
-        labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
+        errors = teeth.errors(state_id)
+        lead = lead_of(errors)
+        tables = tooth_tables(law, pair, damage, options, TABLE_POINTS, teeth.teeth.largest_force_n, lead)
+        labels = damage_labels(section, pair, parts, options, tables.sink_depth_m)
     return StateTeeth(pair, options, damage, errors, tables, labels, parts)
 
 
-def specimen_state(config: Config, specimen: Specimen, state_id: int, made: MadeGears | None = None) -> SpecimenState:
-    """Return gears, damage, tables and structure of one specimen in one state; `made` if other states made them.
+def specimen_state(
+    config: Config,
+    specimen: Specimen,
+    state_id: int,
+    shared: tuple[Sequence[MeshTeeth], Structure] | None = None,
+) -> SpecimenState:
+    """Return gears, damage, tables and structure of one specimen in one state.
+
+    `shared` are teeth of all meshes and the structure, where other states have made them.
 
     Raises
     ------
     SolverFailure
         If what was drawn cannot be built (named in the reason).
     """
-    made = made or MadeGears(config, specimen)
     with refused_as("outside_model"):
-        assembled = made.structure
+        teeth, assembled = shared or (all_teeth(specimen), structure(specimen))
+    section = config.states[state_id]
+    states = [_mesh_state(specimen, one, section, state_id, assembled) for one in teeth]
     if specimen.planets is not None:
-        return _planetary_state(config, made, specimen.planets, state_id, assembled)
-    first = _mesh_state(made, state_id, assembled)
-    if not specimen.behind:
-        return first
-    return _with_stages(config, specimen, first, tuple(_mesh_state(one, state_id, assembled) for one in made.stages))
+        return _planetary_state(specimen.planets, states, teeth, state_id)
+    return _with_stages(specimen, states) if specimen.behind else states[0]
 
 
 def _planetary_state(
-    config: Config, made: MadeGears, planets: PlanetaryGears, state_id: int, assembled: Structure
+    planets: PlanetaryGears, states: Sequence[SpecimenState], teeth: Sequence[MeshTeeth], state_id: int
 ) -> SpecimenState:
     """Return the state of a planetary set: that of the sun with its first planet, with all meshes behind it."""
-    states = [_mesh_state(one, state_id, assembled) for one in made_meshes(made, config)]
-    suns, ring = states[: len(states) // 2], states[len(states) // 2]
+    count = len(states) // 2
+    first, ring = states[0], states[count]
+    made = ring_and_planet_labels(teeth[:count], teeth[count], state_id, EACH)
     mesh = with_planets(planets, [one.mesh for one in states])
-    labels = with_ring_labels(config, [one.labels for one in suns], ring.labels)
-    return replace(suns[0], mesh=mesh, labels=labels, ring=ring)
+    return replace(first, mesh=mesh, labels={**with_ring_labels(first.labels, ring.labels), **made}, ring=ring)
 
 
-def _with_stages(
-    config: Config, specimen: Specimen, first: SpecimenState, behind: tuple[SpecimenState, ...]
-) -> SpecimenState:
+def _with_stages(specimen: Specimen, states: Sequence[SpecimenState]) -> SpecimenState:
     """Return the state of the first mesh with those behind it; how their teeth stand is drawn for the gearbox."""
-    uniform = named_uniforms(config.seed, Consumer.GEARS, specimen.specimen_id)
+    first, *behind = states
+    uniform = named_uniforms(specimen.seed, Consumer.GEARS, specimen.specimen_id)
     names = [mesh.inner for mesh in specimen.behind]
-    clockings = clocked_pitches([first.pair, *(one.pair for one in behind)], specimen, uniform)
+    clockings = clocked_pitches([one.pair for one in states], specimen, uniform)
     meshes = tuple(
         MeshBehind(one.mesh, float(turning), turned)
         for one, turning, turned in zip(behind, specimen.shaft_turns[1:-1], clockings, strict=True)
     )
     labels = stage_labels(first.labels, dict(zip(names, (one.labels for one in behind), strict=True)))
-    return replace(first, mesh=replace(first.mesh, behind=meshes, back=None), labels=labels, behind=behind)
+    return replace(first, mesh=replace(first.mesh, behind=meshes, back=None), labels=labels, behind=tuple(behind))
 
 
-def _mesh_state(made: MadeGears, state_id: int, assembled: Structure) -> SpecimenState:
-    """Return the state of one mesh of a gearbox."""
-    config, specimen = made.config, made.specimen
-    teeth = state_teeth(config, specimen, state_id, made)
-    pair, tables = teeth.pair, teeth.tables
+def static_state(
+    law: ToothLaw, teeth: MeshTeeth, section: StateSection, state_id: int
+) -> tuple[StateTeeth, StaticMesh]:
+    """Return the teeth of one mesh in one state, and the mesh at rest.
+
+    Raises
+    ------
+    SolverFailure
+        If what was drawn cannot be built (named in the reason).
+    """
+    of_state = state_teeth(law, teeth, section, state_id)
     with refused_as("outside_model"):
-        missing = made.missing(state_id)
-        labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
-        loads = largest_force_n(config.operating_points, pair), lead_of(teeth.errors)
-        static = static_mesh(specimen.law, pair, tables, TABLE_POINTS, teeth.parts)
-        static = with_static_back(static, specimen.law, teeth.options, *loads, teeth.parts)
+        static = static_mesh(law, of_state.pair, of_state.tables, TABLE_POINTS, of_state.parts)
+        loads = teeth.teeth.largest_force_n, lead_of(of_state.errors)
+        return of_state, with_static_back(static, law, of_state.options, *loads, of_state.parts)
+
+
+def _mesh_state(
+    specimen: Specimen, teeth: MeshTeeth, section: StateSection, state_id: int, assembled: Structure
+) -> SpecimenState:
+    """Return the state of one mesh of a gearbox."""
+    law = specimen.law
+    of_state, static = static_state(law, teeth, section, state_id)
+    pair, tables, parts = of_state.pair, of_state.tables, of_state.parts
+    with refused_as("outside_model"):
+        labels = {**of_state.labels, **tooth_labels(teeth, state_id)}
         mesh = SpecimenMesh(
-            pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact,
-            made.shares(state_id), sham=config.states[state_id].sham,
+            pair, assembled, tables.tables, teeth.missing(state_id), tables.coupling_m_per_n, tables.contact,
+            teeth.shares(state_id), sham=section.sham,
         )  # fmt: skip
         if specimen.planets is None:  # which carries no torque below 0
-            before = made.missing_before_chips(state_id)
-            mesh = with_back_flanks(mesh, specimen.law, teeth.options, *loads, before, teeth.parts)
-    return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
+            before, loads = (
+                teeth.missing_before_chips(state_id),
+                (teeth.teeth.largest_force_n, lead_of(of_state.errors)),
+            )
+            mesh = with_back_flanks(mesh, law, of_state.options, *loads, before, parts)
+    return SpecimenState(pair, of_state.options, of_state.damage, mesh, labels, static, parts)
 
 
 @contextmanager

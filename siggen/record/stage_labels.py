@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from siggen.faults.flank_place import DOT
 from siggen.names import ROLES, SEVERAL
 from siggen.planning.specimen import Specimen
-from siggen.planning.stages import DOT
 from siggen.specimen.static_mesh import StaticMesh
 
 ADDED = ("damage_count", "damaged_area_mm2")

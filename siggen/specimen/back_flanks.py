@@ -26,9 +26,9 @@ from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.contact import slice_shares, tooth_tables
-from siggen.specimen.flank_waves import WavyTeeth
 from siggen.specimen.motion import SpecimenMesh
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
+from siggen.specimen.wavy_teeth import WavyTeeth
 
 Lead: TypeAlias = Callable[[int], FloatArray] | None
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import OperatingRange
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.load_shares import load_shares
-from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
@@ -21,7 +20,6 @@ from siggen.gears.geometry.missing_material import TipRelief
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.keys.number import bounds
 
 RELIEF_LENGTH = 0.25
 """Length of the tip relief along the line of action, in base pitches (assumed)."""
@@ -110,12 +108,3 @@ def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points
 @lru_cache(maxsize=8)  # states of a specimen share them, of every mesh
 def _healthy_tables(pair: GearPair, options: StiffnessOptions, points: int) -> MeshTables:
     return mesh_tables(pair, (), options, points=points)
-
-
-def largest_force_n(points: Sequence[OperatingRange], pair: GearPair) -> float:
-    """Return the force up to which contacts are tabulated [N]: three times the largest torque's, or the pair's own.
-
-    The tables hold the same numbers up to any force, so that no operating point acts on the records of another.
-    """
-    torque = max(abs(limit) for point in points for limit in bounds(point.torque_nm))
-    return max(3.0 * torque / pair.pinion.base_radius_m, reference_force_n(pair))

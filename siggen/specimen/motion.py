@@ -31,7 +31,6 @@ from siggen.gears.geometry.missing_material import (
 )
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from siggen.planning.specimen import OperatingPoint
-from siggen.planning.stages import stage_point
 from siggen.specimen.contact import tip_relief
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh, specimen_friction
@@ -60,7 +59,7 @@ class MeshBehind(NamedTuple):
         """Return an operating point of the first pinion as its own pinion has it."""
         if self.torque_share is not None:
             return OperatingPoint(point.speed_hz * self.turning, point.torque_nm * self.torque_share)
-        return point if self.turning == 1.0 else stage_point(point, self.turning)
+        return point if self.turning == 1.0 else point.turned(self.turning)
 
 
 @dataclass(frozen=True, slots=True)

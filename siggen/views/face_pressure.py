@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, pi
 
@@ -12,6 +12,7 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX
+from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.errors import UsageError
 from siggen.gears.contact.kind_row import KindRow, kind_row
 from siggen.gears.contact.loads_under_force import loads_under_force
@@ -21,14 +22,13 @@ from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
 from siggen.keys.problems import nearest
 from siggen.names import ROLES, MeshName
-from siggen.planning.plan import PlannedRecord, planned_record
+from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.planning.stages import stage_config, stage_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.internals import record_internals
 from siggen.record.specimen_state import SpecimenState, refused_as
-from siggen.specimen.contact import face_options, largest_force_n
-from siggen.specimen.errors import specimen_errors
+from siggen.specimen.contact import face_options
+from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from siggen.views.flank_views import FlankView, flank_view
 from siggen.views.pairs_alone import refuse_planetary
 
@@ -101,11 +101,12 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
             "record with a torque from 0, which loads the drive flanks, where damage is"
         )
     state, point, angle_rad, found = record_internals(config, record)
-    meshes = _meshes(config, draw_specimen(config, record.specimen_id), state, point, angle_rad)
+    specimen = draw_specimen(config, record.specimen_id)
+    meshes = list(_meshes(specimen, state, point, angle_rad))
     mesh, which, tooth = _looked_at(meshes, called, tooth)
     engagement = _engagement(mesh, which, tooth)
     with refused_as("outside_model"):
-        return _solved(mesh, record, (which, tooth, engagement), found)
+        return _solved(specimen.law, mesh, record.state_id, (which, tooth, engagement), found)
 
 
 def pressure_table(pressure: FacePressure) -> pa.Table:
@@ -132,26 +133,21 @@ class _Mesh:
     """
 
     prefix: str
-    config: Config
-    specimen: Specimen
+    teeth: MeshTeeth
     state: SpecimenState
     point: OperatingPoint
     angle_rad: FloatArray
     words: Mapping[str, str]
 
 
-def _meshes(
-    config: Config, specimen: Specimen, state: SpecimenState, point: OperatingPoint, angle_rad: FloatArray
-) -> list[_Mesh]:
-    """Return every mesh of a record, each with the angle of its own pinion."""
-    first, *others = ((config.names.quantity(mesh, PAIR_PREFIX), _words(mesh)) for mesh in config.names.meshes)
-    found = [_Mesh(first[0], config, specimen, state, point, angle_rad, first[1])]
-    for index, (own, behind) in enumerate(zip(state.behind, state.mesh.behind, strict=True)):
-        alone, (prefix, words) = stage_config(config, specimen, index), others[index]
+def _meshes(specimen: Specimen, state: SpecimenState, point: OperatingPoint, angle_rad: FloatArray) -> Iterator[_Mesh]:
+    """Yield every mesh of a record, each with the angle of its own pinion."""
+    prefixes = [specimen.names.quantity(mesh, PAIR_PREFIX) for mesh in specimen.names.meshes]
+    words, teeth = [_words(mesh) for mesh in specimen.names.meshes], all_teeth(specimen)
+    yield _Mesh(prefixes[0], teeth[0], state, point, angle_rad, words[0])
+    for number, (own, behind) in enumerate(zip(state.behind, state.mesh.behind, strict=True), start=1):
         turned = angle_rad * behind.turning + behind.turned_pitches * 2.0 * pi / own.pair.pinion.teeth
-        of_mesh = stage_specimen(specimen, index)
-        found.append(_Mesh(prefix, alone, of_mesh, own, behind.at(point), turned, words))
-    return found
+        yield _Mesh(prefixes[number], teeth[number], own, behind.at(point), turned, words[number])
 
 
 def _words(mesh: MeshName) -> Mapping[str, str]:
@@ -199,12 +195,12 @@ def _engagement(mesh: _Mesh, gear: str, tooth: int) -> int:
 
 
 def _solved(
-    mesh: _Mesh, record: PlannedRecord, looked_at: tuple[str, int, int], found: Mapping[str, FloatArray]
+    law: ToothLaw, mesh: _Mesh, state_id: int, looked_at: tuple[str, int, int], found: Mapping[str, FloatArray]
 ) -> FacePressure:
     gear, tooth, number = looked_at
-    config, state, pair, angle_rad = mesh.config, mesh.state, mesh.state.pair, mesh.angle_rad
-    options = face_options(mesh.specimen.law, largest_force_n(config.operating_points, pair), pair)
-    errors = specimen_errors(config, pair, record.specimen_id, record.state_id)
+    state, pair, angle_rad = mesh.state, mesh.state.pair, mesh.angle_rad
+    options = face_options(law, mesh.teeth.teeth.largest_force_n, pair)
+    errors = mesh.teeth.errors(state_id)
     slices = face_slices(pair, options)
     lead = np.zeros(slices) if errors is None else errors.lead_m(slices)
     solver = table_solver(pair, state.options, options, lead - lead.min())
@@ -220,7 +216,7 @@ def _solved(
     load, pressure, at_edge = _over_positions(solver, row, force, tilt)
     member = pair.member(gear)
     along = row.position_m if gear == "pinion" else pair.line_of_action_m - row.position_m
-    view = flank_view(pair, config.states[record.state_id].name, gear, tooth, pits_of(shown, gear, tooth))
+    view = flank_view(pair, str(state.labels["state"]), gear, tooth, pits_of(shown, gear, tooth))
     return FacePressure(
         view=replace(view, gear=mesh.words[gear]),
         point=mesh.point,

@@ -12,7 +12,6 @@ from siggen.arrays import FloatArray
 from siggen.columns.record import damage_schema
 from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
@@ -21,10 +20,11 @@ from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.damage_summary import flank_arc_m
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.keys.problems import nearest
+from siggen.names import ROLES
 from siggen.planning.plan import record_ids_of
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
-from siggen.specimen.damage import state_damage
+from siggen.specimen.mesh_teeth import MeshTeeth
 
 
 def outline_mm(outline: Outline, points: int = 181) -> FloatArray:
@@ -78,14 +78,15 @@ class FlankView:
     area_share: float
 
 
-def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) -> list[FlankView]:
-    """Return all damaged flanks of a specimen, state by state; of one state if it is named.
+def flank_views(config: Config, specimen_id: int = 0, state: str | None = None, mesh: int = 0) -> list[FlankView]:
+    """Return all damaged flanks of a mesh of a specimen, state by state; of one state if it is named.
 
     Parameters
     ----------
     config : Config
     specimen_id : int
     state : name of a state, or None for all
+    mesh : int, from 0 in the order of power
 
     Raises
     ------
@@ -96,16 +97,18 @@ def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) 
 
     Source: outlines as in paper A, section 2.1; arcs R_b psi^2/2, derived.
     """
-    pair = gear_pair(draw_specimen(config, specimen_id).gears)
+    specimen = draw_specimen(config, specimen_id)
+    teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
+    words = dict(zip(ROLES, (gear.word for gear in specimen.names.meshes[mesh].gears), strict=True))
     return [
-        replace(view, gear=config.names.gear(view.gear))
+        replace(view, gear=words[view.gear])
         for index in _state_ids(config, state)
-        for view in _views(pair, config.states[index].name, on_teeth(state_damage(config, specimen_id, pair, index)))
+        for view in _views(teeth.pair, config.states[index].name, on_teeth(teeth.damage(index)))
     ]
 
 
-def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None = None) -> pa.Table:
-    """Return one row per damage of a specimen, state by state: the state's name, then the columns of `damage/`.
+def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None = None, mesh: int = 0) -> pa.Table:
+    """Return one row per damage of a mesh, state by state: the state's name, then the columns of `damage/`.
 
     Lengths are in mm. Parameters as in `flank_views`.
 
@@ -121,7 +124,7 @@ def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None =
     rows = [
         {"state": config.states[index].name, **row}
         for index in _state_ids(config, state)
-        for row in damage_rows(config, first + index * per_state)
+        for row in damage_rows(config, first + index * per_state, mesh)
     ]
     return pa.Table.from_pylist(rows, schema=pa.schema(fields))
 

@@ -38,12 +38,12 @@ def varied(text: str, config: Config) -> Iterator[tuple[str, list[str], int]]:
 
 
 def varied_curves(
-    loaded: Iterable[tuple[str, Config, int]], specimen_id: int, torque_nm: float
+    loaded: Iterable[tuple[str, Config, int]], specimen_id: int, torque_nm: float, mesh: int
 ) -> list[StiffnessCurve]:
-    """Return the curve of the first state, then that of the varied state at each value, under its label."""
+    """Return the curve of a mesh in the first state, then in the varied state at each value, under its label."""
     found: list[StiffnessCurve] = []
     for label, config, state in loaded:
         names = (*(() if found else config.state_names[:1]), config.state_names[state])
-        curves = stiffness_curves(config, specimen_id, torque_nm=torque_nm, states=names)
+        curves = stiffness_curves(config, specimen_id, torque_nm=torque_nm, states=names, mesh=mesh)
         found += [*curves[:-1], replace(curves[-1], state=label)]
     return found

@@ -53,7 +53,7 @@ def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
 def _mean_stiffness(specimen: Specimen) -> list[float]:
     """Return the mean stiffness of every healthy mesh of a gearbox, in the order of its structure."""
     count = 1 if specimen.planets is None else len(specimen.planets.teeth.places)
-    each = [mean_mesh_stiffness(mesh_tables(mesh.pair, (), mesh.options)) for mesh in specimen.meshes]
+    each = [mean_mesh_stiffness(mesh_tables(mesh.pair, (), mesh.teeth.options)) for mesh in specimen.meshes]
     return [stiffness for stiffness in each for _ in range(count)]
 
 

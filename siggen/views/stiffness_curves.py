@@ -19,12 +19,11 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_complianc
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.names import ROLES
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
-from siggen.record.specimen_state import specimen_state
-from siggen.specimen.contact import largest_force_n
-from siggen.specimen.damage import state_damage
+from siggen.record.specimen_state import static_state
 from siggen.specimen.friction import light_force_n
+from siggen.specimen.mesh_teeth import MeshTeeth
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
 
 TOOTH_PARTS = ("foundation", "bending", "shear", "axial")
@@ -84,8 +83,9 @@ def stiffness_curves(
     pitches: int | None = None,
     torque_nm: float | None = None,
     states: Container[str] | None = None,
+    mesh: int = 0,
 ) -> list[StiffnessCurve]:
-    """Return the curve of every state of one specimen, from one pitch before the damage to two pitches behind it.
+    """Return the curve of a mesh in every state, from one pitch before the damage to two pitches behind it.
 
     Parameters
     ----------
@@ -93,8 +93,9 @@ def stiffness_curves(
     specimen_id : int
     points_per_pitch : int, samples over one angular pitch of the pinion
     pitches : int, angular pitches from one before the damage on; None: to two pitches behind the last damaged tooth
-    torque_nm : float, on the pinion, for damage that acts as geometry; None: that of the first operating point
+    torque_nm : float, on the mesh's pinion, for damage that acts as geometry; None: that of the first operating point
     states : names of those wanted; None: all. The angles are the same for all
+    mesh : int, from 0 in the order of power
 
     Raises
     ------
@@ -113,29 +114,35 @@ def stiffness_curves(
         raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
     config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
-    pair = specimen.pair
-    damages = [on_teeth(state_damage(config, specimen_id, pair, i)) for i in range(len(config.states))]
+    teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
+    pair = teeth.pair
+    damages = [on_teeth(teeth.damage(i)) for i in range(len(config.states))]
     hit = [damaged_engagements(pair, one) for one in damages if one] or [(0, 0)]
     shown = min(first for first, _ in hit), max(last for _, last in hit)
     angle = pitches_shown(shown, points_per_pitch, pitches) * 2 * pi / pair.pinion.teeth
     wanted = [i for i, state in enumerate(config.states) if states is None or state.name in states]
-    curves = [_curve(specimen, pair, config.states[i].name, damages[i], angle, shown[0]) for i in wanted]
-    if not specimen.law.across_the_face:
+    words = [gear.column for gear in specimen.names.meshes[mesh].gears]
+    across = specimen.law.across_the_face
+    curves = [_curve(teeth, words, config.states[i].name, damages[i], angle, shown[0], across) for i in wanted]
+    if not across:
         return curves
-    torque = static_torque_nm(config, specimen_id) if torque_nm is None else torque_nm
+    torque = static_torque_nm(config, specimen_id, mesh) if torque_nm is None else torque_nm
     return [
-        _as_simulated(config, specimen, i, curve, shown[0], torque) for i, curve in zip(wanted, curves, strict=True)
+        _as_simulated(config, specimen_id, mesh, i, curve, shown[0], torque)
+        for i, curve in zip(wanted, curves, strict=True)
     ]
 
 
-def static_torque_nm(config: Config, specimen_id: int = 0) -> float:
-    """Return the torque [N m] at which a specimen's static curves are taken: that of its first point above 0.
+def static_torque_nm(config: Config, specimen_id: int = 0, mesh: int = 0) -> float:
+    """Return the torque [N m] at which static curves of a mesh are taken: that of the first point above 0.
 
     Curves are those of drive flanks; without such a point they are taken at a light contact.
     """
     points = (draw_operating_point(config, specimen_id, i).torque_nm for i in range(len(config.operating_points)))
-    pair = draw_specimen(gearbox_config(config, specimen_id), specimen_id).pair
-    return next((torque for torque in points if torque > 0.0), light_force_n(pair) * pair.pinion.base_radius_m)
+    specimen = draw_specimen(config, specimen_id)
+    pair, turning = specimen.meshes[mesh].pair, float(specimen.shaft_turns[mesh])
+    light = light_force_n(pair) * pair.pinion.base_radius_m
+    return next((torque / turning for torque in points if torque > 0.0), light)
 
 
 def stiffness_meaning(*, across_the_face: bool, torque_nm: float) -> str:
@@ -146,37 +153,49 @@ def stiffness_meaning(*, across_the_face: bool, torque_nm: float) -> str:
 
 
 def _as_simulated(
-    config: Config, specimen: Specimen, state_id: int, curve: StiffnessCurve, engagement: int, torque_nm: float
+    config: Config,
+    specimen_id: int,
+    mesh: int,
+    state_id: int,
+    curve: StiffnessCurve,
+    engagement: int,
+    torque_nm: float,
 ) -> StiffnessCurve:
-    own = state_config(config, specimen.specimen_id, state_id)
-    state = specimen_state(own, draw_specimen(own, specimen.specimen_id), state_id)
-    pair, angle, contact = state.pair, curve.angle_rad, state.static.contact
+    own = state_config(config, specimen_id, state_id)
+    specimen = draw_specimen(own, specimen_id)
+    teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
+    state, static = static_state(specimen.law, teeth, own.states[state_id], state_id)
+    pair, angle, contact = state.pair, curve.angle_rad, static.contact
     if contact is None:
         return curve
-    most = largest_force_n(config.operating_points, pair) * pair.pinion.base_radius_m
+    most = teeth.teeth.largest_force_n * pair.pinion.base_radius_m
     if torque_nm > most:
         raise UsageError(
             f"torque: received {torque_nm:g} N m; allowed: up to {most:.4g} N m, where the tables of the contact "
             "across the face end: three times the largest torque of the set, or 1.4 GPa on steel"
         )
-    stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
+    stiffness = static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
     position = pair.engagement_start_m + pair.pinion.base_radius_m * angle
     energy = curve.mesh_stiffness_n_per_m
-    found = simulated_contact(state.static, contact, state.damage, engagement, position, energy, torque_nm)
-    teeth = {name: value for name, value in curve.parts_m_per_n.items() if name != "contact"}
-    parts = {**teeth, "contact": found.pair_m_per_n - sum(teeth.values())}
+    found = simulated_contact(static, contact, state.damage, engagement, position, energy, torque_nm)
+    of_teeth = {name: value for name, value in curve.parts_m_per_n.items() if name != "contact"}
+    parts = {**of_teeth, "contact": found.pair_m_per_n - sum(of_teeth.values())}
     return replace(curve, mesh_stiffness_n_per_m=stiffness, simulated=found, parts_m_per_n=parts)
 
 
 def _curve(
-    specimen: Specimen, pair: GearPair, state: str, damage: Damage, angle: FloatArray, engagement: int
+    teeth: MeshTeeth,
+    words: Sequence[str],
+    state: str,
+    damage: Damage,
+    angle: FloatArray,
+    engagement: int,
+    open_face: bool,
 ) -> StiffnessCurve:
-    options = specimen.meshes[0].options
+    pair, options = teeth.pair, teeth.options
     offset = engagement * 2 * pi / pair.pinion.teeth
-    open_face = specimen.law.across_the_face
     stiffness = mesh_stiffness(pair, angle + offset, options, damage, through_face=open_face)
-    gears = [gear.column for gear in specimen.names.first.gears]
-    return StiffnessCurve(state, angle, stiffness, _parts(pair, gears, options, damage, angle, engagement, open_face))
+    return StiffnessCurve(state, angle, stiffness, _parts(pair, words, options, damage, angle, engagement, open_face))
 
 
 def _parts(

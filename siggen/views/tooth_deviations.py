@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
@@ -11,14 +11,12 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.tooth_errors import MadeGear
 from siggen.gears.errors.gear_errors import profiles_m
 from siggen.gears.errors.helix import HELIX_POINTS
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.problems import nearest
-from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.errors import MadeGear, specimen_errors
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +32,10 @@ class GearChart:
     helix_um: FloatArray | None
 
 
-def gear_charts(config: Config, specimen_id: int = 0, state: str | None = None) -> tuple[GearChart, GearChart]:
-    """Return pinion and gear of a specimen in a state, the first one if none is named.
+def gear_charts(
+    config: Config, specimen_id: int = 0, state: str | None = None, mesh: int = 0
+) -> tuple[GearChart, GearChart]:
+    """Return pinion and gear of a mesh of a specimen in a state, the first one if none is named.
 
     Raises
     ------
@@ -45,16 +45,16 @@ def gear_charts(config: Config, specimen_id: int = 0, state: str | None = None) 
     names = [one.name for one in config.states]
     if state is not None and state not in names:
         raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}{nearest(state, names)}")
-    config = gearbox_config(config, specimen_id)
-    pair = gear_pair(draw_specimen(config, specimen_id).gears)
-    errors = specimen_errors(config, pair, specimen_id, 0 if state is None else names.index(state))
+    specimen = draw_specimen(config, specimen_id)
+    teeth = specimen.meshes[mesh].teeth
+    errors = teeth.errors(teeth.drawn_for(0 if state is None else names.index(state)))
     if errors is None:
         raise UsageError(
             f"{config.name}: its gears are perfect; give them errors, such as --set manufacture.accuracy_class=6"
         )
-    charts = _chart(pair, "pinion", errors.pinion), _chart(pair, "gear", errors.gear)
-    pinion, gear = (replace(one, gear=config.names.gear(one.gear)) for one in charts)
-    return pinion, gear
+    driver, driven = specimen.names.meshes[mesh].gears
+    pair = teeth.pair
+    return _chart(pair, "pinion", errors.pinion, driver.word), _chart(pair, "gear", errors.gear, driven.word)
 
 
 def deviation_table(charts: tuple[GearChart, GearChart]) -> pa.Table:
@@ -68,10 +68,10 @@ def deviation_table(charts: tuple[GearChart, GearChart]) -> pa.Table:
     )
 
 
-def _chart(pair: GearPair, which: str, made: MadeGear) -> GearChart:
+def _chart(pair: GearPair, which: str, made: MadeGear, word: str) -> GearChart:
     place = np.linspace(0.0, 1.0, HELIX_POINTS)
     helix = None if made.helix.straight else 1e6 * made.helix.missing_m(place)
-    return GearChart(which, made, 1e6 * profiles_m(pair, which, made.errors), helix)
+    return GearChart(word, made, 1e6 * profiles_m(pair, which, made.errors), helix)
 
 
 def _across(chart: GearChart) -> dict[str, float]:

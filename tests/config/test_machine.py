@@ -12,7 +12,6 @@ from siggen.columns.record import label_columns, label_names
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
-from siggen.planning.stages import first_mesh, stage_config
 from siggen.specimen.structure import structure
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler
@@ -73,10 +72,10 @@ def test_one_mesh_alone_is_a_machine_of_its_two_gears() -> None:
     config = parse(mill()).config
     assert config is not None
     assert config.names.gear("pinion") == "ida"
-    assert [gear.word for gear in first_mesh(config).names.gears] == ["ida", "otto"]
-    slow = stage_config(config, draw_specimen(config, 0), 0)
-    assert [gear.word for gear in slow.names.gears] == ["eva", "karl"]
-    assert [shaft.word for shaft in slow.names.shafts] == ["middle", "output"]
+    assert [gear.word for gear in config.names.alone(0).gears] == ["ida", "otto"]
+    slow = config.names.alone(1)
+    assert [gear.word for gear in slow.gears] == ["eva", "karl"]
+    assert [shaft.word for shaft in slow.shafts] == ["middle", "output"]
 
 
 def loop(teeth: int) -> dict[str, Any]:

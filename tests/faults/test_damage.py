@@ -16,7 +16,7 @@ from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.damage import state_damage
+from siggen.specimen.mesh_teeth import all_teeth
 from tests.config.minimal import by_name
 
 PIT = {"semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
@@ -52,8 +52,7 @@ def config_with(*damages: Mapping[str, Any], seed: int = 5, law: str = "pairs") 
 
 
 def damage_of(config: Config, state_id: int, specimen_id: int = 0) -> Damage:
-    pair = gear_pair(draw_specimen(config, specimen_id).gears)
-    return state_damage(config, specimen_id, pair, state_id)
+    return all_teeth(draw_specimen(config, specimen_id))[0].damage(state_id)
 
 
 def test_healthy_state_has_no_damage() -> None:

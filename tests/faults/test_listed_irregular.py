@@ -13,7 +13,7 @@ from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.tooth_damage import on_teeth
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.damage import state_damage
+from siggen.specimen.mesh_teeth import all_teeth
 from tests.config.minimal import minimal
 
 EDGES = [[4.0, 2.0, 2.0], [6.0, 1.5, 2.5], [9.0, 2.0, 2.0]]
@@ -29,7 +29,7 @@ def listed(**changes: Any) -> dict[str, Any]:
 def test_its_area_is_that_of_the_edges_that_are_written() -> None:
     config = load_config(listed())
     pair = gear_pair(draw_specimen(config, 0).gears)
-    damage = on_teeth(state_damage(config, 0, pair, 1))
+    damage = on_teeth(all_teeth(draw_specimen(config, 0))[0].damage(1))
     assert [(one.gear, one.tooth, one.depth_m) for one in damage] == [("pinion", 3, 1e-4)]
     # edges are straight in height, given as arcs here: 1 % between stations of 2 and 3 mm
     assert union_area_m2(pair.pinion, damage, pair.face_width_m) == pytest.approx(2.5e-6, rel=0.01)

@@ -15,7 +15,7 @@ from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.specimen_state import specimen_state, state_teeth
-from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.mesh_teeth import all_teeth
 from siggen.specimen.static_mesh import static_mesh
 from tests.faults.test_damage import config_with, damage_of
 from tests.simulated import simulate
@@ -82,7 +82,7 @@ def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -
     specimen = draw_specimen(config, 0)
     state = specimen_state(config, specimen, 0)
     layer = WornFlanks("pinion", (5e-6,) * 9)
-    teeth = state_teeth(config, specimen, 0, MadeGears(config, specimen)).tables
+    teeth = state_teeth(specimen.law, all_teeth(specimen)[0], config.states[0], 0).tables
     worn = static_mesh(specimen.law, state.pair, teeth, TABLE_POINTS, (layer,))
     force_n = worn.force_n(60.0)
     approach = force_n / state.static.stiffness_n_per_m(60.0, np.linspace(0.0, 1.0, 2001))

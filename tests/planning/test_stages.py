@@ -1,4 +1,4 @@
-"""Further meshes as configurations of their own: what each sees of teeth, loads, damage and random numbers."""
+"""Further meshes: what each sees of teeth, loads, damage and random numbers."""
 
 from __future__ import annotations
 
@@ -9,10 +9,8 @@ import pytest
 from siggen.config import Config, parse
 from siggen.config.stages import hunting_turns
 from siggen.planning.specimen import OperatingPoint, draw_specimen
-from siggen.planning.stages import first_mesh, stage_config, stage_point
-from siggen.specimen.damage import state_damage
-from siggen.specimen.made_gears import MadeGears
-from tests.config.minimal import by_name, minimal
+from siggen.specimen.mesh_teeth import all_teeth
+from tests.config.minimal import by_name
 from tests.config.staged import SPALL, staged
 
 
@@ -22,19 +20,14 @@ def config_of(**changes: object) -> Config:
     return parsed.config
 
 
-def test_a_gearbox_with_one_mesh_is_its_own_first_mesh() -> None:
-    config = parse(minimal()).config
-    assert config is not None
-    assert first_mesh(config) is config
-
-
 def test_speed_falls_and_torque_rises_by_the_teeth_of_the_meshes_in_front() -> None:
-    specimen = draw_specimen(config_of(), 0)
-    point = stage_point(OperatingPoint(30.0, 40.0), float(specimen.shaft_turns[1]))
+    specimen = draw_specimen(config_of(operating_points=[{"speed_hz": 30.0, "torque_nm": 400.0}]), 0)
+    point = OperatingPoint(30.0, 40.0).turned(float(specimen.shaft_turns[1]))
     assert point.speed_hz == pytest.approx(30.0 * 18 / 47)
     assert point.torque_nm == pytest.approx(40.0 * 47 / 18)
-    own = stage_config(config_of(), specimen, 0)
-    assert own.operating_points[0].torque_nm == pytest.approx(20.0 * 47 / 18)
+    first, slow = (mesh.teeth.largest_force_n for mesh in specimen.meshes)
+    radii = [mesh.pair.pinion.base_radius_m for mesh in specimen.meshes]
+    assert slow / first == pytest.approx(47 / 18 * radii[0] / radii[1])
 
 
 def test_all_shafts_stand_again_as_they_did_after_the_hunting_turns_and_not_before() -> None:
@@ -55,17 +48,16 @@ def test_damage_grows_on_both_meshes_whatever_state_adds_to_which() -> None:
     ]
     config = config_of(states=by_name(states))
     specimen = draw_specimen(config, 0)
-    first, behind = (mesh.pair for mesh in specimen.meshes)
-    own = stage_config(config, specimen, 0)
-    assert [len(state_damage(config, 0, first, i)) for i in range(4)] == [0, 1, 1, 1]
-    assert [len(state_damage(own, 0, behind, i)) for i in range(4)] == [0, 0, 1, 2]
+    first, behind = all_teeth(specimen)
+    assert [len(first.damage(i)) for i in range(4)] == [0, 1, 1, 1]
+    assert [len(behind.damage(i)) for i in range(4)] == [0, 0, 1, 2]
 
 
 def test_a_further_stage_leaves_the_draws_of_the_first_mesh_alone() -> None:
     made = {"manufacture": {"accuracy_class": 6}, "states": {"healthy": {}}}
     both, alone = config_of(**made), config_of(**made, stages=[])
-    one, other = (MadeGears(config, draw_specimen(config, 0)) for config in (both, alone))
-    first, expected, behind = one.errors(0), other.errors(0), one.stages[0].errors(0)
+    (one, slow), (other,) = (all_teeth(draw_specimen(config, 0)) for config in (both, alone))
+    first, expected, behind = one.errors(0), other.errors(0), slow.errors(0)
     assert first is not None
     assert expected is not None
     assert behind is not None

@@ -12,7 +12,7 @@ from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import StateTeeth, state_teeth
 from siggen.specimen import contact
-from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 
 SHARED = (
     contact._healthy_tables,
@@ -27,6 +27,11 @@ SPECIMEN = draw_specimen(CONFIG, 3)
 NAMES = [state.name for state in CONFIG.states]
 
 
+def teeth_of(made: MeshTeeth, name: str) -> StateTeeth:
+    state_id = NAMES.index(name)
+    return state_teeth(SPECIMEN.law, made, CONFIG.states[state_id], state_id)
+
+
 def numbers(teeth: StateTeeth) -> list[bytes]:
     tables, solved = teeth.tables.tables, teeth.tables.contact
     assert solved is not None
@@ -36,13 +41,13 @@ def numbers(teeth: StateTeeth) -> list[bytes]:
 
 def test_teeth_of_a_state_are_the_same_to_the_bit_whatever_states_were_made_before() -> None:
     """A chain of grown dishes, backwards and with others before it, against the state alone without anything kept."""
-    made = MadeGears(CONFIG, SPECIMEN)
+    made = all_teeth(SPECIMEN)[0]
     order = ("face_40", "slight", "healthy", "face_20", "through_020")
-    after_others = {name: state_teeth(CONFIG, SPECIMEN, NAMES.index(name), made) for name in order}
+    after_others = {name: teeth_of(made, name) for name in order}
     for name in ("face_20", "face_40"):
         for kept in SHARED:
             kept.cache_clear()
-        alone = state_teeth(CONFIG, SPECIMEN, NAMES.index(name), MadeGears(CONFIG, SPECIMEN))
+        alone = teeth_of(all_teeth(draw_specimen(CONFIG, 3))[0], name)
         assert alone.labels["mesh_stiffness_loss"] != 0.0
         assert alone.damage == after_others[name].damage
         assert alone.labels == after_others[name].labels

@@ -8,10 +8,9 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.tooth_errors import SpecimenErrors
 from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
-from siggen.specimen.errors import SpecimenErrors, specimen_errors
 from tests.config.minimal import by_name
 from tests.sensors.runs import loaded, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION
@@ -27,7 +26,8 @@ def config(which: str, added_um: float, manufacture: str = "{accuracy_class: 6}"
 
 def errors(chosen: Config, state: int) -> SpecimenErrors:
     own = state_config(chosen, 0, state)
-    found = specimen_errors(own, gear_pair(draw_specimen(own, 0).gears), 0, state)
+    teeth = draw_specimen(own, 0).meshes[0].teeth
+    found = teeth.errors(teeth.drawn_for(state))
     assert found is not None
     return found
 

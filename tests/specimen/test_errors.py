@@ -12,11 +12,9 @@ from hypothesis import strategies as st
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config, parse
-from siggen.gearbox.pair import gear_pair
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gearbox.tooth_errors import SpecimenErrors
 from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.errors import SpecimenErrors, specimen_errors
 from tests.simulated import simulate
 
 SHORT = ["specimens=20", "duration_s=0.1", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
@@ -28,11 +26,11 @@ def made(*overrides: str) -> Config:
 
 CLASS_6 = made("manufacture={accuracy_class: 6}")
 PER_STATE = made("manufacture={accuracy_class: 6, draw: state}")
-PAIR = gear_pair(draw_specimen(CLASS_6, 0).gears)
 
 
-def errors_of(config: Config, specimen: int = 0, state: int = 0, pair: GearPair = PAIR) -> SpecimenErrors:
-    found = specimen_errors(config, pair, specimen, state)
+def errors_of(config: Config, specimen: int = 0, state: int = 0) -> SpecimenErrors:
+    teeth = draw_specimen(config, specimen).meshes[0].teeth
+    found = teeth.errors(teeth.drawn_for(state))
     assert found is not None
     return found
 

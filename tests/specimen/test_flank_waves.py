@@ -10,10 +10,9 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
-from siggen.gearbox.pair import gear_pair
+from siggen.gearbox import flank_waves
+from siggen.gearbox.flank_waves import CLAMPING, SpecimenWaves
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen import flank_waves
-from siggen.specimen.flank_waves import CLAMPING, specimen_waves
 from tests.simulated import simulate
 
 
@@ -34,6 +33,11 @@ def made(waves: str = "on", *overrides: str) -> Config:
     return load_config("tests/configs/casing.yaml", [*SHORT, section, *overrides])
 
 
+def waves_of(config: Config, specimen: int, state: int) -> SpecimenWaves | None:
+    teeth = draw_specimen(config, specimen).meshes[0].teeth
+    return teeth.waves(teeth.drawn_for(state))
+
+
 def record(config: Config) -> SimulatedRecord:
     found = simulate(config, [0])[0]
     assert isinstance(found, SimulatedRecord), found
@@ -42,15 +46,14 @@ def record(config: Config) -> SimulatedRecord:
 
 def test_all_states_share_their_waves_and_gearboxes_do_not() -> None:
     config = made()
-    pair = gear_pair(draw_specimen(config, 0).gears)
-    first, second, other = (specimen_waves(config, pair, *owner) for owner in ((0, 0), (0, 1), (1, 0)))
+    first, second, other = (waves_of(config, *owner) for owner in ((0, 0), (0, 1), (1, 0)))
     assert first is not None
     assert second is not None
     assert other is not None
     np.testing.assert_array_equal(first.gear.own_m, second.gear.own_m)
     np.testing.assert_array_equal(first.pinion.waves, second.pinion.waves)
     assert not np.array_equal(first.pinion.common_m, other.pinion.common_m)
-    assert specimen_waves(made("off"), pair, 0, 0) is None
+    assert waves_of(made("off"), 0, 0) is None
 
 
 def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -59,8 +62,8 @@ def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number(monkeypat
     # fewer waves than are drawn, too: those are not larger than what is drawn
     monkeypatch.setattr(flank_waves, "ORDER_OVER_TEETH", flank_waves.LogUniform(low=1.0, high=15.0))
     config = made()
-    pair = gear_pair(draw_specimen(config, 0).gears)
-    found = [specimen_waves(config, pair, specimen, 0) for specimen in range(150)]
+    pair = draw_specimen(config, 0).pair
+    found = [waves_of(config, specimen, 0) for specimen in range(150)]
     counts = [drawn.ghosts["gear"] for drawn in found if drawn is not None]
     # 150 of mean and variance 2: 0.12
     assert abs(np.mean(counts) - 2.0) < 0.4

@@ -16,7 +16,7 @@ from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.gears.errors.gear_errors import eccentric_m
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
 from siggen.specimen.structure import structure
 from tests.config.idler import idler, with_idler
@@ -117,7 +117,7 @@ def test_a_flank_acts_in_its_own_mesh_alone() -> None:
         assert teeth.tolist() == [5]
 
 
-def missing_m(made: MadeGears, which: str, pitches: FloatArray) -> FloatArray:
+def missing_m(made: MeshTeeth, which: str, pitches: FloatArray) -> FloatArray:
     """Return what the eccentricity takes from the pair that is in contact (k,) [m], `pitches` after pair 0 entered."""
     errors = made.errors(0)
     assert errors is not None
@@ -131,15 +131,15 @@ def test_an_eccentric_idler_stands_back_from_both_gears_as_the_structure_says_of
     """The shift is found from the first mesh by the vectors of the motion, turned, and told to the second one's."""
     config = load_config(idler(**SMOOTH, manufacture={"accuracy_class": 6}))
     specimen = draw_specimen(config, 0)
-    made, found = MadeGears(config, specimen), structure(specimen)
-    mesh = specimen_state(config, specimen, 0, made).mesh
+    made, found = all_teeth(specimen), structure(specimen)
+    mesh = specimen_state(config, specimen, 0).mesh
     rows = [found.coordinates.index(f"{axis}_b") for axis in "xy"]
     ahead, behind = (one.vector[rows] for one in found.meshes)
     turned = 30.0 + np.linspace(0.0, 27.0, 53)  # pitches
     angle = -2.0 * np.pi * turned / 27  # the idler turns back
     turns = np.stack([np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle)]).reshape(2, 2, -1)
-    shift = np.linalg.lstsq(-np.einsum("a,bak->kb", ahead, turns), missing_m(made, "gear", turned), rcond=None)
+    shift = np.linalg.lstsq(-np.einsum("a,bak->kb", ahead, turns), missing_m(made[0], "gear", turned), rcond=None)
     expected = -np.einsum("a,bak,b->k", behind, turns, shift[0])
-    found_m = missing_m(made.stages[0], "pinion", turned + mesh.behind[0].turned_pitches)
+    found_m = missing_m(made[1], "pinion", turned + mesh.behind[0].turned_pitches)
     assert np.ptp(expected) > 1e-6
     assert found_m == pytest.approx(expected, abs=1e-9 * np.ptp(expected))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
@@ -11,10 +13,9 @@ from siggen.columns.planetary_columns import manufacture_of_others
 from siggen.columns.record import label_names
 from siggen.gears.errors.gear_errors import eccentric_m
 from siggen.gears.geometry.internal_pair import ring_begins_pitches
-from siggen.planning.specimen import draw_specimen
+from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.made_gears import MadeGears
-from siggen.specimen.planetary_meshes import made_meshes
+from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from tests.config.planets import planets
 from tests.dynamics.trains import planetary_structure
 
@@ -22,13 +23,17 @@ COUNT = 3
 
 
 @pytest.fixture(scope="module")
-def meshes() -> list[MadeGears]:
-    config = load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"}))
-    return made_meshes(MadeGears(config, draw_specimen(config, 0)), config)
+def specimen() -> Specimen:
+    return draw_specimen(load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"})), 0)
+
+
+@pytest.fixture(scope="module")
+def meshes(specimen: Specimen) -> Sequence[MeshTeeth]:
+    return all_teeth(specimen)
 
 
 def test_sun_and_ring_are_the_same_in_all_of_their_meshes_and_every_flank_of_planets_is_its_own(
-    meshes: list[MadeGears],
+    meshes: Sequence[MeshTeeth],
 ) -> None:
     found = [one.errors(0) for one in meshes]
     assert all(one is not None for one in found)
@@ -45,9 +50,11 @@ def test_sun_and_ring_are_the_same_in_all_of_their_meshes_and_every_flank_of_pla
     assert len({one.gear.common_m.tobytes() for one in waves[COUNT:] if one is not None}) == 1
 
 
-def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_made(meshes: list[MadeGears]) -> None:
+def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_made(
+    specimen: Specimen, meshes: Sequence[MeshTeeth]
+) -> None:
     config = load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"}))
-    labels = specimen_state(config, meshes[0].specimen, 0, meshes[0]).labels
+    labels = specimen_state(config, specimen, 0).labels
     errors = [one.errors(0) for one in meshes]
     runouts = [1e6 * one.gear.found.largest["runout_m"] for one in errors if one is not None]
     assert labels["runout_ring_um"] == runouts[COUNT]
@@ -58,7 +65,7 @@ def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_mad
     assert {column.name for column in manufacture_of_others(config)} <= set(label_names(config)) & set(labels)
 
 
-def missing_m(made: MadeGears, which: str, pitches: FloatArray) -> FloatArray:
+def missing_m(made: MeshTeeth, which: str, pitches: FloatArray) -> FloatArray:
     """Return what the eccentricity takes from the pair that is in contact (k,) [m], `pitches` after pair 0 entered."""
     errors = made.errors(0)
     assert errors is not None
@@ -71,13 +78,13 @@ def missing_m(made: MadeGears, which: str, pitches: FloatArray) -> FloatArray:
 
 @pytest.mark.parametrize("planet", range(COUNT))
 def test_an_eccentric_planet_stands_back_from_sun_and_ring_as_the_structure_says_of_its_shift(
-    meshes: list[MadeGears], planet: int
+    specimen: Specimen, meshes: Sequence[MeshTeeth], planet: int
 ) -> None:
     """The shift is found from the sun's mesh by the vectors of the motion, turned, and told to the ring's."""
-    specimen = meshes[0].specimen
     planets = specimen.planets
+    assert planets is not None
     teeth, pair, inner = planets.teeth, planets.pair, planets.ring
-    structure = planetary_structure(specimen.planets.stage)
+    structure = planetary_structure(planets.stage)
     place = [structure.coordinates.index(f"{axis}_planet_{planet + 1}") for axis in ("x", "y")]
     to_sun, to_ring = (structure.meshes[i].vector[place] for i in (planet, COUNT + planet))
     turned = 30.0 + np.linspace(0.0, 26.0, 53)  # pitches of the first mesh

@@ -23,11 +23,9 @@ from siggen.dynamics.drive.external_forces import Unbalance, shaft_mass
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gearbox.train import gear_stage
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.planning.stages import stage_point, stage_specimen
 from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
@@ -173,12 +171,14 @@ def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
         # What is left is the motion of the shaft, 1e-8 times a few ratios of stiffness and inertia.
         assert rms(velocities[name] - expected) < 1e-6 * rms(expected)
 
-    own, behind = stage_specimen(specimen, 0), mesh.behind[0]
-    own = replace(own, train=replace(train, first=gear_stage(own.dynamics, own.pair), behind=()))
+    behind, (stage,) = mesh.behind[0], train.behind
+    shared = {name: getattr(stage, name) for name in ("working_pressure_angle_rad", "pinion", "gear")}
+    alone = replace(train, first=replace(train.first, **shared), behind=())
+    own = replace(single, meshes=specimen.meshes[1:], train=alone)
     made = structure(own)
     second = replace(behind.mesh, structure=with_heavy(made, ["x_pinion", "y_pinion", "theta_pinion"]))
     turned = pitches * float(specimen.shaft_turns[1]) * 17 / 18 + behind.turned_pitches
-    slow = specimen_motion(own.law, second, stage_point(point, float(specimen.shaft_turns[1])), STEP_S)
+    slow = specimen_motion(own.law, second, point.turned(float(specimen.shaft_turns[1])), STEP_S)
     # Its line of centres is turned by 70°, and its pinion runs backwards: a mirror and a turn, on equal bearings.
     wanted = run(slow, turned).T
     for name, expected in zip(("theta_slow_gear", "theta_load"), wanted[[6, 7]], strict=True):

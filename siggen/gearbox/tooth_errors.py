@@ -1,15 +1,15 @@
-"""Manufacturing errors of one specimen: what is drawn for its two gears, the tables it leads to, and its labels."""
+"""Manufacturing errors of a mesh as they are drawn: both gears, their helices, and how their shafts stand."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, Manufacture
+from siggen.config import Manufacture
 from siggen.gears.errors.error_shapes import Draws, error_shapes
 from siggen.gears.errors.gear_errors import FlankDeviations, GearErrors, deviations, gear_errors, off_axis
 from siggen.gears.errors.helix import Helix, drawn_helix, straight_helix
@@ -19,7 +19,8 @@ from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import Uniform
-from siggen.keys.number import at
+from siggen.keys.number import Number, at
+from siggen.names import ROLES
 from siggen.seeding import Stage, named_generator, named_uniforms
 
 RUNOUT_SHARE = Uniform(low=0.3, high=0.8)
@@ -49,12 +50,15 @@ class MadeGear:
 class SpecimenErrors:
     """Both gears, and how far their flanks are apart at the far end of the face when they touch at the near one [m].
 
-    `shafts_m` is the part of that distance that no helix slope of `MadeGear.helix` has.
+    `shafts_m` is the part of that distance that no helix slope of `MadeGear.helix` has; `crowned` and `with_helices`
+    tell whether the set draws crownings, and slopes and forms of helices.
     """
 
     pinion: MadeGear
     gear: MadeGear
     shafts_m: float
+    crowned: bool
+    with_helices: bool
 
     @property
     def lead_misalignment_m(self) -> float:
@@ -78,31 +82,38 @@ class SpecimenErrors:
         return lead
 
 
-def specimen_errors(config: Config, pair: GearPair, specimen_id: int, state_id: int) -> SpecimenErrors | None:
-    """Return the errors of a specimen in a state; None for perfect gears.
+def drawn_errors(
+    section: Manufacture, eccentricities_um: Sequence[Number], seed: int, owner: tuple[int, int], pair: GearPair
+) -> SpecimenErrors:
+    """Return the errors of pinion and gear of a mesh whose draws have this seed and owner, gearbox and state.
 
     Every draw has a name, so neither other keys nor the other gear shift it.
+
+    Parameters
+    ----------
+    section : Manufacture
+    eccentricities_um : (2,) how far the seats of pinion and gear lie off their bearings
+    seed : int
+    owner : gearbox, and the state for which the errors are drawn
+    pair : GearPair
 
     Raises
     ------
     ValueError
         If a gear lies outside the range of ISO 1328-1.
     """
-    section = config.manufacture
-    if section is None:
-        return None
-    owner = (specimen_id, state_id if section.draw == "state" else 0)
 
     def draws(name: str) -> np.random.Generator:
-        return named_generator(config.seed, Stage.MANUFACTURE, *owner, name=f"manufacture.{name}")
+        return named_generator(seed, Stage.MANUFACTURE, *owner, name=f"manufacture.{name}")
 
-    supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
-    seats = {}
-    for which in ("pinion", "gear"):
-        number = getattr(config.dynamics, which).eccentricity_um
-        seats[which] = 1e-6 * at(number, supports(f"dynamics.{which}.eccentricity_um"))
-    pinion, gear = (_made(section, pair, which, seats[which], draws) for which in ("pinion", "gear"))
-    return SpecimenErrors(pinion, gear, _shafts_m(section, (pinion, gear), draws))
+    supports = named_uniforms(seed, Stage.SUPPORTS, owner[0])
+    seats = [
+        1e-6 * at(number, supports(f"dynamics.{which}.eccentricity_um"))
+        for which, number in zip(ROLES, eccentricities_um, strict=True)
+    ]
+    pinion, gear = (_made(section, pair, which, seat, draws) for which, seat in zip(ROLES, seats, strict=True))
+    shafts_m = _shafts_m(section, (pinion, gear), draws)
+    return SpecimenErrors(pinion, gear, shafts_m, section.has_crowning, section.has_helix)
 
 
 def erroneous_teeth(
@@ -115,31 +126,6 @@ def erroneous_teeth(
 def lead_of(errors: SpecimenErrors | None) -> Callable[[int], FloatArray] | None:
     """Return what gives the missing material of the slices of the face; None where nothing is missing across it."""
     return None if errors is None or errors.even else errors.lead_m
-
-
-def error_labels(config: Config, errors: SpecimenErrors | None) -> dict[str, object]:
-    """Return the labels of `siggen.columns.manufacture_columns`."""
-    if errors is None or config.manufacture is None:
-        return {}
-    labels: dict[str, object] = {"manufacture_draw": config.manufacture.draw}
-    for which, made in (("pinion", errors.pinion), ("gear", errors.gear)):
-        largest = made.found.largest
-        labels |= {
-            f"accuracy_class_{which}": made.accuracy_class,
-            f"tolerance_share_{which}": made.tolerance_share,
-            f"pitch_deviation_{which}_um": 1e6 * largest["pitch_m"],
-            f"cumulative_pitch_{which}_um": 1e6 * largest["cumulative_pitch_m"],
-            f"runout_{which}_um": 1e6 * largest["runout_m"],
-            f"profile_slope_{which}_um": 1e6 * largest["profile_slope_m"],
-            f"profile_form_{which}_um": 1e6 * largest["profile_form_m"],
-            f"profile_deviation_{which}_um": 1e6 * largest["profile_m"],
-        }
-        if config.manufacture.has_crowning:
-            labels[f"crowning_{which}_um"] = 1e6 * made.helix.crowning_m
-        if config.manufacture.has_helix:
-            labels[f"helix_slope_{which}_um"] = 1e6 * made.helix.slope_m
-            labels[f"helix_form_{which}_um"] = 1e6 * float(np.ptp(made.helix.form_m))
-    return labels | {"lead_misalignment_um": 1e6 * errors.lead_misalignment_m}
 
 
 def _made(section: Manufacture, pair: GearPair, which: str, seat_m: float, draws: Draws) -> MadeGear:

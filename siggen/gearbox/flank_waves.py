@@ -1,20 +1,17 @@
-"""Flank waves of one specimen: what is drawn for its two gears, and its labels."""
+"""Flank waves of a mesh as they are drawn: ghosts of the cutting machine, the chuck, forms of teeth."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from siggen.config import Config
 from siggen.gears.errors.error_shapes import Draws
-from siggen.gears.errors.flank_waves import ORDERS, with_waves
+from siggen.gears.errors.flank_waves import ORDERS
 from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
-from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import LogUniform, Uniform
+from siggen.names import ROLES
 from siggen.seeding import Stage, named_generator
 
 CLAMPING = (2, 3, 4)
@@ -38,10 +35,6 @@ OWN_UM = LogUniform(low=0.1, high=1.0)
 """The amplitude of each tooth's own form (assumed: at four cycles the size of a ghost)."""
 OWN_EXPONENT = Uniform(low=0.9, high=1.6)
 """Its fall (measured: sidebands pass mesh lines above mesh 5)."""
-LEAST_LINE_LOAD_N_PER_M = 1e3
-"""Where there is next to no torque: a Hertz band of some 10 µm."""
-KEPT_POINTS = 8
-"""Operating points whose waves are kept, each of some megabytes; states and repeats share them."""
 REFERENCE_OVER_TEETH = 2.3
 """Waves over teeth at which a ghost has the amplitude that is drawn; more make it smaller in proportion (assumed)."""
 
@@ -55,56 +48,15 @@ class SpecimenWaves:
     ghosts: dict[str, int]
 
 
-def specimen_waves(config: Config, pair: GearPair, specimen_id: int, state_id: int) -> SpecimenWaves | None:
-    """Return the waves of a specimen in a state; None without them. Every draw has a name."""
-    if config.manufacture is None or config.manufacture.flank_waves == "off":
-        return None
-    owner = (specimen_id, state_id if config.manufacture.draw == "state" else 0)
+def drawn_waves(seed: int, owner: tuple[int, int], pair: GearPair) -> SpecimenWaves:
+    """Return the waves of a mesh whose draws have this seed and owner, gearbox and state; every draw has a name."""
 
     def draws(name: str) -> np.random.Generator:
-        return named_generator(config.seed, Stage.MANUFACTURE, *owner, name=f"manufacture.flank_waves.{name}")
+        return named_generator(seed, Stage.MANUFACTURE, *owner, name=f"manufacture.flank_waves.{name}")
 
-    pinion, gear = (_drawn(pair.member(which).teeth, which, draws) for which in ("pinion", "gear"))
-    counts = {which: drawn.waves.size - len(CLAMPING) for which, drawn in (("pinion", pinion), ("gear", gear))}
+    pinion, gear = (_drawn(pair.member(which).teeth, which, draws) for which in ROLES)
+    counts = {which: drawn.waves.size - len(CLAMPING) for which, drawn in zip(ROLES, (pinion, gear), strict=True)}
     return SpecimenWaves(pinion, gear, counts)
-
-
-class WavyTeeth:
-    """Missing material of teeth with waves, which the Hertz band of a record's own torque smooths."""
-
-    def __init__(
-        self,
-        missing: MissingMaterial,
-        pair: GearPair,
-        waves: SpecimenWaves | None = None,
-        shares: FaceShares | None = None,
-    ) -> None:
-        self._plain, self._pair, self._waves, self._shares = missing, pair, waves, shares
-        # not over instances: what belongs to a gearbox ends with it
-        self._with_waves = lru_cache(maxsize=KEPT_POINTS)(self._smoothed)
-
-    def under(self, torque_nm: float) -> MissingMaterial:
-        """Return the missing material in contact under a torque at the pinion."""
-        return self._with_waves(abs(torque_nm))
-
-    def _smoothed(self, torque_nm: float) -> MissingMaterial:
-        if self._waves is None:
-            return self._plain
-        pair = self._pair
-        load = max(torque_nm / pair.pinion.base_radius_m / pair.face_width_m, LEAST_LINE_LOAD_N_PER_M)
-        return with_waves(self._plain, pair, self._waves.pinion, self._waves.gear, load, self._shares)
-
-
-def wave_labels(waves: SpecimenWaves | None) -> dict[str, object]:
-    """Return the orders of the ghosts, per turn of their shaft, and their amplitudes before the contact's width."""
-    if waves is None:
-        return {}
-    labels: dict[str, object] = {}
-    for which, drawn in (("pinion", waves.pinion), ("gear", waves.gear)):
-        count = waves.ghosts[which]
-        labels[f"ghost_orders_{which}"] = [int(n) for n in drawn.waves[:count]]
-        labels[f"ghost_amplitudes_{which}_um"] = [1e6 * float(a) for a in drawn.amplitude_m[:count]]
-    return labels
 
 
 def _drawn(teeth: int, which: str, draws: Draws) -> DrawnWaves:
