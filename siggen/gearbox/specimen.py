@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
 
-from siggen.config import Dynamics, Gears, Planetary, Stage, Stiffness
+from siggen.config import Dynamics
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
@@ -116,16 +116,12 @@ class Specimen:
     law: ToothLaw
     train: PairTrain | None
     planets: PlanetaryGears | None
-    gears: Gears
-    stiffness: Stiffness
     dynamics: Dynamics
     housing: Housing | None
     channels: tuple[DrawnChannel, ...]
     points: tuple[OperatingPoint, ...]
     sensor_places_mm: Mapping[str, tuple[float, ...]]
     bearing_point: OperatingPoint | None = None
-    stages: tuple[Stage, ...] = ()
-    planetary: Planetary | None = None
 
     @property
     def housed(self) -> bool:

@@ -45,7 +45,7 @@ def test_values_lie_within_their_distributions(specimen):
 
 def test_specimens_differ():
     drawn = [draw_specimen(config(**SPREAD), i) for i in range(200)]
-    assert len({specimen.gears.module_mm for specimen in drawn}) == 200
+    assert len({specimen.pair.pinion.module_m for specimen in drawn}) == 200
     assert len({specimen.dynamics.mesh_damping_ratio for specimen in drawn}) == 200
 
 

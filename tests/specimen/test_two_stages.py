@@ -163,7 +163,7 @@ def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
 
     train = specimen.train
     assert train is not None
-    single = replace(specimen, meshes=specimen.meshes[:1], train=replace(train, behind=()), stages=(), names=PAIR)
+    single = replace(specimen, meshes=specimen.meshes[:1], train=replace(train, behind=()), names=PAIR)
     made = structure(single)
     first = replace(mesh, structure=with_heavy(made, ["x_gear", "y_gear", "theta_gear"]), behind=())
     wanted = run(specimen_motion(single.law, first, point, STEP_S), pitches).T
