@@ -145,7 +145,7 @@ def _found(config: Config, number: int) -> Found | None:
 def drawn_case(config: Config, state_id: int) -> Case:
     """Return the record of a state that begins before a spalled tooth enters."""
     specimen = draw_specimen(config, 0)
-    state = specimen_state(config, specimen, state_id)
+    state = specimen_state(specimen, state_id)
     records = (planned_record(config, i) for i in range(config.records_per_specimen))
     record = next(one for one in records if one.state_id == state_id)
     point = draw_operating_point(config, 0, record.operating_point_id)

@@ -114,7 +114,7 @@ def _case(config: Config, gearbox: int, state: int) -> Case:
         if one.state_id == state_id
     )
     specimen = draw_specimen(config, gearbox)
-    made = specimen_state(config, specimen, state_id)
+    made = specimen_state(specimen, state_id)
     point = draw_operating_point(config, gearbox, record.operating_point_id)
     angle = start_angle_rad(config, specimen, record)
     driven = record_drive(config, specimen, made.mesh.structure, point, record, angle)

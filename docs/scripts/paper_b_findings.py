@@ -99,7 +99,7 @@ def runs(states, speeds_hz, duration_s, *overrides, fs_hz=54000.0):
     config = load_config(raw, [*CONSTANTS, "mesh_harmonics=5", *overrides])
     specimen = draw_specimen(config, 0)
     for index, state in enumerate(states):
-        built = specimen_state(config, specimen, index)
+        built = specimen_state(specimen, index)
         for place, speed in enumerate(speeds_hz):
             record = planned_record(config, index * len(speeds_hz) + place)
             response, _ = record_response(config, specimen, built, record, internals=True)

@@ -34,6 +34,16 @@ class OperatingPoint:
 
 
 @dataclass(frozen=True, slots=True)
+class DrawnState:
+    """What a state is called; `sham`: its damage is drawn with nothing removed. Damage itself belongs to meshes."""
+
+    name: str
+    fault: str
+    severity: str
+    sham: bool
+
+
+@dataclass(frozen=True, slots=True)
 class ToothMesh:
     """One mesh of a gearbox.
 
@@ -98,6 +108,7 @@ class Specimen:
 
     Attributes
     ----------
+    states : in the order of the file
     meshes : in the order of power; of a planetary set those of sun and planet, and of planet and ring
     law : how all teeth push and rub
     train, planets : its shafts; one of both
@@ -112,6 +123,7 @@ class Specimen:
     seed: int
     names: Names
     sampling: Sampling
+    states: tuple[DrawnState, ...]
     meshes: tuple[ToothMesh, ...]
     law: ToothLaw
     train: PairTrain | None

@@ -15,7 +15,7 @@ from siggen.gearbox.channels import drawn_channels
 from siggen.gearbox.housing import drawn_housing
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gearbox.planetary import planetary_stage, planetary_teeth
-from siggen.gearbox.specimen import OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
+from siggen.gearbox.specimen import DrawnState, OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
 from siggen.gearbox.teeth import Drawing, drawn_teeth, mesh_seed, on_one_body
 from siggen.gearbox.tooth_law import tooth_law
 from siggen.gearbox.train import ball_bearings, bending_shafts, gear_stage, next_stages
@@ -64,6 +64,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         seed=own.seed,
         names=own.names,
         sampling=Sampling(own.fs_hz, own.duration_s, own.samples),
+        states=tuple(DrawnState(one.name, one.fault, one.severity, one.sham) for one in own.states),
         meshes=meshes,
         law=tooth_law(dynamics),
         train=_train(dynamics, stages, meshes) if planets is None else None,

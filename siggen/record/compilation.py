@@ -81,7 +81,7 @@ def _run_teeth(config: Config) -> None:
     specimen, own = draw_specimen(config, 0), gearbox_config(config, 0)
     teeth = MeshTeeth(specimen.law, specimen.meshes[0].teeth)
     for state_id in _damaged(own):
-        state_teeth(specimen.law, teeth, own.states[state_id], state_id)
+        state_teeth(specimen, teeth, state_id)
 
 
 def _damaged(config: Config) -> Sequence[int]:
@@ -108,7 +108,7 @@ def _run_motion(config: Config) -> None:
     own, specimen = gearbox_config(short, 0), draw_specimen(short, 0)
     # Tables of the same types without solving any contact: springs, as the law linear has them.
     springs = replace(specimen, law=replace(specimen.law, kind=LINEAR))
-    state = specimen_state(own, springs, 0)
+    state = specimen_state(springs, 0)
     simulated(own, specimen, specimen_instrument(own, specimen), state, planned_record(own, 0))
     # what a label of damaged teeth needs besides
     force_n = mean_force_n(state.pair, draw_operating_point(short, 0, 0))

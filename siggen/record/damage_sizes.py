@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from siggen.config import Config, StateSection
+from siggen.config import Config
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import draw_specimen
+from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.labels import damage_labels
 from siggen.record.stage_labels import LARGEST
@@ -22,14 +22,17 @@ def damage_sizes(config: Config, specimen_id: int) -> dict[str, Mapping[str, obj
     found: dict[str, Mapping[str, object]] = {}
     for state_id, name in enumerate(config.state_names):
         changed = bool(config.changes_of(state_id))
-        states, teeth = _teeth(state_config(config, specimen_id, state_id), specimen_id) if changed else shared
+        specimen, teeth = _teeth(state_config(config, specimen_id, state_id), specimen_id) if changed else shared
         try:
-            rows = [damage_labels(states[state_id], one.pair, one.damage(state_id), one.options) for one in teeth]
+            rows = [
+                damage_labels(specimen.states[state_id], one.pair, one.damage(state_id), one.options) for one in teeth
+            ]
         except ValueError:
             continue
         found[name] = {key: max(row[key] for row in rows) for key in LARGEST}  # type: ignore[type-var]
     return found
 
 
-def _teeth(config: Config, specimen_id: int) -> tuple[Sequence[StateSection], Sequence[MeshTeeth]]:
-    return config.states, all_teeth(draw_specimen(config, specimen_id))
+def _teeth(config: Config, specimen_id: int) -> tuple[Specimen, Sequence[MeshTeeth]]:
+    specimen = draw_specimen(config, specimen_id)
+    return specimen, all_teeth(specimen)

@@ -78,7 +78,7 @@ def _simulated(
     config: Config, record: PlannedRecord, *, internals: bool
 ) -> tuple[Specimen, SpecimenState, Response, OperatingPoint]:
     specimen = draw_specimen(config, record.specimen_id)
-    state = specimen_state(config, specimen, record.state_id)
+    state = specimen_state(specimen, record.state_id)
     return specimen, state, *record_response(config, specimen, state, record, internals=internals)
 
 

@@ -12,7 +12,8 @@ from siggen.columns.state_columns import (
     has_sham,
     shown_words,
 )
-from siggen.config import Config, StateSection
+from siggen.config import Config
+from siggen.gearbox.specimen import DrawnState, OperatingPoint, Specimen
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.part import Parts, teeth_of
 from siggen.gears.geometry.gear_pair import GearPair
@@ -21,7 +22,6 @@ from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
 from siggen.names import ROLES, SEVERAL
 from siggen.planning.gearbox import pair_of
-from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS
 from siggen.specimen.static_mesh import StaticMesh
@@ -33,7 +33,7 @@ def _faulty_gear(parts: Parts) -> str:
 
 
 def damage_labels(
-    state: StateSection, pair: GearPair, parts: Parts, options: StiffnessOptions, sink_depth_m: float = 0.0
+    state: DrawnState, pair: GearPair, parts: Parts, options: StiffnessOptions, sink_depth_m: float = 0.0
 ) -> dict[str, object]:
     """Return the labels that follow from the damage alone: fault, severity, teeth, areas, lengths and losses.
 

@@ -210,7 +210,7 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Simula
 
 def _staged_state(machine: Machine, state_id: int) -> SpecimenState:
     with stage("tables"):
-        return specimen_state(machine.config, machine.specimen, state_id, (machine.teeth, machine.structure))
+        return specimen_state(machine.specimen, state_id, (machine.teeth, machine.structure))
 
 
 def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[SimulatedRecord | RecordFailure]:

@@ -7,8 +7,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from siggen.columns.planetary_columns import EACH
-from siggen.config import Config, StateSection
-from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import SolverFailure
 from siggen.gearbox.specimen import PlanetaryGears, Specimen
@@ -83,7 +81,7 @@ class StateTeeth:
     parts: Parts
 
 
-def state_teeth(law: ToothLaw, teeth: MeshTeeth, section: StateSection, state_id: int) -> StateTeeth:
+def state_teeth(specimen: Specimen, teeth: MeshTeeth, state_id: int) -> StateTeeth:
     """Return the teeth of one mesh in one state.
 
     Raises
@@ -97,16 +95,13 @@ def state_teeth(law: ToothLaw, teeth: MeshTeeth, section: StateSection, state_id
         damage = on_teeth(parts)
         errors = teeth.errors(state_id)
         lead = lead_of(errors)
-        tables = tooth_tables(law, pair, damage, options, TABLE_POINTS, teeth.teeth.largest_force_n, lead)
-        labels = damage_labels(section, pair, parts, options, tables.sink_depth_m)
+        tables = tooth_tables(specimen.law, pair, damage, options, TABLE_POINTS, teeth.teeth.largest_force_n, lead)
+        labels = damage_labels(specimen.states[state_id], pair, parts, options, tables.sink_depth_m)
     return StateTeeth(pair, options, damage, errors, tables, labels, parts)
 
 
 def specimen_state(
-    config: Config,
-    specimen: Specimen,
-    state_id: int,
-    shared: tuple[Sequence[MeshTeeth], Structure] | None = None,
+    specimen: Specimen, state_id: int, shared: tuple[Sequence[MeshTeeth], Structure] | None = None
 ) -> SpecimenState:
     """Return gears, damage, tables and structure of one specimen in one state.
 
@@ -119,8 +114,7 @@ def specimen_state(
     """
     with refused_as("outside_model"):
         teeth, assembled = shared or (all_teeth(specimen), structure(specimen))
-    section = config.states[state_id]
-    states = [_mesh_state(specimen, one, section, state_id, assembled) for one in teeth]
+    states = [_mesh_state(specimen, one, state_id, assembled) for one in teeth]
     if specimen.planets is not None:
         return _planetary_state(specimen.planets, states, teeth, state_id)
     return _with_stages(specimen, states) if specimen.behind else states[0]
@@ -151,9 +145,7 @@ def _with_stages(specimen: Specimen, states: Sequence[SpecimenState]) -> Specime
     return replace(first, mesh=replace(first.mesh, behind=meshes, back=None), labels=labels, behind=tuple(behind))
 
 
-def static_state(
-    law: ToothLaw, teeth: MeshTeeth, section: StateSection, state_id: int
-) -> tuple[StateTeeth, StaticMesh]:
+def static_state(specimen: Specimen, teeth: MeshTeeth, state_id: int) -> tuple[StateTeeth, StaticMesh]:
     """Return the teeth of one mesh in one state, and the mesh at rest.
 
     Raises
@@ -161,32 +153,29 @@ def static_state(
     SolverFailure
         If what was drawn cannot be built (named in the reason).
     """
-    of_state = state_teeth(law, teeth, section, state_id)
+    of_state, law = state_teeth(specimen, teeth, state_id), specimen.law
     with refused_as("outside_model"):
         static = static_mesh(law, of_state.pair, of_state.tables, TABLE_POINTS, of_state.parts)
         loads = teeth.teeth.largest_force_n, lead_of(of_state.errors)
         return of_state, with_static_back(static, law, of_state.options, *loads, of_state.parts)
 
 
-def _mesh_state(
-    specimen: Specimen, teeth: MeshTeeth, section: StateSection, state_id: int, assembled: Structure
-) -> SpecimenState:
+def _mesh_state(specimen: Specimen, teeth: MeshTeeth, state_id: int, assembled: Structure) -> SpecimenState:
     """Return the state of one mesh of a gearbox."""
-    law = specimen.law
-    of_state, static = static_state(law, teeth, section, state_id)
+    of_state, static = static_state(specimen, teeth, state_id)
     pair, tables, parts = of_state.pair, of_state.tables, of_state.parts
     with refused_as("outside_model"):
         labels = {**of_state.labels, **tooth_labels(teeth, state_id)}
         mesh = SpecimenMesh(
             pair, assembled, tables.tables, teeth.missing(state_id), tables.coupling_m_per_n, tables.contact,
-            teeth.shares(state_id), sham=section.sham,
+            teeth.shares(state_id), sham=specimen.states[state_id].sham,
         )  # fmt: skip
         if specimen.planets is None:  # which carries no torque below 0
             before, loads = (
                 teeth.missing_before_chips(state_id),
                 (teeth.teeth.largest_force_n, lead_of(of_state.errors)),
             )
-            mesh = with_back_flanks(mesh, law, of_state.options, *loads, before, parts)
+            mesh = with_back_flanks(mesh, specimen.law, of_state.options, *loads, before, parts)
     return SpecimenState(pair, of_state.options, of_state.damage, mesh, labels, static, parts)
 
 

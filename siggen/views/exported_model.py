@@ -60,7 +60,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     record = planned_record(whole, record_id)
     config = state_config(whole, record.specimen_id, record.state_id)
     specimen = draw_specimen(config, record.specimen_id)
-    state = specimen_state(config, specimen, record.state_id)
+    state = specimen_state(specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     with refused_as("outside_model"):
         specimen, state = at_point(config, specimen, state, record)

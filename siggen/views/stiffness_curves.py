@@ -164,7 +164,7 @@ def _as_simulated(
     own = state_config(config, specimen_id, state_id)
     specimen = draw_specimen(own, specimen_id)
     teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
-    state, static = static_state(specimen.law, teeth, own.states[state_id], state_id)
+    state, static = static_state(specimen, teeth, state_id)
     pair, angle, contact = state.pair, curve.angle_rad, static.contact
     if contact is None:
         return curve

@@ -77,7 +77,7 @@ def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
     config = load_config(uneven | healthy)
     config = load_config(config.canonical() | {"operating_points": [{"speed_hz": 20.0, "torque_nm": 45.0}]})
     specimen = draw_specimen(config, 0)
-    state = specimen_state(config, specimen, 0)
+    state = specimen_state(specimen, 0)
     motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
     found = sum(static_tilts_rad(specimen.dynamics, which, state.pair, 45.0)[1] for which in ("pinion", "gear"))
     assert abs(found) > 1e-6
@@ -150,7 +150,7 @@ def test_a_face_pushed_askew_until_it_rests_on_one_end_is_no_reason_to_lose_a_re
 def test_a_tilt_in_motion_at_which_an_end_of_the_face_meets_the_other_flank_is_refused() -> None:
     config = load_config(with_shafts())
     specimen = draw_specimen(config, 0)
-    state = specimen_state(config, specimen, 0)
+    state = specimen_state(specimen, 0)
     motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
     turn = motion.structure.mesh.tilt
     room_m = motion.law.backlash_m + motion.pair_equations.static[0, 1]

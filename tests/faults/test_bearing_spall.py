@@ -122,7 +122,7 @@ def test_the_mean_force_of_the_bearing_is_the_torques_whether_a_ball_sinks_or_no
     for spall in (None, {**SPALL, "length_mm": 6.0}):
         made = with_states(spall, duration_s=2.0)
         specimen, record = draw_specimen(made, 0), planned_record(made, 1)
-        response, point = record_response(made, specimen, specimen_state(made, specimen, 1), record, internals=True)
+        response, point = record_response(made, specimen, specimen_state(specimen, 1), record, internals=True)
         force = np.array([response.bearing_force_n[f"pinion_bearing/{axis}"] for axis in ("horizontal", "vertical")])
         means.append(force.mean(axis=1))
         expected = mean_force_n(specimen, structure(specimen), point, "pinion_bearing")
@@ -139,7 +139,7 @@ def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
     specimen = draw_specimen(made, record.specimen_id)
     point = draw_operating_point(made, record.specimen_id, record.operating_point_id)
     rotation = record_rotation(made, point, record, start_angle_rad(made, specimen, record))
-    parts = specimen_state(made, specimen, record.state_id).parts
+    parts = specimen_state(specimen, record.state_id).parts
     return spall_sources(made, specimen, structure(specimen), point, record, rotation, parts)
 
 
@@ -190,7 +190,7 @@ def test_a_grown_spall_takes_the_place_of_the_milder_one() -> None:
         {**SPALL, "element": "inner", "length_mm": longer, "grows": True},
         {**SPALL, "grows": True},
     )
-    slight, severe, both = (specimen_state(made, draw_specimen(made, 0), n).parts for n in (1, 2, 3))
+    slight, severe, both = (specimen_state(draw_specimen(made, 0), n).parts for n in (1, 2, 3))
     assert [len(parts) for parts in (slight, severe, both)] == [1, 1, 2]
     (before,), (after,) = slight, severe
     assert isinstance(before, RollingSpall)

@@ -140,7 +140,7 @@ def test_a_missing_tooth_is_missing_under_either_torque() -> None:
 def measured(damage: dict[str, Any], state: int = 1) -> tuple[dict[str, Any], float]:
     """Return the labels of a damage alone, and the loss of stiffness at 60 N m."""
     config = quick({**damage, "teeth": [4]})
-    found = specimen_state(config, draw_specimen(config, 0), state)
+    found = specimen_state(draw_specimen(config, 0), state)
     return found.labels, found.static.largest_loss(60.0)
 
 
@@ -164,7 +164,7 @@ def test_labels_of_a_chip_over_the_face_are_its_area_and_its_stiffness() -> None
 def test_what_is_gone_on_both_flanks_is_lost_under_either_torque(damages: tuple[dict[str, Any], ...]) -> None:
     """Perfect gears are their own mirror image, in which the teeth count the other way round."""
     config = quick(*damages)
-    static = specimen_state(config, draw_specimen(config, 0), 1).static
+    static = specimen_state(draw_specimen(config, 0), 1).static
     assert static.largest_loss(-60.0) == pytest.approx(static.largest_loss(60.0), rel=1e-9)
     assert static.largest_loss(60.0) > 0.1
 
@@ -176,7 +176,7 @@ def test_a_chip_beside_pits_has_lost_its_tip_alone_under_a_torque_below_0() -> N
     alone, (_, state) = quick(chip), quick(pits).states
     both = alone.states[1].model_copy(update={"damage": (*alone.states[1].damages, *state.damages)})
     grown = alone.model_copy(update={"states": (alone.states[0], both)})
-    tip, more = (specimen_state(one, draw_specimen(one, 0), 1).static for one in (alone, grown))
+    tip, more = (specimen_state(draw_specimen(one, 0), 1).static for one in (alone, grown))
     assert more.largest_loss(-60.0) == pytest.approx(tip.largest_loss(-60.0), rel=1e-12)
     assert tip.largest_loss(-60.0) == pytest.approx(tip.largest_loss(60.0), rel=1e-9)
     assert more.largest_loss(60.0) > tip.largest_loss(60.0)

@@ -80,9 +80,9 @@ def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -
     """Closed form: a layer d off every flank adds d to the approach x at any load: F/x loses d/(x + d) at most."""
     config = config_with(WEAR)
     specimen = draw_specimen(config, 0)
-    state = specimen_state(config, specimen, 0)
+    state = specimen_state(specimen, 0)
     layer = WornFlanks("pinion", (5e-6,) * 9)
-    teeth = state_teeth(specimen.law, all_teeth(specimen)[0], config.states[0], 0).tables
+    teeth = state_teeth(specimen, all_teeth(specimen)[0], 0).tables
     worn = static_mesh(specimen.law, state.pair, teeth, TABLE_POINTS, (layer,))
     force_n = worn.force_n(60.0)
     approach = force_n / state.static.stiffness_n_per_m(60.0, np.linspace(0.0, 1.0, 2001))
@@ -94,7 +94,7 @@ def test_worn_records_tell_a_loss_of_stiffness_that_grows_and_a_sham_none() -> N
     config = config_with({**WEAR, "depth_um": 5.0}, WEAR, {**WEAR, "depth_um": 25.0})
     states = (*config.states[:3], config.states[3].model_copy(update={"acts": False}))
     config = config.model_copy(update={"states": states})
-    loss = [specimen_state(config, draw_specimen(config, 0), n).static.largest_loss(60.0) for n in range(4)]
+    loss = [specimen_state(draw_specimen(config, 0), n).static.largest_loss(60.0) for n in range(4)]
     assert loss[0] == loss[3] == 0.0
     assert 0.05 < loss[1] < loss[2] < 1.0
 

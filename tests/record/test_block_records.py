@@ -57,7 +57,7 @@ def test_blocks_join_without_a_seam_to_one_convolution(monkeypatch: pytest.Monke
     config = loaded(variation={}, duration_s=0.2)
     specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
     instrument = specimen_instrument(config, specimen)
-    response, _ = record_response(config, specimen, specimen_state(config, specimen, 0), planned)
+    response, _ = record_response(config, specimen, specimen_state(specimen, 0), planned)
     before, grid = response.before, instrument.blocks.grid
     expected = np.zeros(config.samples)
     for one, spectrum in instrument.blocks.filters["lid_vertical"].items():

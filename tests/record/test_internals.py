@@ -127,7 +127,7 @@ def test_streamed_internals_are_those_of_the_whole_response_to_the_last_bit(name
     config = load_config(name, [*STREAMED, "duration_s=0.2"])  # more than two blocks
     planned, specimen = planned_record(config, 1), draw_specimen(config, 0)
     (record,) = simulate(config, [1])
-    state = specimen_state(config, specimen, planned.state_id)
+    state = specimen_state(specimen, planned.state_id)
     response, _ = record_response(config, specimen, state, planned, internals=True)
     whole = internal_quantities(specimen, response)
     assert list(record.internals) == list(whole)

@@ -79,7 +79,7 @@ def test_springs_between_teeth_know_no_sham_either() -> None:
 def test_its_teeth_have_kinds_of_pairs_of_their_own() -> None:
     chosen = config(sham_of("spall"), {**sham_of("spall"), "name": "real", "acts": True, "severity": "severe"})
     specimen = draw_specimen(chosen, 0)
-    healthy, sham, real = (specimen_state(chosen, specimen, state).mesh.tables.table_of_pair for state in range(3))
+    healthy, sham, real = (specimen_state(specimen, state).mesh.tables.table_of_pair for state in range(3))
     assert healthy.max() == 0 < sham.max() == real.max()
     assert (sham > 0).sum() == (real > 0).sum()
 

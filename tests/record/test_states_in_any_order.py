@@ -29,7 +29,7 @@ NAMES = [state.name for state in CONFIG.states]
 
 def teeth_of(made: MeshTeeth, name: str) -> StateTeeth:
     state_id = NAMES.index(name)
-    return state_teeth(SPECIMEN.law, made, CONFIG.states[state_id], state_id)
+    return state_teeth(SPECIMEN, made, state_id)
 
 
 def numbers(teeth: StateTeeth) -> list[bytes]:

@@ -51,7 +51,7 @@ def own_mirror(friction: str = "off", *, housed: bool = False) -> Config:
 
 
 def state_of(config: Config, state_id: int = 0) -> SpecimenState:
-    return specimen_state(config, draw_specimen(config, 0), state_id)
+    return specimen_state(draw_specimen(config, 0), state_id)
 
 
 def moved(config: Config, state: SpecimenState, torque_nm: float, internals: bool = False) -> FloatArray:

@@ -23,7 +23,7 @@ def cracked(gear: str = "pinion", damage: str = "all") -> SpecimenState:
     config = config_with(crack)
     specimen = draw_specimen(config, 0)
     law = replace(specimen.law, section_loss=damage == "all")
-    return specimen_state(config, replace(specimen, law=law), 1)
+    return specimen_state(replace(specimen, law=law), 1)
 
 
 def approaches_m(state: SpecimenState, pitches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

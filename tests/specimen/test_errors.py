@@ -150,7 +150,7 @@ def test_a_crowned_pair_at_rest_gives_way_by_up_to_the_mean_of_its_parabola() ->
     crown, approach = 8e-6, {}
     for crowning in (8.0, 0.0):
         config = with_helix(CLASS_6, tolerance_share=0.0, crowning_um=crowning, crowning_gear_um=0.0)
-        state = specimen_state(config, draw_specimen(config, 0), 0)
+        state = specimen_state(draw_specimen(config, 0), 0)
         pair = state.pair
         alone = np.array([0.5 * (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m])
         approach[crowning] = np.array(

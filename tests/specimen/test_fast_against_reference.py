@@ -68,7 +68,7 @@ def errors(preset: str, number: int) -> np.ndarray:
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
     assert specimen.law.method == "exponential"
-    state = specimen_state(config, specimen, record.state_id)
+    state = specimen_state(specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     driven = record_drive(
         config, specimen, state.mesh.structure, point, record, start_angle_rad(config, specimen, record)

@@ -29,7 +29,7 @@ SMOOTH = {"dynamics": {"model": "8dof", "friction": {"model": "off"}, "mesh_damp
 def machine(state: int = 0, **changes: object) -> tuple[Config, Specimen, SpecimenMesh, OperatingPoint]:
     config = load_config(idler(**SMOOTH, **changes))
     specimen = draw_specimen(config, 0)
-    return config, specimen, specimen_state(config, specimen, state).mesh, draw_operating_point(config, 0, 0)
+    return config, specimen, specimen_state(specimen, state).mesh, draw_operating_point(config, 0, 0)
 
 
 def motion_of(mesh: SpecimenMesh) -> PairMotion:
@@ -132,7 +132,7 @@ def test_an_eccentric_idler_stands_back_from_both_gears_as_the_structure_says_of
     config = load_config(idler(**SMOOTH, manufacture={"accuracy_class": 6}))
     specimen = draw_specimen(config, 0)
     made, found = all_teeth(specimen), structure(specimen)
-    mesh = specimen_state(config, specimen, 0).mesh
+    mesh = specimen_state(specimen, 0).mesh
     rows = [found.coordinates.index(f"{axis}_b") for axis in "xy"]
     ahead, behind = (one.vector[rows] for one in found.meshes)
     turned = 30.0 + np.linspace(0.0, 27.0, 53)  # pitches

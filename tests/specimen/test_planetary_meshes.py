@@ -54,7 +54,7 @@ def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_mad
     specimen: Specimen, meshes: Sequence[MeshTeeth]
 ) -> None:
     config = load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"}))
-    labels = specimen_state(config, specimen, 0).labels
+    labels = specimen_state(specimen, 0).labels
     errors = [one.errors(0) for one in meshes]
     runouts = [1e6 * one.gear.found.largest["runout_m"] for one in errors if one is not None]
     assert labels["runout_ring_um"] == runouts[COUNT]

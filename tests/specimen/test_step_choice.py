@@ -36,7 +36,7 @@ def loaded(*overrides: str) -> Config:
 def steps_of(config: Config) -> int:
     """Return the steps of the rule for the first operating point of the first gearbox."""
     specimen = draw_specimen(config, 0)
-    mesh = specimen_state(config, specimen, 0).mesh
+    mesh = specimen_state(specimen, 0).mesh
     return rule_grid(config.fs_hz, specimen.law, mesh, draw_operating_point(config, 0, 0)).steps
 
 
@@ -44,7 +44,7 @@ def chosen_steps(config: Config) -> tuple[Config, Stepped, RecordDrive]:
     """Return a configuration with how a record of it is stepped and driven."""
     record = planned_record(config, RECORD)
     specimen = draw_specimen(config, 0)
-    mesh = specimen_state(config, specimen, record.state_id).mesh
+    mesh = specimen_state(specimen, record.state_id).mesh
     point = draw_operating_point(config, 0, record.operating_point_id)
     driven = record_drive(config, specimen, mesh.structure, point, record, start_angle_rad(config, specimen, record))
     return config, stepped_motion(specimen.sampling, specimen.law, mesh, point, driven), driven
@@ -85,7 +85,7 @@ def test_slow_gears_without_friction_take_steps_of_1_4_rad_of_the_teeth_s_vibrat
     """A hundredth of the tolerance asks for a tenth of the step. The vibration is found by general eigenvalues."""
     slow = ["operating_points=[{speed_hz: 5, torque_nm: 60}]", "dynamics.friction.model=off"]
     config = loaded(*slow, "dynamics.integration_tolerance=1e-5")
-    mesh = specimen_state(config, draw_specimen(config, 0), 0).mesh
+    mesh = specimen_state(draw_specimen(config, 0), 0).mesh
     structure, tables = mesh.structure, mesh.every[0].mesh.tables
     pairs = (tables.end_m - tables.start_m) / tables.base_pitch_m
     teeth = pairs * tables.pair_stiffness_n_per_m.max(axis=0).mean()
@@ -152,7 +152,7 @@ def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
     config, chosen, driven = chosen_steps(loaded())
     specimen = draw_specimen(config, 0)
     record = planned_record(config, RECORD)
-    mesh = specimen_state(config, specimen, record.state_id).mesh
+    mesh = specimen_state(specimen, record.state_id).mesh
     point = draw_operating_point(config, 0, record.operating_point_id)
     law, step_s = specimen.law.by_reference(), 1.0 / (config.fs_hz * FINE_STEPS)
     fine = specimen_motion(law, mesh, point, step_s, driven)

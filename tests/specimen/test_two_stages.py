@@ -69,7 +69,7 @@ def config(*overrides: str) -> Config:
 def machine(*overrides: str) -> tuple[Config, Specimen, SpecimenMesh, OperatingPoint]:
     found = config(*overrides)
     specimen = draw_specimen(found, 0)
-    return found, specimen, specimen_state(found, specimen, 0).mesh, draw_operating_point(found, 0, 2)
+    return found, specimen, specimen_state(specimen, 0).mesh, draw_operating_point(found, 0, 2)
 
 
 def run(motion: PairMotion, pitches: FloatArray) -> FloatArray:
@@ -251,7 +251,7 @@ def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -
     damage = f"states.slight.damage={{kind: chip, gear: {gear}, height_mm: whole}}"
     found = config(damage)
     specimen, record = draw_specimen(found, 0), planned_record(found, 3)
-    state = specimen_state(found, specimen, 1)
+    state = specimen_state(specimen, 1)
     point, built = draw_operating_point(found, 0, 0), state.mesh.structure
     driven = record_drive(found, specimen, built, point, record, 0.0, state.parts, state.parts_behind)
     assert driven.excitation is not None
@@ -270,8 +270,6 @@ def test_shafts_that_let_gears_part_are_refused_with_the_place_to_change() -> No
     soft = {**two_stages(), "stages": [{**SLOW, "span_mm": 1500.0}]}
     found = load_config(soft, WITHOUT_FRICTION)
     specimen = draw_specimen(found, 0)
-    motion = specimen_motion(
-        specimen.law, specimen_state(found, specimen, 0).mesh, draw_operating_point(found, 0, 0), STEP_S
-    )
+    motion = specimen_motion(specimen.law, specimen_state(specimen, 0).mesh, draw_operating_point(found, 0, 0), STEP_S)
     with pytest.raises(ValueError, match="stages: a gear moves by"):
         motion.start(0.0)

@@ -117,7 +117,7 @@ def beginning(
         loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
     planned = planned_record(loaded, record)
     specimen = draw_specimen(loaded, planned.specimen_id)
-    state = specimen_state(loaded, specimen, planned.state_id)
+    state = specimen_state(specimen, planned.state_id)
     point = draw_operating_point(loaded, planned.specimen_id, planned.operating_point_id)
     angle = start_angle_rad(loaded, specimen, planned)
     driven = record_drive(loaded, specimen, state.mesh.structure, point, planned, angle)
@@ -215,7 +215,7 @@ def test_the_model_starts_where_its_record_does() -> None:
     specimen, steps = draw_specimen(loaded, 0), int(model["steps_per_sample"])
     point = draw_operating_point(loaded, 0, 0)
     motion = specimen_motion(
-        specimen.law, specimen_state(loaded, specimen, 0).mesh, point, float(model["step_s"])
+        specimen.law, specimen_state(specimen, 0).mesh, point, float(model["step_s"])
     )  # fmt: skip
     first = round(-model["start_s"] / model["step_s"])
     assert first % steps == 0
