@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.keys.number import constant
+from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.tooth_law import tooth_law
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from tests.config.minimal import config
 
@@ -35,9 +36,9 @@ def test_a_specimen_does_not_depend_on_the_number_of_specimens(specimen):
 @given(st.integers(0, 10**6))
 def test_values_lie_within_their_distributions(specimen):
     drawn = draw_specimen(config(**SPREAD), specimen)
-    assert 2.5 <= constant(drawn.gears.module_mm) <= 3.5
-    assert drawn.gears.pinion.bore_radius_mm in (8.0, 9.0, 10.0)
-    assert 6e7 <= constant(drawn.dynamics.gear.bearing_stiffness_y_n_per_m) <= 1.2e8
+    assert 2.5e-3 <= drawn.pair.pinion.module_m <= 3.5e-3
+    assert drawn.pair.pinion.bore_radius_m in (8e-3, 9e-3, 10e-3)
+    assert 6e7 <= drawn.train.first.gear.bearing.stiffness_y_n_per_m <= 1.2e8
     point = draw_operating_point(config(**SPREAD), specimen, 1)
     assert 20 <= point.speed_hz <= 35
     assert 30 <= point.torque_nm <= 80
@@ -46,7 +47,7 @@ def test_values_lie_within_their_distributions(specimen):
 def test_specimens_differ():
     drawn = [draw_specimen(config(**SPREAD), i) for i in range(200)]
     assert len({specimen.pair.pinion.module_m for specimen in drawn}) == 200
-    assert len({specimen.dynamics.mesh_damping_ratio for specimen in drawn}) == 200
+    assert len({specimen.law.damping_ratio for specimen in drawn}) == 200
 
 
 @pytest.mark.parametrize(
@@ -65,11 +66,11 @@ def test_specimens_differ():
 def test_a_new_distribution_or_setting_leaves_all_other_draws_alone(change):
     before, after = config(**SPREAD), config(**SPREAD, **change)
     old, new = draw_specimen(before, 3), draw_specimen(after, 3)
-    assert old.gears.module_mm == new.gears.module_mm
-    assert old.gears.pinion == new.gears.pinion
-    assert old.dynamics.mesh_damping_ratio == new.dynamics.mesh_damping_ratio
-    assert old.dynamics.gear == new.dynamics.gear
-    assert old.sensors[0].gain == new.sensors[0].gain
+    assert old.pair.pinion.module_m == new.pair.pinion.module_m
+    assert old.pair.pinion.bore_radius_m == new.pair.pinion.bore_radius_m
+    assert old.law.damping_ratio == new.law.damping_ratio
+    assert old.train.first.gear.bearing == new.train.first.gear.bearing
+    assert old.channels[0].gain == new.channels[0].gain
     assert draw_operating_point(before, 3, 1) == draw_operating_point(after, 3, 1)
 
 
@@ -88,13 +89,13 @@ def test_operating_points_of_a_specimen_are_drawn_independently():
 
 def test_draws_of_different_stages_are_independent():
     drawn = [draw_specimen(config(**SPREAD), i) for i in range(400)]
-    pairs = np.array([(constant(s.gears.module_mm), constant(s.dynamics.mesh_damping_ratio)) for s in drawn])
+    pairs = np.array([(s.pair.pinion.module_m, s.law.damping_ratio) for s in drawn])
     # 400 independent pairs: the correlation has a standard deviation of 0.05
     assert abs(np.corrcoef(pairs.T)[0, 1]) < 0.2
 
 
 def test_draws_follow_the_distribution():
-    modules = [constant(draw_specimen(config(**SPREAD), i).gears.module_mm) for i in range(1000)]
+    modules = [1e3 * draw_specimen(config(**SPREAD), i).pair.pinion.module_m for i in range(1000)]
     # a uniform of width 1 has a standard deviation of 0.289, its mean over 1000 one of 0.009
     assert np.mean(modules) == pytest.approx(3.0, abs=0.04)
     assert np.std(modules) == pytest.approx(0.2887, abs=0.03)
@@ -103,6 +104,6 @@ def test_draws_follow_the_distribution():
 def test_constants_need_no_luck():
     constants = config(dynamics__friction__boundary_friction=0.09, dynamics__friction__roughness_um=0.4)
     drawn = draw_specimen(constants, 5)
-    assert drawn.gears == constants.gears
-    assert drawn.dynamics == constants.dynamics
-    assert drawn.sensors[0].gains == (1.0,)
+    assert drawn.pair == gear_pair(constants.gears)
+    assert drawn.law == tooth_law(constants.dynamics)
+    assert drawn.channels[0].gain == 1.0
