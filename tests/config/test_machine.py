@@ -147,13 +147,13 @@ def test_an_idler_is_named_by_the_mesh_of_each_flank() -> None:
     assert parse(config.canonical()).config == config
     assert {"faulty_teeth_first_b", "faulty_teeth_second_b"} <= set(label_names(config))
     drawn = draw_specimen(config, 0)
-    assert drawn.stages[0].gears.pinion == drawn.gears.gear
+    assert drawn.meshes[1].pair.pinion == drawn.pair.gear
 
 
 def test_an_idler_whose_bore_is_drawn_has_one() -> None:
     bore = [10.0, 14.0]
     drawn = draw_specimen(load_config(idler(machine=with_idler("gears", 1, bore_radius_mm=bore))), 3)
-    assert drawn.stages[0].gears.pinion.bore_radius_mm == drawn.gears.gear.bore_radius_mm
+    assert drawn.meshes[1].pair.pinion.bore_radius_m == drawn.pair.gear.bore_radius_m
 
 
 OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {

@@ -15,7 +15,6 @@ from siggen.checks.physical_problems import physical_problems
 from siggen.config import Config, parse
 from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
-from siggen.gearbox.pair import gear_pair
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.damage_rows import damage_rows
@@ -169,7 +168,7 @@ def test_steps_are_chosen_on_a_stretch_that_no_passage_of_the_zone_can_miss(elem
 def test_half_of_the_tooth_force_loads_the_bearing_along_the_line_of_action() -> None:
     made = with_states(SPALL, {**SPALL, "bearing": "gear_bearing"})
     (pinion,), (gear,) = sources_of(made, 1), sources_of(made, 2)
-    pair = gear_pair(draw_specimen(made, 0).gears)
+    pair = draw_specimen(made, 0).pair
     force = 60.0 / (0.5 * 3e-3 * 18 * math.cos(math.radians(20.0)))
     for source in (pinion, gear):
         bearing = source.spall.bearing

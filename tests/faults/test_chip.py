@@ -11,7 +11,6 @@ from siggen.checks.quantity_names import available_quantities
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.chip import WholeChip
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
@@ -148,7 +147,7 @@ def test_labels_of_a_chip_over_the_face_are_its_area_and_its_stiffness() -> None
     """Of the involute above a radius R the area is b (R_a² - R²)/(2 R_b); of nearly all of the face nearly as much."""
     deep = {"kind": "chip", "height_mm": 3.0}
     (whole, lost), (_, nearly), (_, sound) = measured(deep), measured({**deep, "face_share": 0.999}), measured(deep, 0)
-    pair = gear_pair(draw_specimen(quick(deep), 0).gears)
+    pair = draw_specimen(quick(deep), 0).pair
     tip = pair.pinion.tip_radius_m
     area = pair.face_width_m * (tip**2 - (tip - 3e-3) ** 2) / (2.0 * pair.pinion.base_radius_m)
     assert whole["damaged_area_mm2"] == pytest.approx(1e6 * area, rel=1e-6)

@@ -11,7 +11,6 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
-from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.tooth_damage import Damage
@@ -101,7 +100,7 @@ def test_the_damaged_tooth_differs_between_specimens_and_stays_in_all_states() -
 
 def test_drawn_centres_lie_on_the_flank_however_wide_the_scatter() -> None:
     config = config_with({"kind": "clustered", "count": 200, "spread_profile_mm": 3.0, **PIT})
-    pair = gear_pair(draw_specimen(config, 0).gears)
+    pair = draw_specimen(config, 0).pair
     low, high = flank_heights(pair.pinion)
     damage = damage_of(config, 1)
     assert all(low <= p.height_m <= high and 0 <= p.face_m <= pair.face_width_m for p in damage)
@@ -116,7 +115,7 @@ def test_listed_pits_appear_as_they_are_listed() -> None:
     damage = damage_of(config, 1)
     assert [(p.gear, p.tooth) for p in damage] == [("pinion", 3), ("gear", 40)]
     assert [p.height_m for p in damage] == pytest.approx([1.5e-3, 2.5e-3], rel=1e-15)
-    assert not damage_problems(gear_pair(draw_specimen(config, 0).gears), damage)
+    assert not damage_problems(draw_specimen(config, 0).pair, damage)
 
 
 def test_growing_damage_stays_where_it_began_when_its_place_is_drawn() -> None:

@@ -12,7 +12,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from siggen.errors import ConfigError
-from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.heights import clipped_arc_m
 from siggen.gears.damage.irregular import IrregularSpall
 from siggen.planning.specimen import draw_specimen
@@ -105,7 +104,7 @@ def test_skews_are_millimetres_of_arc_over_ten_of_face() -> None:
     damage = {**SPALL, **STRAIGHT, "face_share": 1.0, "skew_mm_per_10mm": 0.2}
     config = config_with(damage)
     (one,) = damage_of(config, 1)
-    pair = gear_pair(draw_specimen(config, 0).gears)
+    pair = draw_specimen(config, 0).pair
     first, last = one.stations_m[0], one.stations_m[-1]
     assert clipped_arc_m(pair.pinion, (first[1], last[1])) == pytest.approx(0.4e-3, rel=1e-9)
     # Edges of one skew stay as far apart as they are in the middle.
@@ -165,7 +164,7 @@ def test_impossible_spalls_are_refused_by_key_value_and_range(changes: dict[str,
 
 def test_a_depth_that_follows_from_the_lengths_is_blamed_on_them() -> None:
     config = config_with({**SPALL, **STRAIGHT, "face_share": 1.0})
-    damage, pair = config.states[1].damage, gear_pair(draw_specimen(config, 0).gears)
+    damage, pair = config.states[1].damage, draw_specimen(config, 0).pair
     assert damage is not None
     (problem,) = damage.place_problems(replace(pair, face_width_m=20.0))
     assert problem.path == "profile_length_mm"

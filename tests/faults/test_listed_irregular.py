@@ -9,7 +9,6 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
-from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.tooth_damage import on_teeth
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.planning.specimen import draw_specimen
@@ -28,7 +27,7 @@ def listed(**changes: Any) -> dict[str, Any]:
 
 def test_its_area_is_that_of_the_edges_that_are_written() -> None:
     config = load_config(listed())
-    pair = gear_pair(draw_specimen(config, 0).gears)
+    pair = draw_specimen(config, 0).pair
     damage = on_teeth(all_teeth(draw_specimen(config, 0))[0].damage(1))
     assert [(one.gear, one.tooth, one.depth_m) for one in damage] == [("pinion", 3, 1e-4)]
     # edges are straight in height, given as arcs here: 1 % between stations of 2 and 3 mm

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gearbox.pair import gear_pair
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
@@ -19,7 +18,7 @@ GEAR = {**PINION, "name": "gear", "place": "gear_bearing"}
 
 def test_both_shafts_press_on_their_seats_with_the_mesh_force_and_against_each_other() -> None:
     config = loaded(PINION, GEAR, duration_s=1.0, **OFF)
-    channels, pair = record(config).channels, gear_pair(draw_specimen(config, 0).gears)
+    channels, pair = record(config).channels, draw_specimen(config, 0).pair
     force, angle = 60.0 / pair.pinion.base_radius_m, pair.working_pressure_angle_rad
     along = {"vertical": np.cos(angle), "horizontal": np.sin(angle)}
     for axis, share in along.items():

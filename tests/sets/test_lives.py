@@ -17,7 +17,6 @@ from diagnostics.records.record_classes import set_classes
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
-from siggen.gearbox.pair import gear_pair
 from siggen.planning.gearbox import gearbox_life
 from siggen.planning.plan import plan
 from siggen.planning.specimen import draw_specimen
@@ -136,7 +135,7 @@ def test_pits_begin_where_flanks_slide_against_their_rolling(gear: str) -> None:
     from siggen.record.life_rows import life_rows
 
     config = load_config({**lives(), "specimens": 6})
-    pair = gear_pair(draw_specimen(config, 0).gears)
+    pair = draw_specimen(config, 0).pair
     rows = [row for number in range(6) for row in life_rows(config, number)["pits"] if row["gear"] == gear]
     # Below the pitch point, whose arc from the base circle is R_b tan²(α)/2; from the lowest contact on.
     pitch_mm = 1e3 * 0.5 * pair.member(gear).base_radius_m * np.tan(pair.working_pressure_angle_rad) ** 2

@@ -12,7 +12,6 @@ from siggen.checks.shaft_notes import shaft_notes
 from siggen.config import Config
 from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
-from siggen.gearbox.pair import gear_pair
 from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
 from siggen.specimen.bearing_spalls import mean_force_n
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
@@ -49,7 +48,7 @@ def signal(chosen: Config, record: int) -> np.ndarray:
 @pytest.mark.parametrize("torque_nm", [60.0, -60.0])
 def test_the_load_of_a_bearing_is_what_the_flanks_that_touch_press_and_its_weight(model: str, torque_nm: float) -> None:
     chosen = made(dynamics__model=model)
-    specimen, pair = draw_specimen(chosen, 0), gear_pair(draw_specimen(chosen, 0).gears)
+    specimen, pair = draw_specimen(chosen, 0), draw_specimen(chosen, 0).pair
     seen = structure(specimen)
     if torque_nm < 0.0:
         seen = on_back_flanks(seen, 0.0)

@@ -248,8 +248,8 @@ def test_every_shaft_is_out_of_balance_by_the_mass_of_its_gears_and_turns_agains
 @pytest.mark.parametrize(("gear", "order"), [("gear", -18 / 47), ("slow.pinion", -18 / 47), ("slow.gear", 306 / 2444)])
 def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -> None:
     """A missing tooth leaves a mass on the other side, which turns with its shaft and stands at its tooth's angle."""
-    damage = f"states.slight.damage={{kind: chip, gear: {gear}, height_mm: whole}}"
-    found = config(damage)
+    damage = f"{{kind: chip, gear: {gear}, height_mm: whole}}"
+    found = config(f"states={{healthy: {{}}, slight: {{damage: {damage}}}}}")
     specimen, record = draw_specimen(found, 0), planned_record(found, 3)
     state = specimen_state(specimen, 1)
     point, built = draw_operating_point(found, 0, 0), state.mesh.structure
