@@ -20,6 +20,7 @@ from diagnostics.indicators.record import channel_conditions, record_result
 from diagnostics.indicators.registry import ALL
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import CHUNK_RECORDS, mapped
+from diagnostics.records.gear_train import PAIR, pair_train
 from diagnostics.records.record_problems import clipped_channels, record_problems
 from diagnostics.records.recording import Recording
 from diagnostics.records.usable_records import refused_parts
@@ -72,9 +73,8 @@ def modulated_record() -> Recording:
     # a fixed generator: every run measures the same record
     signal = depth * mesh + 0.3 * np.random.default_rng(0).standard_normal(time_s.size)
     pulses = np.interp(np.arange(1, int(turns[-1])), turns, time_s)
-    gears = {"teeth_pinion": TEETH[0], "teeth_gear": TEETH[1]}
-    labels = {"record_id": 0, **gears, "speed_hz": SPEED_HZ, "torque_nm": 50.0}
-    return Recording(labels, {"casing": signal.astype(np.float32)}, pulses, FS_HZ)
+    labels = {"record_id": 0, "speed_hz": SPEED_HZ, "torque_nm": 50.0}
+    return Recording(labels, {"casing": signal.astype(np.float32)}, pulses, FS_HZ, pair_train(TEETH))
 
 
 def _angle_row(record: Recording, rounds: int) -> Row:
@@ -98,7 +98,7 @@ def _candidates(record: Recording) -> dict[str, Candidate]:
     tooth = settings.samples_per_tooth
     grid = angle_grid(record.tacho_s, TEETH[0] * tooth)
     steps = resample_to_angle(signal, FS_HZ, grid)
-    shafts = record_shafts(grid, TEETH, tooth, settings.sidebands)
+    shafts = record_shafts(grid, TEETH, tooth, settings.sidebands, PAIR[0].gears)
     # an average is a record of one revolution: what it costs to average is then nothing
     averages = [synchronous_average(steps, shaft.teeth, tooth).signal for shaft in shafts]
     single = [replace(shaft, revolutions=1) for shaft in shafts]

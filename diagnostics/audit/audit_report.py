@@ -35,8 +35,7 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.style import png_bytes, styled
-from diagnostics.records.named_set import words_of
-from diagnostics.records.recording import gear_names
+from diagnostics.records.recording import names_of
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, how_to_install
 from siggen.file_writing import write_file
@@ -193,7 +192,7 @@ def audit_set(
     options = options or AuditOptions()
     seed, reference = options.seed, options.reference
     require_packages("the audit", "sklearn", "matplotlib")
-    if options.with_realism and gear_names(dataset).is_planetary:
+    if options.with_realism and names_of(dataset)[0].planetary:
         raise UsageError(f"--realism: its ranges were measured on pairs of gears; {dataset.path} holds planetary sets")
     # first, so that a wrong folder is said before minutes have passed
     real = reference_windows(reference, options.reference_fs_hz) if reference else None
@@ -288,19 +287,18 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realis
 
 def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     """Write page, JSON and figures; return the page's path."""
-    words = words_of(dataset)
     with styled():
         drawn = {}
         if audit.realism:
-            drawn["realism"] = png_bytes(words.figure(realism_figure(audit.realism)))
+            drawn["realism"] = png_bytes(realism_figure(audit.realism))
         if any(math.isfinite(entry.auc.value) for entries in audit.detections.values() for entry in entries):
-            drawn["detectability"] = png_bytes(words.figure(detectability_figure(shown_ladders(audit))))
+            drawn["detectability"] = png_bytes(detectability_figure(shown_ladders(audit)))
     for name, png in drawn.items():
         write_file(folder / "figures" / f"{name}.png", png)
-    text = json.dumps(words.document(audit_numbers(audit, dataset)), indent=1, allow_nan=False)
+    text = json.dumps(audit_numbers(audit, dataset), indent=1, allow_nan=False)
     write_file(folder / "audit.json", text + "\n")
     path = folder / "audit.html"
-    write_file(path, words(audit_page(audit, dataset, drawn)))
+    write_file(path, audit_page(audit, dataset, drawn))
     return path
 
 

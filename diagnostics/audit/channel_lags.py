@@ -69,7 +69,7 @@ def sample_lags(
 
 def channel_lags(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return lag and likeness of every channel beside the record's reference, (records, channels) each."""
-    lines, teeth = line_array(measured.waveforms), measured.labels["teeth_pinion"]
+    lines, teeth = line_array(measured.waveforms), measured.teeth
     per_turn = measured.raw.fs_hz / measured.values["pulses_per_s"][:, 0]
     found = np.full((2, *lines.shape[:2]), np.nan)
     for row in np.flatnonzero((reference >= 0) & np.isfinite(per_turn)).tolist():

@@ -38,7 +38,6 @@ from diagnostics.audit.raw_columns import CLOCK, EDGES, ENDS, LINES, OFFSETS, ST
 from diagnostics.audit.small_damage import LEVELS, small_damage_attackers
 from diagnostics.audit.state_ties import unchanged
 from diagnostics.audit.time_templates import TEMPLATES, template_attackers
-from diagnostics.records.planetary_members import is_planetary
 
 OF_TEETH = frozenset({NOISE, CHANNELS, ENDS, LINES, LAGS, LEVELS})
 """Layers that single damaged teeth cannot move, and other faults can."""
@@ -84,7 +83,7 @@ def condition_attackers(measured: MeasuredSet) -> dict[str, list[Attacker]]:
             best_column(f"change of {layer}", change, names),
             all_columns(f"change of all of {layer}", change),
         ]
-    if has_reference and not is_planetary(measured.labels):
+    if has_reference and not measured.gears[0].planetary:
         lags = lag_columns(measured, reference)
         found[LAGS] = [best_column(f"change of {LAGS}", np.stack(list(lags.values()), axis=1), tuple(lags))]
     if has_reference:
@@ -101,7 +100,8 @@ def of_single_teeth(measured: MeasuredSet) -> np.ndarray:
 
     A bearing hums by itself, worn flanks move every mesh line, and a changed machine or sensor differs on purpose.
     """
-    teeth = [values for name, values in measured.labels.items() if name.startswith("faulty_teeth")]
+    known = measured.about.get("faulty_teeth", {}).values()
+    teeth = [measured.labels[name] for name in known if name in measured.labels]
     if not teeth:
         return np.ones(len(measured.healthy), dtype=bool)
     listed = np.array([[len(row) > 0 for row in values] for values in teeth]).any(axis=0)

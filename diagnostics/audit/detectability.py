@@ -18,13 +18,12 @@ import numpy as np
 
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.indicators.indicator import or_members
 from diagnostics.records.state_classes import damage_kind
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
 from diagnostics.statistics.scores import area_interval
 
-LEVELS, PLAIN = ("rms", "sideband_index_pinion_h1"), ("kurtosis", "fm4_pinion")
-ADDED = ("energy_ratio_pinion", "sideband_ratio_pinion_h1_k3")
+LEVELS, PLAIN, ADDED = ("rms", "sideband_index"), ("kurtosis", "fm4"), ("energy_ratio", "sideband_ratio")
+"""Indicators, those of mesh harmonics of the first one."""
 REPEATS, FOLDS, RESAMPLES = 10, 5, 200
 FEWEST_SPECIMENS = 4
 SIZES = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm")
@@ -63,9 +62,10 @@ def features(measured: MeasuredSet, *, paired: bool = False) -> np.ndarray:
 
 
 def _taken(measured: MeasuredSet, names: Sequence[str]) -> list[np.ndarray]:
-    values = measured.values
-    found = [(name, column) for name in names for column in or_members(name, values)]
-    return [values[column] for name, column in found if name == column or np.isfinite(values[column]).any()]
+    values, of_set = measured.values, measured.gears[0].planetary
+    harmonic = {"sideband_ratio": {"harmonic": 1}}
+    found = [column for name in names for column in measured.columns_of(name, **harmonic.get(name, {}))]
+    return [values[column] for column in found if not of_set or np.isfinite(values[column]).any()]
 
 
 def waveform_change(measured: MeasuredSet) -> np.ndarray:

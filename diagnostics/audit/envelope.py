@@ -38,8 +38,8 @@ QUANTITIES = (
     Quantity("noise_density_db", "noise density at mesh 1 [dB/Hz]", ((-36.0, -20.0),)),
     Quantity("synchronous_ratio_db", "synchronous SNR [dB]", ((-4.0, 9.0),)),
     Quantity("kurtosis", "kurtosis, raw (loaded or light load)", ((2.0, 3.2), (4.0, 6.5))),
-    Quantity("fm4_pinion", "FM4", ((2.3, 4.3),)),
-    Quantity("energy_ratio_pinion", "energy ratio", ((0.09, 1.8),)),
+    Quantity("fm4", "FM4", ((2.3, 4.3),)),
+    Quantity("energy_ratio", "energy ratio", ((0.09, 1.8),)),
 )
 BACKGROUND_QUANTITIES = (
     Quantity("shaft_1x_db", "shaft 1x / strongest mesh line [dB]", ((-47.0, -5.0),)),
@@ -137,7 +137,7 @@ def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
     judged = np.ix_(measured.healthy, measured.accelerations)
     if not all(one.size for one in judged):
         return None
-    shares = [quantity_share(quantity, measured.values[quantity.name][judged]) for quantity in quantities(speed)]
+    shares = [quantity_share(q, measured.values[measured.column(q.name)][judged]) for q in quantities(speed)]
     inside = [share.quantity.inside(share.values) for share in shares]
     background = [q for q in BACKGROUND_QUANTITIES if np.isfinite(measured.values[q.name][judged]).any()]
     return Realism(

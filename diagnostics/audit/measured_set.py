@@ -5,7 +5,7 @@ For every record a healthy record of the same specimen at the same operating poi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,15 +15,15 @@ import pyarrow as pa
 from diagnostics.audit.noted_records import noted_records
 from diagnostics.audit.raw_columns import RawColumns, raw_columns
 from diagnostics.indicators.classifier_table import check_table
-from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
-from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.registry import first_columns, indicator_columns
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import PULSE_CONDITIONS, RecordTable, record_table
 from diagnostics.records.channel_quantities import RECORDED
-from diagnostics.records.planetary_members import as_pair
-from diagnostics.records.recording import TACHO_NAME, gear_names, recordings
+from diagnostics.records.gear_train import PAIR, GearNames
+from diagnostics.records.recording import TACHO_NAME, names_of, recordings
 from diagnostics.records.sample_bytes import BYTES
 from diagnostics.records.state_classes import HEALTHY, ordered_states
 from siggen.dataset.reading import Dataset
@@ -113,6 +113,10 @@ class MeasuredSet:
         Role of the label columns, and the section of the configuration that draws them; of others conditions.
     raw : RawColumns
         Numbers of the raw records.
+    gears : GearNames
+        What indicators are called after.
+    about : mapping of str to mapping
+        Label columns by what they hold (`teeth`, `faulty_teeth`) and of which gear.
     """
 
     labels: dict[str, np.ndarray]
@@ -128,6 +132,27 @@ class MeasuredSet:
     roles: dict[str, Role] = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
     raw: RawColumns = field(default_factory=RawColumns)
+    gears: GearNames = PAIR
+    about: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    def first(self, quantity: str) -> np.ndarray | None:
+        """Return what labels hold of the first driver, (records,): its `teeth`, `faulty_teeth`; None where unknown."""
+        return self.labels.get(self.about.get(quantity, {}).get(self.gears[0].gears[0], ""))
+
+    @property
+    def teeth(self) -> np.ndarray:
+        """(records,) int: teeth of the first driver."""
+        teeth = self.first("teeth")
+        assert teeth is not None
+        return teeth
+
+    def column(self, name: str) -> str:
+        """Return the name of a measured number; of an indicator of gears that about the first one."""
+        return name if name in self.values else self.columns_of(name)[0]
+
+    def columns_of(self, indicator: str, **fields: Any) -> tuple[str, ...]:
+        """Return the columns of an indicator about the first gear, of a planetary set about each of its members."""
+        return first_columns(IndicatorSettings(), self.gears, indicator, **fields)
 
     @property
     def accelerations(self) -> np.ndarray:
@@ -150,13 +175,13 @@ class MeasuredSet:
         taken = [(name, k) for k in range(len(self.channels)) for name in self.indicators if self.has(name, k)]
         names = tuple(f"{name}__{self.channels[k]}" for name, k in taken)
         columns = [self.values[name][:, k] for name, k in taken]
-        return FeatureMatrix(np.stack(columns, axis=1), names, self.labels)
+        return FeatureMatrix(np.stack(columns, axis=1), names, self.labels, gears=self.gears)
 
     def has(self, indicator: str, channel: int) -> bool:
         """Return whether an indicator is taken of what the channel of this place holds."""
-        known = BY_NAME.get(base_name(indicator))
+        known = indicator_columns(IndicatorSettings(), self.gears).get(indicator)
         held = self.other_quantities.get(self.channels[channel], RECORDED.word)
-        return known is None or known.is_taken_of(held)
+        return known is None or known.entry.is_taken_of(held)
 
 
 def measured_set(
@@ -199,6 +224,8 @@ def measured_set(
         roles=_of_labels(dataset, dataset.role),
         sections=_of_labels(dataset, dataset.section),
         raw=raw_columns(recordings(dataset)),
+        gears=names_of(dataset),
+        about={quantity: dataset.columns_of(quantity) for quantity in ("teeth", "faulty_teeth")},
     )
 
 
@@ -230,10 +257,9 @@ def _scalar_labels(dataset: Dataset) -> dict[str, Any]:
 
 
 def _of_labels(dataset: Dataset, fact: Callable[[str], Any]) -> dict[str, Any]:
-    """Return a fact of every label column, of planetary sets those of a pair besides."""
+    """Return a fact of every label column."""
     signals = {channel.column for channel in dataset.channels} | {TACHO_NAME}
-    found = {name: fact(name) for name in dataset.labels().column_names if name not in signals}
-    return as_pair(found) if gear_names(dataset).is_planetary else found
+    return {name: fact(name) for name in dataset.labels().column_names if name not in signals}
 
 
 def _array(column: Any) -> np.ndarray:

@@ -45,7 +45,7 @@ def line_levels(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, np.ndarray
     """
     power, speed = np.square(np.abs(line_array(measured.waveforms))), measured.values["pulses_per_s"][:, 0]
     order = np.arange(power.shape[-1])
-    is_mesh = order % np.asarray(measured.labels["teeth_pinion"])[:, None] == 0
+    is_mesh = order % measured.teeth[:, None] == 0
     hz = order * speed[:, None]
     highest = HIGHEST_NOISE_SHARE * measured.raw.fs_hz
     edges = np.geomspace(LOWEST_NOISE_HZ, highest, NOISE_BANDS + 1)

@@ -91,7 +91,7 @@ def raw_columns(records: Iterable[Recording]) -> RawColumns:
 
 def _raw_record(record: Recording) -> _RawRecord:
     held = {name: np.asarray(signal, dtype=np.float64) for name, signal in record.channels.items()}
-    rates, teeth = shaft_rates_hz(record), int(record.labels["teeth_pinion"])
+    rates, teeth = shaft_rates_hz(record), record.teeth[0]
     accelerations = {name: x for name, x in held.items() if _is_acceleration(record, name)}
     layers = {
         EDGES: {f"{what} of {name}": rank for name, x in held.items() for what, rank in edge_ranks(x).items()},

@@ -24,12 +24,12 @@ TINY = 1e-30
 
 
 def shaft_rates_hz(record: Recording) -> tuple[float, ...]:
-    """Return the mean speeds of pinion and gear [Hz] by the pulses; none with fewer than two pulses."""
+    """Return the mean speeds of the first two shafts [Hz] by the pulses; none with fewer than two pulses."""
     pulses = np.asarray(record.tacho_s, dtype=np.float64)
     if pulses.size < 2 or not pulses[-1] > pulses[0]:
         return ()
-    pinion = float((pulses.size - 1) / (pulses[-1] - pulses[0]))
-    return pinion, pinion * float(record.labels["teeth_pinion"]) / float(record.labels["teeth_gear"])
+    first, (driver, driven) = float((pulses.size - 1) / (pulses[-1] - pulses[0])), record.teeth
+    return first, first * driver / driven
 
 
 def line_contrast(signal: np.ndarray, fs_hz: float, rates_hz: tuple[float, ...]) -> np.ndarray:

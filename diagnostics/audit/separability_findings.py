@@ -31,7 +31,6 @@ from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.simple_thresholds import simple_thresholds
 from diagnostics.audit.state_ties import error_draws, state_ties
 from diagnostics.page.wording import counted, decimal
-from diagnostics.records.planetary_members import is_planetary
 
 SETTINGS = frozenset(
     {
@@ -134,9 +133,10 @@ def _settings(section: Mapping[str, Any]) -> dict[str, Any]:
 
 def damage_phase(measured: MeasuredSet) -> list[Finding]:
     """Return findings for a constant angle of the damaged tooth after the pulse and at the first sample."""
-    if "faulty_teeth_pinion" not in measured.labels:
+    faulty, gear = measured.first("faulty_teeth"), measured.gears[0].gears[0]
+    if faulty is None:
         return []
-    faulty, teeth = measured.labels["faulty_teeth_pinion"], measured.labels["teeth_pinion"]
+    teeth = measured.teeth
     damaged = np.array([len(found) > 0 for found in faulty])
     tooth = np.array([found[0] / z if len(found) else 0.0 for found, z in zip(faulty, teeth, strict=True)])
     _, first = np.unique(measured.labels["specimen_id"][damaged], return_index=True)
@@ -146,7 +146,7 @@ def damage_phase(measured: MeasuredSet) -> list[Finding]:
     return [
         Finding(
             f"constant_damage_phase_{name}",
-            f"the first damaged pinion tooth has nearly the same angle {where[name]} "
+            f"the first damaged {gear} tooth has nearly the same angle {where[name]} "
             f"(mean phasor {mean_phasor(turns):.2f} of {turns.size})",
             f"by chance, 1 of 1000 sets exceeds {phasor_bound(turns.size):.2f}",
             MEND[name],
@@ -171,7 +171,7 @@ def healthy_sidebands(measured: MeasuredSet) -> list[Finding]:
 
     The bound was measured with accelerometers: channels of another quantity are not judged.
     """
-    if is_planetary(measured.labels):
+    if measured.gears[0].planetary:
         return []  # passing planets leave lines beside the mesh frequency in any healthy set
     strongest = measured.values["strongest_sideband_db"][np.ix_(measured.healthy, measured.accelerations)]
     strongest = strongest[~np.isnan(strongest)]
@@ -183,8 +183,8 @@ def healthy_sidebands(measured: MeasuredSet) -> list[Finding]:
     return [
         Finding(
             "healthy_without_sidebands",
-            f"{share:.0%} of the healthy channel-records have no pinion sideband of mesh 1-3 above {WEAKEST_DB:g} dB "
-            "of its mesh line and 10 dB above the noise",
+            f"{share:.0%} of the healthy channel-records have no {measured.gears[0].gears[0]} sideband of mesh 1-3 "
+            f"above {WEAKEST_DB:g} dB of its mesh line and 10 dB above the noise",
             f"at most {SHARE_ALLOWED:.0%} are allowed, measured healthy gearboxes have -30 to -8 dB",
             "Give the gears manufacturing errors (section `manufacture`), drawn anew for every specimen.",
         )

@@ -74,7 +74,7 @@ def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | N
     if reference is not None:
         usable &= (reference >= 0) & usable[reference]
         beside = lines[reference]
-    records = AveragedRecords(lines, measured.labels["teeth_pinion"], measured.channels, beside)
+    records = AveragedRecords(lines, measured.teeth, measured.channels, beside)
     specimen, kept = measured.labels["specimen_id"], dict[bytes, np.ndarray]()
 
     def attack(trial: Trial) -> Verdicts:
@@ -161,7 +161,7 @@ def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], Non
     advance : callable
         Called after every attacker that is prepared.
     """
-    residual = residual_lines(line_array(measured.waveforms), measured.labels["teeth_pinion"])
+    residual = residual_lines(line_array(measured.waveforms), measured.teeth)
     found = attackers_on(measured, residual, None, seed, advance)
     reference = reference_records(measured)
     if (reference >= 0).any():
@@ -185,7 +185,7 @@ def attackers_on(
         As of `signal_attackers`.
     """
     suffix = REFERENCED if reference is not None else ""
-    flat = innovations(residual, measured.labels["teeth_pinion"])
+    flat = innovations(residual, measured.teeth)
     residual = flat if reference is None else residual  # a change is measured against the size of the reference
     bank, highest = band_bank(residual, reference), kurtogram_maximum(residual)
     values, names = over_channels(bank)

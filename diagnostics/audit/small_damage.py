@@ -83,7 +83,7 @@ def movable_changes(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.nd
 
 def _mesh_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
     """Return changes of mesh lines in dB: each of a channel, their median, and that beside the other channels."""
-    lines, teeth = line_array(measured.waveforms), np.asarray(measured.labels["teeth_pinion"])
+    lines, teeth = line_array(measured.waveforms), measured.teeth
     most = int(min(HARMONICS, (lines.shape[-1] - 1) // teeth.max()))
     if most < 1:
         return {}

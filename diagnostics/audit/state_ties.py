@@ -105,7 +105,7 @@ def equal_waveforms(measured: MeasuredSet) -> list[Finding]:
 
 def _sidebands(measured: MeasuredSet, record: int) -> dict[int, complex]:
     """Return the sidebands of the first channel that stand above its weaker lines, by order."""
-    waveform, teeth = measured.waveforms[record][0], int(measured.labels["teeth_pinion"][record])
+    waveform, teeth = measured.waveforms[record][0], int(measured.teeth[record])
     offsets = [k * sign for k in range(1, SIDEBANDS + 1) for sign in (-1, 1)]
     orders = [h * teeth + k for h in range(1, HARMONICS + 1) for k in offsets if h * teeth + k < waveform.size]
     # the median over all orders is the noise left in the average: most orders carry no strong line

@@ -1,4 +1,4 @@
-"""The attacker that asks every tooth of the pinion whether its engagement stands out of those of the others.
+"""The attacker that asks every tooth of the first driver whether its engagement stands out of those of the others.
 
 The energy of a tooth's `innovations`, in slices of a pitch and three bands, is compared with that of the other teeth at
 the same place. Logistic regression learns from the teeth that the labels name against all teeth of healthy records; a
@@ -56,7 +56,7 @@ def tooth_energies(lines: np.ndarray, teeth: int) -> np.ndarray:
 
 
 def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Attacker | None:
-    """Return the attacker, or None where no label names a tooth of the pinion.
+    """Return the attacker, or None where no label names a tooth of the first driver.
 
     Parameters
     ----------
@@ -65,10 +65,11 @@ def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Attac
     lines : (records, channels, orders) complex128
         Innovations, of records or of their differences from the reference; NaN where there is none.
     """
-    if "faulty_teeth_pinion" not in measured.labels:
+    faulty = measured.first("faulty_teeth")
+    if faulty is None:
         return None
     usable = np.asarray(measured_channels(lines).all(axis=1))
-    teeth, faulty = measured.labels["teeth_pinion"], measured.labels["faulty_teeth_pinion"]
+    teeth = measured.teeth
     asked = {row: tooth_energies(lines[row], int(teeth[row])) for row in np.flatnonzero(usable).tolist()}
 
     def attack(trial: Trial) -> Verdicts:

@@ -28,12 +28,13 @@ CHUNK = 400
 
 @dataclass(frozen=True, slots=True)
 class PartRecords:
-    """Records of one set: indicators with labels, averaged lines, and the row of each one's reference or -1."""
+    """Records of one set: indicators with labels, averaged lines, row of each one's reference or -1, label of teeth."""
 
     matrix: FeatureMatrix
     waveforms: list[list[np.ndarray]]
     reference: np.ndarray
     channels: tuple[str, ...]
+    teeth: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +87,7 @@ def _part(name: str, dataset: Dataset, workers: int, stage: Stage) -> PartRecord
     if name == LEARN:
         check_table(table, dataset)  # test records are answered whatever they are
     matrix = feature_matrix(classifier_table(table))
-    return PartRecords(matrix, table.complex_rows("waveform"), _references(matrix), table.channels)
+    return PartRecords(matrix, table.complex_rows("waveform"), _references(matrix), table.channels, table.teeth[0])
 
 
 def _references(matrix: FeatureMatrix) -> np.ndarray:
@@ -117,14 +118,15 @@ def seen_records(parts: tuple[PartRecords, ...], *, referenced: bool) -> SeenRec
         for name in parts[0].matrix.labels
     }
     values = [_values(part, referenced)[rows] for part, rows in zip(parts, kept, strict=True)]
-    matrix = FeatureMatrix(np.concatenate(values), parts[0].matrix.names, labels)
+    matrix = replace(parts[0].matrix, values=np.concatenate(values), labels=labels)
     lines, beside = _lines(parts, kept, referenced)
-    residual = residual_lines(lines, labels["teeth_pinion"])
-    known = None if beside is None else residual_lines(beside, labels["teeth_pinion"])
+    teeth = labels[parts[0].teeth]
+    residual = residual_lines(lines, teeth)
+    known = None if beside is None else residual_lines(beside, teeth)
     difference = residual if known is None else residual - known
     averages = AveragedRecords(
         padded_lines([list(row) for row in lines.astype(np.complex64)]),
-        labels["teeth_pinion"],
+        teeth,
         parts[0].channels,
         None if beside is None else padded_lines([list(row) for row in beside.astype(np.complex64)]),
     )

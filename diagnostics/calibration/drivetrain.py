@@ -5,11 +5,12 @@ Orders are turns, or teeth that mesh, per turn of the first shaft. Shafts and me
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
-from diagnostics.records.gear_train import GEARS, Mesh
+from diagnostics.records.gear_train import meshes_of, pair_train
+from siggen.columns.drivetrain import GearTrain
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class Shaft:
     @property
     def words(self) -> str:
         """What a sentence calls it."""
-        return f"the {self.name}'s shaft" if self.name in GEARS else f"the {self.name} shaft"
+        return f"the {self.name} shaft"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,33 +70,25 @@ class TrainOrders:
         return self.shafts[1].step
 
 
-def drivetrain(train: Sequence[Mesh], shafts: Sequence[str] = (), meshes: Sequence[str] = ()) -> TrainOrders:
-    """Return the shafts and meshes of a gearbox.
-
-    Parameters
-    ----------
-    train : sequence of Mesh
-    shafts, meshes : sequence of str
-        The user's names; those of the short form without.
-    """
-    further = [mesh.name for mesh in train[1:]]
-    named, called = shafts or (*GEARS, *further), meshes or ("", *further)
+def drivetrain(train: GearTrain) -> TrainOrders:
+    """Return the shafts and meshes of a gearbox whose teeth are known; it is no planetary set."""
+    meshes = meshes_of(train)
     turns = [Fraction(1)]
-    teeth: list[tuple[int, ...]] = [train[0].teeth[:1]]
-    for number, mesh in enumerate(train):
+    teeth: list[tuple[int, ...]] = [meshes[0].teeth[:1]]
+    for number, mesh in enumerate(meshes):
         turns.append(turns[-1] * Fraction(*mesh.teeth))
-        teeth.append((mesh.teeth[1], *(one.teeth[0] for one in train[number + 1 : number + 2])))
+        teeth.append((mesh.teeth[1], *(one.teeth[0] for one in meshes[number + 1 : number + 2])))
+    named = (shaft.name for shaft in train.shafts)
     found = tuple(Shaft(*one) for one in zip(named, turns, teeth, strict=True))
-    orders = (float(found[number].turns * mesh.teeth[0]) for number, mesh in enumerate(train))
     return TrainOrders(
         found,
         tuple(
-            MeshOrder(name, order, (found[number], found[number + 1]))
-            for number, (name, order) in enumerate(zip(called, orders, strict=True))
+            MeshOrder(mesh.names.name, float(shaft.turns * mesh.teeth[0]), (shaft, behind))
+            for mesh, (shaft, behind) in zip(meshes, pairwise(found), strict=True)
         ),
     )
 
 
 def pair(teeth: tuple[int, int]) -> TrainOrders:
     """Return the drivetrain of one pair of gears."""
-    return drivetrain((Mesh("", teeth),))
+    return drivetrain(pair_train(teeth))

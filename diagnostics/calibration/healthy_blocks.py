@@ -22,6 +22,7 @@ from diagnostics.recordings.level_alike import check_levels_alike, level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import shaft_pulses
 from diagnostics.recordings.taken import RecordingFacts
+from diagnostics.records.gear_train import train_of
 from siggen.errors import UsageError
 
 CONFIDENCE = 0.9
@@ -106,7 +107,7 @@ def healthy_blocks(
     _check_alike(read)
     found = []
     for recording, (path, row) in zip(read, sources, strict=True):
-        turning = shaft_pulses(recording, teeth, speed_range_hz)
+        turning = shaft_pulses(recording, train_of(teeth), speed_range_hz)
         pulses = turning.times_s
         if pulses.size <= FEWEST_TURNS:
             raise UsageError(

@@ -82,8 +82,8 @@ def audit(
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.page.wording import counted
-    from diagnostics.records.named_set import open_set
     from diagnostics.records.record_classes import refuse_lives
+    from siggen.dataset.reading import open as open_set
     from siggen.errors import VerificationError
 
     own = load_indicators(indicator)

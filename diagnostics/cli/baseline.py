@@ -52,7 +52,7 @@ def baseline(
     from diagnostics.machine.healthy_state import first_readable, healthy_state, thin_sentence
     from diagnostics.machine.machine import save_machine
     from diagnostics.recordings.taken import channel_names, unit_or_unknown
-    from diagnostics.records.gear_train import names_of
+    from diagnostics.records.gear_train import gear_names
 
     train = gears.train("--teeth")
     sources = [source for said in healthy for source in file_rows(said)]
@@ -64,7 +64,7 @@ def baseline(
     with terminal_stage("healthy recordings", len(sources)) as advance:
         machine, refused = healthy_state(sources, names, facts, train, span, _loads(load), false_alarms, advance)
     save_machine(machine, out)
-    shaft = names_of(train).shafts[0]
+    shaft = gear_names(train)[0].gears[0]
     speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
     echo(f"{len(machine.references)} recordings, {len(machine.channels)} channels, {shaft} at {speeds}", err=True)
     for reference, speed_hz, angle in zip(machine.references, machine.speed_hz, machine.angles, strict=True):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from diagnostics.explore.measured_page import ShownRecording
     from diagnostics.machine.recording_indicators import RecordingIndicators
     from diagnostics.recordings.taken import RecordingFacts
-    from diagnostics.records.gear_train import Mesh
+    from siggen.columns.drivetrain import GearTrain
 
 MACHINE_FILE = "machine.json"
 """What the folder of a machine holds; its reader is slow to import."""
@@ -57,7 +57,7 @@ def of_machine(folder: Path, said: Sequence[str], stage: Stage) -> list[ShownRec
 def of_files(
     said: Sequence[str],
     healthy: Sequence[str],
-    train: tuple[Mesh, ...],
+    train: GearTrain,
     facts: RecordingFacts,
     speed_range_hz: tuple[float, float] | None,
     stage: Stage,
@@ -78,7 +78,7 @@ def _shown(found: RecordingIndicators, verdict: str, load: float | None) -> Show
 
 def _read(
     said: Sequence[str],
-    train: tuple[Mesh, ...],
+    train: GearTrain,
     facts: RecordingFacts,
     speed_range_hz: tuple[float, float] | None,
     stage: Stage,
@@ -90,7 +90,7 @@ def _read(
     with stage("indicators of recordings", len(sources)) as advance:
         for path, row in sources:
             said_of = replace(facts, row=row)
-            one = recording_indicators(path, train[0].teeth, said_of, speed_range_hz, train)
+            one = recording_indicators(path, train, said_of, speed_range_hz)
             echo(f"{one.name}: {one.pulses.speed_hz:.4f} Hz ({one.pulses.origin})", err=True)
             found.append(one)
             advance()
@@ -199,9 +199,9 @@ def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: Set
     from diagnostics.explore.set_page import LookOptions, write_set_page
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.prediction.released_model import load_model
-    from diagnostics.records.named_set import open_set
     from diagnostics.report.life_pictures import lives_of
     from diagnostics.scoring.truth import is_lives
+    from siggen.dataset.reading import open as open_set
 
     own, dataset = load_indicators(of_set.indicator), open_set(folder)
     model = None if of_set.model is None else load_model(of_set.model, own)
@@ -234,7 +234,7 @@ def _recordings_page(
         return write_recordings_page(name, shown, path, full=amount.full, stage=terminal_stage)
     from diagnostics.explore.beside_page import write_beside_page
     from diagnostics.explore.set_page import LookOptions
-    from diagnostics.records.named_set import open_set
+    from siggen.dataset.reading import open as open_set
 
     options = LookOptions(**asdict(amount))
     return write_beside_page(name, shown, open_set(compared.beside), path, options, terminal_stage)

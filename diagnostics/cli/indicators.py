@@ -115,12 +115,12 @@ def _ranked_tables(
     from diagnostics.indicators.ranking_table import ranking_table
     from diagnostics.indicators.settings import IndicatorSettings
     from diagnostics.indicators.table import record_table
-    from diagnostics.records.named_set import open_set, words_of
     from diagnostics.records.record_classes import refuse_lives
     from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_evaluation import evaluated, findings, write_evaluation
     from diagnostics.statistics.assessment import AssessmentSettings
+    from siggen.dataset.reading import open as open_set
 
     own, states = load_indicators(computing.indicator), ranking.state or ()
     dataset = open_set(directory)
@@ -134,7 +134,7 @@ def _ranked_tables(
     found = evaluated(table, AssessmentSettings(), terminal_stage)
     path = write_evaluation(dataset, found, out or beside(dataset.path, "_indicators"), values=True)
     for sentence in findings(dataset, found)[1:]:
-        echo(words_of(dataset)(sentence))
+        echo(sentence)
     echo(str(path))
 
 
@@ -144,17 +144,16 @@ def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: 
     from diagnostics.indicators.classifier_table import check_table, classifier_table, write_table
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.indicators.table import record_table
-    from diagnostics.records.named_set import open_set, words_of
+    from siggen.dataset.reading import open as open_set
 
     own = load_indicators(indicator)
     dataset = open_set(directory)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
         table = record_table(dataset, own=own, workers=workers, advance=advance)
     notes = check_table(table, dataset)
-    words = words_of(dataset)
-    write_table(words.table(classifier_table(table, notes)), out)
+    write_table(classifier_table(table, notes), out)
     for note in notes:
-        echo(f"note: {words(note)}", err=True)
+        echo(f"note: {note}", err=True)
     echo(str(out))
 
 
@@ -170,7 +169,7 @@ def _of_recordings(
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
     from diagnostics.machine.recording_indicators import recording_indicators, recording_rows, write_recordings
-    from diagnostics.records.gear_train import names_of
+    from diagnostics.records.gear_train import gear_names
 
     require_packages("the page of indicators", "matplotlib")
     train = gears.train(f"{targets[0]}: teeth unknown")
@@ -179,13 +178,13 @@ def _of_recordings(
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:
             said = replace(facts, row=row)
-            found.append(recording_indicators(path, train[0].teeth, said, speed_range_hz, train))
+            found.append(recording_indicators(path, train, said, speed_range_hz))
             advance()
     if as_json:
         echo_json({"recordings": recording_rows(found)})
     for one in found:
         levels = ", ".join(f"{name} {one.values[f'rms__{name}']:.3g} m/s2" for name in one.recording.channels)
-        shaft = names_of(one.train).shafts[0]
+        shaft = gear_names(one.train)[0].gears[0]
         speed = f"{shaft} {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
         if not as_json:
             echo(f"{one.name}: {speed} ({one.pulses.origin}); rms {levels}")

@@ -14,7 +14,7 @@ from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.recordings.taken import RecordingFacts
-    from diagnostics.records.gear_train import Mesh
+    from siggen.columns.drivetrain import GearTrain
 
 ROWS = re.compile(r"\d+(,\d+)*")
 RPM = ("rpm", "1/min", "min-1", "u/min")
@@ -54,8 +54,8 @@ class GearOptions:
         """Whether the user named gears at all."""
         return self.teeth is not None or self.config is not None
 
-    def train(self, where: str) -> tuple[Mesh, ...]:
-        """Return the meshes of the machine.
+    def train(self, where: str) -> GearTrain:
+        """Return the drivetrain of the machine.
 
         Raises
         ------
@@ -63,7 +63,7 @@ class GearOptions:
             If neither option came, or both; `where` begins the message.
         """
         from diagnostics.recordings.configured_train import configured_train
-        from diagnostics.records.gear_train import Mesh
+        from diagnostics.records.gear_train import pair_train
 
         if (self.teeth is None) == (self.config is None):
             came = "nothing" if self.teeth is None else "--teeth and --config"
@@ -73,7 +73,7 @@ class GearOptions:
             )
         if self.config is not None:
             return configured_train(self.config)
-        return (Mesh("", two_gears(str(self.teeth))),)
+        return pair_train(two_gears(str(self.teeth)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class RecordingOptions:
         typer.Option(
             "--speed-range",
             metavar="LOW,HIGH",
-            help="Without a tacho: range of the pinion's speed [Hz] in which its angle is searched in the mesh lines.",
+            help="Without a tacho: range of the first shaft's speed [Hz]; its angle is searched in the mesh lines.",
         ),
     ] = None
     speed: Annotated[
@@ -94,7 +94,7 @@ class RecordingOptions:
         typer.Option(
             "--speed",
             metavar="SPEED",
-            help="Without a tacho: the pinion's speed where it is known to 3 %, in Hz or as 1780rpm.",
+            help="Without a tacho: the first shaft's speed where it is known to 3 %, in Hz or as 1780rpm.",
         ),
     ] = None
     channel: ChannelColumns = None
@@ -123,7 +123,7 @@ class RecordingOptions:
         ),
     ] = None
     tacho_pulses: Annotated[
-        int | None, typer.Option("--tacho-pulses", min=1, help="Pulses or counts of it per pinion revolution.")
+        int | None, typer.Option("--tacho-pulses", min=1, help="Pulses or counts of it per turn of the first shaft.")
     ] = None
     tacho_level: Annotated[
         float | None,
@@ -158,7 +158,7 @@ class RecordingOptions:
         )
 
     def speed_range_hz(self) -> tuple[float, float] | None:
-        """Return where the speed of the pinion is searched.
+        """Return where the speed of the first shaft is searched.
 
         Raises
         ------

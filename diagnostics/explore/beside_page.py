@@ -70,6 +70,8 @@ def beside_source(measured: PageSource, simulated: PageSource) -> PageSource:
         fs_hz=simulated.fs_hz,
         duration_s=max(measured.duration_s, simulated.duration_s),
         indicators=_indicators(measured, simulated, named),
+        teeth=simulated.teeth,
+        named=simulated.named,
         damage=simulated.damage,
         flanks=lambda row: simulated.flanks(row - ours) if row >= ours else {},
         quantities=simulated.quantities,
@@ -108,11 +110,10 @@ def _check_alike(measured: PageSource, simulated: PageSource) -> None:
             f"set again: siggen generate CONFIG --set fs_hz={rates[0]:g}"
         )
     teeth = [
-        set(zip(side.labels["teeth_pinion"].tolist(), side.labels["teeth_gear"].tolist(), strict=True))
-        for side in (measured, simulated)
+        set(zip(*(side.labels[name].tolist() for name in side.teeth), strict=True)) for side in (measured, simulated)
     ]
     if not teeth[0] <= teeth[1]:
-        said = [", ".join(f"{z1}:{z2}" for z1, z2 in sorted(side)) for side in teeth]
+        said = [", ".join(":".join(map(str, pair)) for pair in sorted(side)) for side in teeth]
         raise UsageError(f"--beside: the recordings are of {said[0]} teeth, the set of {said[1]}; allowed: the same")
 
 
@@ -121,6 +122,7 @@ def _labels(measured: PageSource, simulated: PageSource, first: int) -> dict[str
     ours, theirs = measured.labels["record_id"].size, simulated.labels["record_id"].size
     known: dict[str, Any] = {
         **measured.labels,
+        **dict(zip(simulated.teeth, (measured.labels[name] for name in measured.teeth), strict=True)),
         "record_id": range(first, first + ours),
         "specimen_id": [None] * ours,
         "operating_point_id": [None] * ours,

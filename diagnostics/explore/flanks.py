@@ -8,28 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.records.own_words import NO_WORDS, OwnWords
-
 ELLIPSE_CORNERS = 48
 DIGITS = 3
 
 
-def _sections(config: Mapping[str, Any], gear: str, names: OwnWords) -> tuple[Any, Any]:
-    """Return the sections of a gear's mesh and of the gear itself; of a machine those that its user wrote."""
-    mesh, _, role = gear.rpartition(".")
-    stages = [one for one, _ in names.meshes] or ["", *(stage["name"] for stage in config.get("stages") or ())]
-    above = f"stages.{stages.index(mesh) - 1}.gears" if mesh else "gears"
-    paths = dict(names.paths)
-    return _at(config, paths.get(above, above)), _at(config, paths.get(f"{above}.{role}", f"{above}.{role}"))
-
-
-def _at(section: Any, path: str) -> Any:
-    for key in path.split("."):
-        section = section[int(key) if key.isdigit() else key]
-    return section
-
-
-def flank_size(config: Mapping[str, Any], gear: str, teeth: int, names: OwnWords = NO_WORDS) -> dict[str, float] | None:
+def flank_size(
+    module_mm: object, pressure_angle_deg: object, face_width_mm: object, profile_shift: object, teeth: int
+) -> dict[str, float] | None:
     """Return face width and heights of pitch circle and tip above the flank's point on the base circle [mm].
 
     Heights lie along the tooth's axis, as in the table of damage: r cos(g_r) - R_b cos(g_b) with the half tooth angle
@@ -38,17 +23,14 @@ def flank_size(config: Mapping[str, Any], gear: str, teeth: int, names: OwnWords
     Returns
     -------
     dict or None
-        None where the configuration does not give the gears as plain numbers.
+        None where the configuration draws one of these numbers.
     """
-    try:
-        gears, own = _sections(config, gear, names)
-        module, alpha = float(gears["module_mm"]), radians(float(gears.get("pressure_angle_deg", 20.0)))
-        shift = float(own.get("profile_shift", 0.0))
-        tip = module * (teeth / 2 + 1.0 + shift)
-        face = float(gears["face_width_mm"])
-    except (KeyError, TypeError, ValueError, AttributeError):
+    numbers = module_mm, pressure_angle_deg, face_width_mm, profile_shift
+    plain = [number for number in numbers if isinstance(number, float)]
+    if len(plain) < len(numbers):
         return None
-    pitch = module * teeth / 2
+    module, degrees, face, shift = plain
+    alpha, tip, pitch = radians(degrees), module * (teeth / 2 + 1.0 + shift), module * teeth / 2
     base = pitch * cos(alpha)
     half = pi / (2 * teeth) + 2 * shift * tan(alpha) / teeth + tan(alpha) - alpha
 

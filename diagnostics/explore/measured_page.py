@@ -16,7 +16,7 @@ from diagnostics.explore.look import look_of, look_page
 from diagnostics.explore.payload import PageSource, Shown, packed_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
-from diagnostics.records.gear_train import names_of, train_labels
+from diagnostics.records.gear_train import gear_names, in_column
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.errors import UsageError
@@ -71,9 +71,10 @@ def recordings_source(shown: Sequence[ShownRecording]) -> PageSource:
         channels=tuple(first.recording.channels),
         fs_hz=first.recording.fs_hz,
         duration_s=max(one.found.recording.duration_s for one in shown),
-        indicators=packed_indicators(names, values, IndicatorSettings(), named=names_of(first.train)),
+        indicators=packed_indicators(names, values, IndicatorSettings(), named=gear_names(first.train)),
+        teeth=tuple(_teeth_labels(first).values()),
         measured=True,
-        named=names_of(first.train),
+        named=gear_names(first.train),
     )
 
 
@@ -103,8 +104,10 @@ def _labels(shown: Sequence[ShownRecording]) -> dict[str, np.ndarray]:
         "speed_hz": np.array([one.found.pulses.speed_hz for one in shown]),
         "torque_nm": np.array([one.load for one in shown]),
         "damaged_area_mm2": np.full(count, np.nan),
-        "teeth_pinion": np.array([one.found.teeth[0] for one in shown]),
-        "teeth_gear": np.array([one.found.teeth[1] for one in shown]),
+        **{
+            label: np.array([one.found.train.gear(gear).teeth for one in shown])
+            for gear, label in _teeth_labels(shown[0].found).items()
+        },
     }
 
 
@@ -120,9 +123,13 @@ def nearest_healthy(shown: Sequence[ShownRecording]) -> list[int | None]:
 
 def _records(shown: Sequence[ShownRecording]) -> Iterator[Recording]:
     for number, one in enumerate(shown, start=1):
-        teeth = dict(zip(("teeth_pinion", "teeth_gear"), one.found.teeth, strict=True))
-        labels = {"record_id": number, **teeth, **train_labels(one.found.train)}
-        yield Recording(labels, one.found.recording.channels, one.found.pulses.times_s, one.found.recording.fs_hz)
+        measured, train = one.found.recording, one.found.train
+        yield Recording({"record_id": number}, measured.channels, one.found.pulses.times_s, measured.fs_hz, train)
+
+
+def _teeth_labels(one: RecordingIndicators) -> dict[str, str]:
+    """Return what the labels with teeth are called, as in a set, by the gears of the first mesh."""
+    return {gear: f"teeth_{in_column(gear)}" for gear in one.mesh.names.gears}
 
 
 def write_recordings_page(

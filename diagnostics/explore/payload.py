@@ -20,7 +20,7 @@ from diagnostics.explore.record_views import PageAxes, highest_order, order_axis
 from diagnostics.indicators.registry import indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED, ShownQuantity
-from diagnostics.records.gear_train import PAIR, GearNames
+from diagnostics.records.gear_train import PAIR, GearNames, in_column
 from diagnostics.records.recording import Recording
 
 Columns = tuple[tuple[str, str], ...]
@@ -63,9 +63,9 @@ class PageSource:
     held : mapping
         What channels hold; those of recordings are not named.
     named : GearNames
-        Shafts whose averages are shown.
-    called, titles : mapping of str to str
-        The user's names of gears and of labels, by the program's.
+        Gears whose averages are shown.
+    teeth : tuple of str
+        Labels with the teeth of the gears of the first mesh.
     """
 
     labels: dict[str, np.ndarray]
@@ -76,6 +76,7 @@ class PageSource:
     fs_hz: float
     duration_s: float
     indicators: list[dict[str, Any]]
+    teeth: tuple[str, ...]
     further: dict[str, np.ndarray] = field(default_factory=dict)
     damage: Callable[[np.ndarray], Mapping[int, list[dict[str, Any]]]] = lambda _numbers: {}
     flanks: Callable[[int], dict[str, Any]] = lambda _row: {}
@@ -88,8 +89,6 @@ class PageSource:
     beside: list[int | None] | None = None
     held: Mapping[str, ShownQuantity] = field(default_factory=dict)
     named: GearNames = PAIR
-    called: Mapping[str, str] = field(default_factory=dict)
-    titles: Mapping[str, str] = field(default_factory=dict)
 
     def holds(self, channel: str) -> ShownQuantity:
         """Return what a channel holds."""
@@ -115,8 +114,8 @@ class Shown:
 def page_axes(source: PageSource, *, full: bool) -> PageAxes:
     """Return points and orders that all records of a page share; `full` asks for all samples."""
     labels, kept = source.labels, max(source.kept.size, 1)
-    samples, teeth = round(source.fs_hz * source.duration_s), labels["teeth_pinion"].astype(np.int64)
-    both = int((teeth + labels["teeth_gear"]).max())
+    samples, teeth = round(source.fs_hz * source.duration_s), labels[source.teeth[0]].astype(np.int64)
+    both = int((teeth + labels[source.teeth[-1]]).max())
     detail = page_detail(kept * (len(source.channels) + len(source.quantities)), samples, both, full=full)
     revolutions = int(labels["speed_hz"].max() * source.duration_s)
     last = max(highest_order(int(z), source.fs_hz, float(labels["speed_hz"].min())) for z in np.unique(teeth))
@@ -129,7 +128,7 @@ def page_axes(source: PageSource, *, full: bool) -> PageAxes:
 
 def page_head(source: PageSource, axes: PageAxes, shown: Shown) -> dict[str, Any]:
     """Return what the page reads when it opens: labels and indicators of all records, and what they are called."""
-    titles = {**source.titles, **dict((*shown.columns, *shown.filters))}
+    titles = dict((*shown.columns, *shown.filters))
     return {
         "fs_hz": source.fs_hz,
         "samples": round(source.fs_hz * source.duration_s),
@@ -146,14 +145,15 @@ def page_head(source: PageSource, axes: PageAxes, shown: Shown) -> dict[str, Any
         "indicators": source.indicators,
         "quantities": list(source.quantities),
         "measured": source.measured,
-        "shafts": list(source.named.shafts),
-        "called": dict(source.called),
+        "gears": list(source.named[0].gears),
+        "planetary": source.named[0].planetary,
+        "teeth": list(source.teeth),
         "table": shown.columns,
         "filters": shown.filters,
         "missing": list(shown.missing),
         "seen": shown.seen,
         "code": shown.code,
-        "ranked": list(shown.ranked),
+        "ranked": [*shown.ranked, f"fm4_{in_column(source.named[0].gears[0])}"],
         "lives": source.life is not None,
     }
 

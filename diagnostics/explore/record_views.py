@@ -18,7 +18,7 @@ from diagnostics.explore.detail import Detail
 from diagnostics.explore.packed import packed_floats, packed_places, packed_steps
 from diagnostics.indicators.mesh_signals import mesh_signals
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import gear_train
+from diagnostics.records.gear_train import meshes_of
 from diagnostics.records.recording import Recording
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, AngleGrid, angle_grid, resample_to_angle
 from diagnostics.signal.spectrum import envelope_spectrum
@@ -152,7 +152,7 @@ def record_views(record: Recording, axes: PageAxes, start_rad: float | None) -> 
 
 def _grid(record: Recording) -> tuple[AngleGrid | None, str]:
     try:
-        return angle_grid(record.tacho_s, int(record.labels["teeth_pinion"]) * SAMPLES_PER_TOOTH), ""
+        return angle_grid(record.tacho_s, record.teeth[0] * SAMPLES_PER_TOOTH), ""
     except ValueError as error:
         return None, f"No orders, averages or envelope: {error}."
 
@@ -190,7 +190,7 @@ def _of_angle(
     from scipy import fft
 
     steps = resample_to_angle(signal, record.fs_hz, grid)
-    teeth = int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"])
+    teeth = record.teeth
     amplitude = 4.0 * np.abs(fft.rfft(steps * hann_weights(steps.size))) / steps.size
     envelope = envelope_spectrum(steps, grid.revolutions, teeth[0])
     spectrum = decibels(axes.orders.largest(amplitude, grid.revolutions))
@@ -206,7 +206,7 @@ def _of_angle(
 
 def _of_members(signal: np.ndarray, record: Recording, steps_per_tooth: int) -> list[dict[str, Any] | None]:
     """Return the averages of sun, planet and ring against the carrier; none of a gearbox that is no planetary set."""
-    train = gear_train(record.labels)
+    train = meshes_of(record.train)
     if train[0].planets is None:
         return []
     settings = IndicatorSettings()

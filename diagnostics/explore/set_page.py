@@ -19,7 +19,6 @@ from diagnostics.explore.set_source import set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.prediction.released_model import ReleasedModel
-from diagnostics.records.named_set import words_of
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.training.splits import TEST
@@ -189,7 +188,7 @@ def set_look(
 
 def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Lives) -> Shown:
     """Return how the page lists the records."""
-    known, words = options.model is not None, words_of(dataset)
+    known = options.model is not None
     damaged = bool((source.labels["fault"] != HEALTHY).any()) and hasattr(dataset, "damage")
     missing = missing_parts(source.labels, source.overlay, damaged, bool(source.quantities), named=known)
     own = ", ".join(f'"{one.function.__module__}:{one.function.__name__}"' for one in options.own)
@@ -199,7 +198,7 @@ def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Li
         missing=missing,
         seen=seen_sentence([str(one) for one in source.labels["seen"]]) if known else "",
         code=CODE.replace("SET", dataset.path.name, 1).replace("))", f"), indicators=[{own}])" if own else "))", 1),
-        ranked=[words.column(name) for name in options.ranked],
+        ranked=list(options.ranked),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -18,10 +18,7 @@ from diagnostics.explore.payload import PageSource, packed_indicators
 from diagnostics.explore.record_views import packed_wave
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.channel_quantities import channel_quantities
-from diagnostics.records.gear_train import GEARS, GearNames
-from diagnostics.records.named_set import words_of
-from diagnostics.records.planetary_members import as_pair, teeth_labels
-from diagnostics.records.recording import TACHO_NAME, Recording, gear_names, recordings, turned
+from diagnostics.records.recording import Recording, one_recording, pair_teeth, recordings
 from siggen.dataset.reading import Dataset
 
 WAVES_SHOWN = {
@@ -33,10 +30,8 @@ WAVES_SHOWN = {
 
 SHOWN = (
     *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
-    *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
+    *("damaged_area_mm2", "speed_hz", "torque_nm"),
 )
-OF_PLANETS = {"sun": "pinion", "planet": "gear"}
-"""Which section of the configuration describes a member of a planetary set."""
 ALL_READ = 0.3
 """Share of a set's records from which on reading all of them in order is faster than each by its number."""
 
@@ -52,9 +47,8 @@ def set_source(dataset: Dataset, table: RecordTable, kept: np.ndarray) -> PageSo
     kept : (m,) int64
         Rows whose signals the page holds.
     """
-    labels = chosen_labels(dataset)
-    words = words_of(dataset)
-    further = {words.column(name): values for name, values in further_labels(dataset, labels).items()}
+    labels, names = chosen_labels(dataset), table.names()
+    teeth = dataset.columns_of("teeth")
 
     @lru_cache(maxsize=1)
     def damage_table() -> pa.Table | None:
@@ -68,14 +62,15 @@ def set_source(dataset: Dataset, table: RecordTable, kept: np.ndarray) -> PageSo
         channels=tuple(channel.name for channel in dataset.channels),
         fs_hz=dataset.fs_hz,
         duration_s=dataset.duration_s,
-        indicators=_indicators(table, dataset),
-        further=further,
+        indicators=packed_indicators(
+            names, table.values(names), table.settings, table.own, channel_quantities(dataset), table.named
+        ),
+        teeth=tuple(teeth[gear] for gear in table.named[0].gears),
+        further=further_labels(dataset, labels),
         held=channel_quantities(dataset),
         named=table.named,
-        damage=lambda numbers: _damage(dataset, damage_table(), numbers),
-        called=dict(words.names.gears),
-        titles={name: words.column(name) for name in labels},
-        flanks=lambda row: _flanks(dataset, labels, table.named, row),
+        damage=lambda numbers: _damage(damage_table(), numbers),
+        flanks=lambda row: flank_sizes(dataset, {gear: int(labels[name][row]) for gear, name in teeth.items()}),
         quantities=shown_internals(dataset),
         internals=lambda numbers, detail, fine: internal_waves(dataset, numbers, detail, fine),
     )
@@ -87,21 +82,15 @@ def _records(dataset: Dataset, numbers: np.ndarray, records: int) -> Iterator[Re
         yield from recordings(dataset)
         return
     for number in numbers:
-        found = dataset.record(int(number))
-        labels, pulses = turned(found, found[TACHO_NAME])
-        channels = {channel.name: found[channel.column] for channel in dataset.channels}
-        held = {channel.name: channel.quantity for channel in dataset.channels}
-        yield Recording(labels, channels, np.asarray(pulses), dataset.fs_hz, held)
+        yield one_recording(dataset, int(number))
 
 
 def chosen_labels(dataset: Dataset) -> dict[str, np.ndarray]:
     """Return the labels that the page needs, (records,) each; those that the set lacks are left out."""
     found = dataset.labels()
     columns = dict(zip(found.column_names, found.columns, strict=True))
-    if gear_names(dataset).is_planetary:
-        columns = as_pair(columns)
-    further = (f"teeth_{mesh}_{gear}" for mesh in gear_names(dataset).meshes for gear in GEARS)
-    present = [name for name in (*SHOWN, *teeth_labels(), *further) if name in columns]
+    teeth = dict.fromkeys([*pair_teeth(dataset), *dataset.columns_of("teeth").values()])
+    present = [name for name in (*SHOWN, *teeth) if name in columns]
     return {name: np.asarray(columns[name].to_pylist()) for name in present}
 
 
@@ -113,12 +102,11 @@ def shown_internals(dataset: Dataset) -> list[dict[str, str]]:
 
 def _waves(dataset: Dataset) -> dict[str, tuple[str, str, float]]:
     """Return the quantities that the page draws, of every mesh where there are several; as `WAVES_SHOWN`."""
-    names = dataset.names()[0]
-    return dict(WAVES_SHOWN) | {
-        names.quantity(mesh, name): (f"{title}, {mesh.word}", unit, factor)
-        for mesh in names.meshes[: len(names.meshes) if names.given else 0]
+    return WAVES_SHOWN | {
+        f"{mesh.name}_{name}": (f"{title}, {mesh.name}", unit, factor)
+        for mesh in dataset.drivetrain.meshes
         for name, (title, unit, factor) in WAVES_SHOWN.items()
-        if names.quantity(mesh, name) != name
+        if mesh.name
     }
 
 
@@ -151,34 +139,20 @@ def internal_waves(
     return found
 
 
-def _damage(dataset: Dataset, table: pa.Table | None, ids: np.ndarray) -> dict[int, list[dict[str, Any]]]:
+def _damage(table: pa.Table | None, ids: np.ndarray) -> dict[int, list[dict[str, Any]]]:
     """Return the outlines of damage by record, empty for a set without a table of damage."""
     if table is None:
         return {}
-    short = {own: gear for gear, own in words_of(dataset).names.gears}
     kept = table.filter(pc.is_in(table.column("record_id"), value_set=pa.array(ids.tolist(), pa.int64()))).to_pylist()
     by_record: dict[int, list[dict[str, Any]]] = {}
     for row in kept:
-        row["gear"] = short.get(row["gear"], row["gear"])
         by_record.setdefault(row["record_id"], []).append(row)
     return {record: outlines(found) for record, found in by_record.items()}
 
 
-def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], known: GearNames, row: int) -> dict[str, Any]:
-    names = words_of(dataset).names
-    every = [*GEARS, *(f"{mesh}.{gear}" for mesh in known.meshes for gear in GEARS)]
+def flank_sizes(dataset: Dataset, teeth: Mapping[str, int]) -> dict[str, dict[str, float] | None]:
+    """Return the flank's size of every gear but a ring, by its number of teeth."""
     return {
-        gear: flank_size(dataset.config, section, int(labels[f"teeth_{gear.replace('.', '_')}"][row]), names)
-        for gear, section in (OF_PLANETS.items() if known.is_planetary else zip(every, every, strict=True))
+        gear: flank_size(form.module_mm, form.pressure_angle_deg, form.face_width_mm, wheel.profile_shift, teeth[gear])
+        for gear, (form, wheel) in dataset.gears.items()
     }
-
-
-def _indicators(table: RecordTable, dataset: Dataset) -> list[dict[str, Any]]:
-    """Return the indicators of a set in the user's names."""
-    names, words, held = table.names(), words_of(dataset), channel_quantities(dataset)
-    found = packed_indicators(names, table.values(names), table.settings, table.own, held, table.named)
-    return [
-        {**one, "name": words.column(one["name"])}
-        | {key: words.about(one["name"].rpartition("__")[0], one[key]) for key in ("title", "definition")}
-        for one in found
-    ]

@@ -18,6 +18,7 @@ from diagnostics.indicators.cepstrum import BAND_SHARE, shaft_log_spectrum
 from diagnostics.indicators.history import central_moments, dominant_harmonic
 from diagnostics.indicators.indicator import Formula, Indicator
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.gear_train import PAIR, MeshNames
 from diagnostics.signal.member_average import Carrier, member_signals, passing_lines
 from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_basebands
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signals
@@ -47,15 +48,13 @@ class _Column(NamedTuple):
 
 
 @lru_cache(maxsize=16)
-def _columns(
-    indicators: tuple[Indicator, ...], settings: IndicatorSettings, shafts: tuple[str, ...]
-) -> tuple[_Column, ...]:
+def _columns(indicators: tuple[Indicator, ...], settings: IndicatorSettings, mesh: MeshNames) -> tuple[_Column, ...]:
     """Return the columns of all indicators that need one record alone; the same for every record of a set."""
     return tuple(
-        _Column(column, entry.function, entry.parameters, str(fields.get("shaft", shafts[0])), fields)
+        _Column(column, entry.function, entry.parameters, str(fields.get("shaft", mesh.gears[0])), fields)
         for entry in indicators
         if not entry.history
-        for column, fields in entry.columns(settings, shafts)
+        for column, fields in entry.columns(settings, mesh)
     )
 
 
@@ -69,11 +68,13 @@ class ChannelSignals:
     fs_hz : float
         Sampling frequency [Hz].
     grid : AngleGrid, optional
-        Steps of pinion angle; without them everything over angle is undefined.
+        Steps of the driver's angle; without them everything over angle is undefined.
     shafts : tuple of Shaft
-        Pinion and gear, or the members of a planetary set.
+        Those of the gears of the mesh.
     settings : IndicatorSettings
         Harmonics, sidebands, frames.
+    mesh : MeshNames
+        What columns are called after.
     carrier : Carrier, optional
         Of a planetary set.
     """
@@ -85,9 +86,11 @@ class ChannelSignals:
         grid: AngleGrid | None,
         shafts: tuple[Shaft, ...],
         settings: IndicatorSettings,
+        mesh: MeshNames = PAIR[0],
         carrier: Carrier | None = None,
     ) -> None:
         self.signal, self.fs_hz, self.grid, self.shafts, self.settings = signal, fs_hz, grid, shafts, settings
+        self._mesh = mesh
         self._carrier, self._named_shafts = carrier, {shaft.name: shaft for shaft in shafts}
         self._of_shaft: dict[str, ShaftSignals] = {}
         self._without_front = np.empty(0)
@@ -167,8 +170,7 @@ class ChannelSignals:
 
     def values(self, indicators: tuple[Indicator, ...]) -> dict[str, float]:
         """Return the columns of all indicators that need this record alone, NaN where undefined."""
-        known = _columns(indicators, self.settings, tuple(shaft.name for shaft in self.shafts))
-        return {column.name: self._value(column) for column in known}
+        return {column.name: self._value(column) for column in _columns(indicators, self.settings, self._mesh)}
 
     def _value(self, column: _Column) -> float:
         fields, shaft = column.fields, column.shaft

@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -18,11 +19,10 @@ import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import load_indicators
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.indicators.table import RecordTable, record_table
-from diagnostics.records.planetary_members import AS_PAIR, MEMBERS
+from diagnostics.indicators.table import RecordTable, record_table, revolution_columns
+from diagnostics.records.gear_train import MeshNames
 from diagnostics.records.record_classes import STATE, RecordClasses, record_classes, set_classes
 from diagnostics.records.record_problems import problem_list
-from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.records.state_classes import CLASS
 from diagnostics.records.usable_records import RecordCheck
 from siggen.dataset.reading import Dataset
@@ -30,11 +30,10 @@ from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file
 from siggen.keys.column import Role
 
-BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
 SETTINGS_KEY = b"diagnostics.indicators"
 NOTES_KEY = b"diagnostics.notes"
-OWN_NAMES = AS_PAIR | {"revolutions_pinion": "turns_sun", "revolutions_gear": "turns_carrier"}
-"""Column of a pair -> what it holds of a planetary set; turns of the sun are those against the carrier."""
+LABELS_KEY, OTHERS_KEY, GEARS_KEY = b"diagnostics.labels", b"diagnostics.others", b"diagnostics.gears"
+"""Columns that are labels, those that are neither labels nor indicators, and what indicators are called after."""
 LIFE_LABELS = {"age_h": Role.CONDITION, "rul_h": Role.TARGET}
 """Age and remaining life of an inspection [h]."""
 WRITERS = (".parquet", ".csv")
@@ -76,7 +75,7 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1,
     notes = check_table(found, dataset)
     for note in notes:
         warnings.warn(f"{dataset.path}: {note}", stacklevel=2)
-    roles, own = {name: dataset.role(name) for name in LABEL_NAMES}, classifier_table(found, notes)
+    roles, own = {name: dataset.role(name) for name in found.label_names}, classifier_table(found, notes)
     if not lives:
         return replace(feature_matrix(own, told), label_roles={**roles, CLASS: Role.TARGET})
     matrix = _arrays(own)
@@ -142,11 +141,18 @@ def classifier_table(table: RecordTable, notes: Sequence[str] = ()) -> pa.Table:
     """
     names = table.names()
     values = dict(zip(names, table.values(names).T, strict=True))
-    found = table.select([*LABEL_NAMES, *BOOKKEEPING])
+    others = [*revolution_columns(table.named), "notes"]
+    found = table.select([*table.label_names, *others])
     for name, column in values.items():
         found = found.append_column(name, pa.array(column))
-    metadata = {SETTINGS_KEY: json.dumps(asdict(table.settings)).encode(), NOTES_KEY: json.dumps(list(notes)).encode()}
-    return found.replace_schema_metadata(metadata)
+    said = {
+        SETTINGS_KEY: asdict(table.settings),
+        NOTES_KEY: list(notes),
+        LABELS_KEY: table.label_names,
+        OTHERS_KEY: others,
+        GEARS_KEY: table.named,
+    }
+    return found.replace_schema_metadata({key: json.dumps(value).encode() for key, value in said.items()})
 
 
 def table_notes(table: pa.Table) -> tuple[str, ...]:
@@ -161,8 +167,12 @@ def table_settings(table: pa.Table) -> IndicatorSettings:
 
 def indicator_names(table: pa.Table) -> tuple[str, ...]:
     """Return the columns of a table that are indicators."""
-    known = {*LABEL_NAMES, *BOOKKEEPING}
+    known = {name for key in (LABELS_KEY, OTHERS_KEY) for name in _listed(table, key)}
     return tuple(name for name in table.column_names if name not in known)
+
+
+def _listed(table: pa.Table, key: bytes) -> list[Any]:
+    return list(json.loads(table.schema.metadata[key]))
 
 
 def feature_matrix(table: pa.Table, classes: RecordClasses | None = None) -> FeatureMatrix:
@@ -184,8 +194,9 @@ def _arrays(table: pa.Table) -> FeatureMatrix:
     """Return a classifier table as arrays, without classes."""
     names = indicator_names(table)
     columns = [table.column(name).to_numpy(zero_copy_only=False).astype(np.float64) for name in names]
-    labels = {name: np.asarray(table.column(name).to_pylist()) for name in LABEL_NAMES}
-    return FeatureMatrix(np.stack(columns, axis=1), names, labels)
+    labels = {name: np.asarray(table.column(name).to_pylist()) for name in _listed(table, LABELS_KEY)}
+    gears = tuple(MeshNames(name, tuple(own), planetary) for name, own, planetary in _listed(table, GEARS_KEY))
+    return FeatureMatrix(np.stack(columns, axis=1), names, labels, gears=gears)
 
 
 def check_suffix(path: Path) -> None:
@@ -209,17 +220,9 @@ def write_table(table: pa.Table, path: Path) -> None:
         If the suffix is neither.
     """
     check_suffix(path)
-    table = _with_own_names(table)
     if path.suffix == ".csv":
         siggen.write_csv(table, path)
         return
     from pyarrow import parquet
 
     write_file(path, lambda draft: parquet.write_table(table, draft, compression="zstd"))
-
-
-def _with_own_names(table: pa.Table) -> pa.Table:
-    """Return a table of planetary sets with the names of sun and ring, which are read as those of a pair."""
-    if not any(name.partition("__")[0].endswith(f"_{MEMBERS[0]}") for name in table.column_names):
-        return table
-    return table.rename_columns([OWN_NAMES.get(name, name) for name in table.column_names])

@@ -15,7 +15,7 @@ import numpy as np
 
 from diagnostics.indicators.indicator import CONDITION_METRICS, INDICATORS, indicator
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import GEARS
+from diagnostics.records.gear_train import PAIR, MeshNames
 from diagnostics.records.state_classes import HEALTHY
 
 NO_HISTORY = "no record of the history varies, or one of them is unusable"
@@ -126,9 +126,9 @@ def histories(labels: Mapping[str, np.ndarray]) -> list[np.ndarray]:
 
 
 def history_indicators(
-    labels: Mapping[str, np.ndarray], moments: Mapping[str, np.ndarray], shafts: Sequence[str] = GEARS
+    labels: Mapping[str, np.ndarray], moments: Mapping[str, np.ndarray], mesh: MeshNames = PAIR[0]
 ) -> dict[str, np.ndarray]:
-    """Return the indicators with a history of all shafts in one channel, (n,) each by column without the channel.
+    """Return the indicators with a history of the gears of a mesh in one channel, (n,) each by column.
 
     Parameters
     ----------
@@ -136,16 +136,15 @@ def history_indicators(
         As of `histories`, and `fault`.
     moments : mapping of str to (n,)
         Moments of every record of the channel by name, see `ChannelSignals.moments`; NaN where unusable.
-    shafts : sequence of str
-        Names of the shafts.
+    mesh : MeshNames
     """
     known = [entry for entry in INDICATORS if entry.history]
     count, settings = len(labels["state_id"]), IndicatorSettings()
-    named = {(entry, chosen["shaft"]): column for entry in known for column, chosen in entry.columns(settings, shafts)}
+    named = {(entry, chosen["shaft"]): column for entry in known for column, chosen in entry.columns(settings, mesh)}
     columns = {column: np.full(count, np.nan) for column in named.values()}
     for rows in histories(labels):
         healthy = labels["fault"][rows] == HEALTHY
-        for shaft in shafts:
+        for shaft in mesh.gears:
             for last, row in enumerate(rows.tolist()):
                 told = _moments_of(moments, shaft, rows[: last + 1], healthy[: last + 1])
                 for entry in known:

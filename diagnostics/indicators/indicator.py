@@ -8,8 +8,7 @@ are, `diagnostics.indicators.channel_signals` says. Its columns follow from a te
 from __future__ import annotations
 
 import inspect
-import re
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
@@ -17,9 +16,7 @@ from string import Formatter
 from typing import Any
 
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.planetary_members import MEMBERS
-
-SUFFIX = re.compile(r"(_(pinion|gear))?(_h\d+)?(_(k|lower|upper)\d+|_o\d+_\d+)?$")
+from diagnostics.records.gear_train import MeshNames, in_column
 
 STILL = "the signal does not vary (standard deviation below 1e-9 of its rms)"
 NO_LINE = "the mesh line is below 1e-9 of the strongest line, or a sideband is unresolved or outside the band"
@@ -86,8 +83,8 @@ class Indicator:
     @property
     def name(self) -> str:
         """What its columns start with."""
-        before = self.column.split("{", maxsplit=1)[0]
-        return before if before == self.column else re.sub(r"_h?$", "", before)
+        before, opened, _ = self.column.partition("{")
+        return before.removesuffix("h").removesuffix("_") if opened else before
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -99,53 +96,23 @@ class Indicator:
         """Whether every mesh has its columns: they differ by shaft or mesh line, which a record as a whole lacks."""
         return bool(self.fields)
 
-    def columns(self, settings: IndicatorSettings, shafts: Sequence[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Yield the columns of a mesh with these shafts, and the fields by which they differ.
+    def columns(self, settings: IndicatorSettings, mesh: MeshNames) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Yield the columns of a mesh, and the fields by which they differ; `shaft` is the gear on it.
 
-        Members of a planetary set stand at the end of their columns, as further meshes do.
+        What is of a mesh but of none of its gears ends in the mesh's name, where it has one.
         """
-        if OF_WHOLE_TURNS.intersection(self.parameters) and not set(shafts).isdisjoint(MEMBERS):
+        if OF_WHOLE_TURNS.intersection(self.parameters) and mesh.planetary:
             return
-        for values in product(*(shafts if field == "shaft" else settings.choices(field) for field in self.fields)):
+        end = f"_{mesh.name}" if mesh.name and self.is_of_mesh and "shaft" not in self.fields else ""
+        for values in product(*(mesh.gears if field == "shaft" else settings.choices(field) for field in self.fields)):
             chosen = dict(zip(self.fields, values, strict=True))
-            yield _column(self.column, chosen), chosen
+            named = {**chosen, "shaft": in_column(str(chosen.get("shaft", "")))}
+            yield self.column.format(**named) + end, chosen
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """What its formula takes; a parameter with a default only where its columns differ by it."""
         return _parameters(self.function, self.fields)
-
-
-OF_SHAFT, PINION = "_{shaft}", "_pinion"
-FIELD_PATTERNS = {"shaft": "(pinion|gear)", "side": "(lower|upper)", "band": r"o\d+_\d+"}
-"""What the fields of columns look like; all others are numbers."""
-
-
-def _column(template: str, chosen: Mapping[str, Any]) -> str:
-    member = str(chosen.get("shaft", ""))
-    return (
-        of_mesh(template.replace(OF_SHAFT, "").format(**chosen), member)
-        if member in MEMBERS
-        else template.format(**chosen)
-    )
-
-
-@cache
-def _pattern(column: str) -> str:
-    """Return the pattern of the columns of the first mesh, by an indicator's template."""
-    return "".join(
-        re.escape(text) + (FIELD_PATTERNS.get(name, r"\d+") if name else "")
-        for text, name, _, _ in Formatter().parse(column)
-    )
-
-
-@cache
-def _with_mesh(column: str) -> tuple[re.Pattern[str], ...]:
-    """Return the patterns of columns of a further mesh, and of members of a planetary set."""
-    further = re.compile(f"{_pattern(column)}_(?P<mesh>[a-z][a-z0-9_]*)")
-    if OF_SHAFT not in column:
-        return (further,)
-    return further, re.compile(f"{_pattern(column.replace(OF_SHAFT, ''))}_(?P<mesh>{'|'.join(MEMBERS)})")
 
 
 @cache  # asked for at every value of every record
@@ -195,41 +162,3 @@ def only_of(*quantities: str) -> Callable[[Formula], Formula]:
         return function
 
     return keep
-
-
-def base_name(column: str) -> str:
-    """Return the indicator's name of a column such as `fm0_pinion_h5__bearing_vertical`."""
-    name, _ = without_mesh(column)
-    return SUFFIX.sub("", name)
-
-
-@cache
-def without_mesh(column: str) -> tuple[str, str]:
-    """Return a column as the first mesh has it, without channel, and the name of its mesh, empty for the first one.
-
-    Members of a planetary set count as meshes.
-    """
-    name = column.split("__", maxsplit=1)[0]
-    patterns = (pattern for entry in INDICATORS if entry.is_of_mesh for pattern in _with_mesh(entry.column))
-    mesh = next((match["mesh"] for pattern in patterns if (match := pattern.fullmatch(name))), "")
-    return name.removesuffix(of_mesh("", mesh)), mesh
-
-
-def of_mesh(column: str, mesh: str) -> str:
-    """Return the column of a mesh by that of the first one, whose name is empty."""
-    return f"{column}_{mesh}" if mesh else column
-
-
-def or_members(column: str, known: Container[str]) -> tuple[str, ...]:
-    """Return a column of the pinion, or those that members of a planetary set have in its place where it is not known.
-
-    Parameters
-    ----------
-    column : str
-        Such as `sideband_index_pinion_h1`, without channel.
-    known : container of str
-        Columns that there are.
-    """
-    if column in known:
-        return (column,)
-    return tuple(name for member in MEMBERS if (name := of_mesh(column.replace(PINION, "", 1), member)) in known)

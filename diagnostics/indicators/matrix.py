@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from diagnostics.records.gear_train import PAIR, GearNames
 from diagnostics.records.state_classes import CLASS
 from siggen.keys.column import Role
 
@@ -29,12 +30,15 @@ class FeatureMatrix:
         Label columns, and `class`: what classifiers tell apart; of lives `age_h` and `rul_h` in its place.
     label_roles : mapping of str to Role
         Of labels, as the set says them; others are conditions.
+    gears : GearNames
+        What columns are called after.
     """
 
     values: np.ndarray
     names: tuple[str, ...]
     labels: dict[str, np.ndarray]
     label_roles: Mapping[str, Role] = field(default_factory=dict)
+    gears: GearNames = PAIR
 
     def __iter__(self) -> Iterator[np.ndarray]:
         """Yield values, target and groups: `X, y, groups = diagnostics.table(dataset)`; of lives y is `rul_h`."""

@@ -1,7 +1,6 @@
-"""Signals of all meshes of a gearbox: each over the angle of its own pinion, averaged over whole turns of its shafts.
+"""Signals of all meshes of a gearbox: each over the angle of its own driver, averaged over whole turns of its shafts.
 
-Columns of the first mesh have no ending; those of a further mesh end in its name. What has no shaft and no mesh line,
-such as the rms of the record, stands once.
+What has no shaft and no mesh line, such as the rms of the record, stands once, with the first mesh.
 """
 
 from __future__ import annotations
@@ -12,10 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnostics.indicators.channel_signals import ChannelSignals
-from diagnostics.indicators.indicator import Indicator, of_mesh
+from diagnostics.indicators.indicator import Indicator
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import Mesh
-from diagnostics.records.planetary_members import MEMBERS, Planets
+from diagnostics.records.gear_train import Mesh, Planets
 from diagnostics.signal.member_average import PLANET, RING, SUN, Carrier, carrier_turns_needed
 from diagnostics.signal.order_domain import AngleGrid, angle_grid, shaft_grid
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
@@ -31,25 +29,22 @@ class MeshSignals:
     A planetary set counts as one mesh with its members as shafts.
     """
 
-    mesh: Mesh
     shafts: tuple[Shaft, ...]
     channels: Mapping[str, ChannelSignals]
+    first: bool
 
     def values(self, channel: str, taken: tuple[Indicator, ...]) -> dict[str, float]:
         """Return the values of a channel by column."""
-        own = taken if not self.mesh.name else tuple(entry for entry in taken if entry.is_of_mesh)
-        return self._named(self.channels[channel].values(own))
+        own = taken if self.first else tuple(entry for entry in taken if entry.is_of_mesh)
+        return self.channels[channel].values(own)
 
     def moments(self, channel: str) -> dict[str, float]:
         """Return what indicators with a history need of a channel."""
-        return self._named(self.channels[channel].moments())
+        return self.channels[channel].moments()
 
     def notes(self) -> list[str]:
         """Return what its shafts leave undefined, and why."""
         return [shaft.note for shaft in self.shafts if shaft.note]
-
-    def _named(self, found: Mapping[str, float]) -> dict[str, float]:
-        return {of_mesh(name, self.mesh.name): value for name, value in found.items()}
 
 
 def mesh_signals(
@@ -66,45 +61,50 @@ def mesh_signals(
     channels : mapping of str to (n,) float64
         Signals by channel name.
     tacho_s : (k,) float64
-        Pulse times of the first pinion.
+        Pulse times of the first driver.
     fs_hz : float
         Sampling frequency [Hz].
     train : tuple of Mesh
-        As of `gear_train`.
+        As of `meshes_of`.
     settings : IndicatorSettings
         How values are taken.
     """
     found = []
     for mesh in train:
-        grid = _grid(tacho_s, mesh, settings.samples_per_tooth)
+        first = mesh is train[0]
+        grid = _grid(tacho_s, mesh, settings.samples_per_tooth, first=first)
         carrier = _carrier(mesh.planets, settings)
-        shafts = _shafts(grid, mesh, settings) if carrier is None else _members(grid, mesh, carrier, settings)
+        if carrier is None:
+            shafts: tuple[Shaft, ...] = _shafts(grid, mesh, settings, first=first)
+        else:
+            shafts = _members(grid, mesh, carrier, settings)
         signals = {
-            name: ChannelSignals(signal, fs_hz, grid, shafts, settings, carrier) for name, signal in channels.items()
+            name: ChannelSignals(signal, fs_hz, grid, shafts, settings, mesh.names, carrier)
+            for name, signal in channels.items()
         }
-        found.append(MeshSignals(mesh, shafts, signals))
+        found.append(MeshSignals(shafts, signals, first))
     return tuple(found)
 
 
-def _grid(tacho_s: np.ndarray, mesh: Mesh, samples_per_tooth: int) -> AngleGrid | None:
+def _grid(tacho_s: np.ndarray, mesh: Mesh, samples_per_tooth: int, *, first: bool) -> AngleGrid | None:
     if len(tacho_s) < 2:
         return None
     steps = mesh.teeth[0] * samples_per_tooth
-    return shaft_grid(tacho_s, steps, mesh.turns) if mesh.name else angle_grid(tacho_s, steps)
+    return angle_grid(tacho_s, steps) if first else shaft_grid(tacho_s, steps, mesh.turns)
 
 
-def _shafts(grid: AngleGrid | None, mesh: Mesh, settings: IndicatorSettings) -> tuple[Shaft, Shaft]:
-    pinion, gear = record_shafts(grid, mesh.teeth, settings.samples_per_tooth, settings.sidebands)
-    if mesh.name:
-        pinion, gear = _behind(pinion, mesh.name), _behind(gear, mesh.name)
-    return replace(pinion, beside=mesh.before), replace(gear, beside=mesh.behind)
+def _shafts(grid: AngleGrid | None, mesh: Mesh, settings: IndicatorSettings, *, first: bool) -> tuple[Shaft, Shaft]:
+    driver, driven = record_shafts(grid, mesh.teeth, settings.samples_per_tooth, settings.sidebands, mesh.names.gears)
+    if not first:
+        driver, driven = _behind(driver), _behind(driven)
+    return replace(driver, beside=mesh.before), replace(driven, beside=mesh.behind)
 
 
-def _behind(shaft: Shaft, mesh: str) -> Shaft:
-    """Return a shaft of a further mesh, without revolutions where they are too few, with notes that name the mesh."""
+def _behind(shaft: Shaft) -> Shaft:
+    """Return a shaft of a further mesh, without revolutions where they are too few."""
     if shaft.revolutions >= FEWEST_TURNS:
-        return replace(shaft, note=f"mesh {mesh}: {shaft.note}" if shaft.note else "")
-    note = f"mesh {mesh}: all {shaft.name} averages undefined, since they need {FEWEST_TURNS} {shaft.name} revolutions"
+        return shaft
+    note = f"all {shaft.name} averages undefined, since they need {FEWEST_TURNS} {shaft.name} revolutions"
     return replace(shaft, revolutions=0, note=note)
 
 
@@ -126,7 +126,7 @@ def _members(grid: AngleGrid | None, mesh: Mesh, carrier: Carrier, settings: Ind
         both,
     )
     period = (sun * float(mesh.planets.sun_turns), 0.0, 0.0)  # one turn of the sun's shaft
-    rows = zip(MEMBERS, mesh.planets.teeth, needed, (SUN, PLANET, RING), period, strict=True)
+    rows = zip(mesh.names.gears, mesh.planets.teeth, needed, (SUN, PLANET, RING), period, strict=True)
     return tuple(
         _member(Shaft(name, teeth, int(periods // teeth), turns <= periods / ring, "", 0, meets, after), turns)
         for name, teeth, turns, meets, after in rows

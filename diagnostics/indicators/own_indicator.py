@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.line_levels import LEVELS
-from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.registry import BY_NAME, indicator_columns
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.record_problems import RecordProblem
 from diagnostics.records.recording import Recording, recordings
@@ -113,8 +113,7 @@ def own_values(own: Sequence[OwnIndicator], record: Recording) -> Found:
 
 def _gears(record: Recording) -> Gears:
     labels = record.labels
-    teeth = int(labels["teeth_pinion"]), int(labels["teeth_gear"])
-    return Gears(*teeth, record.fs_hz, float(labels["speed_hz"]), float(labels["torque_nm"]))
+    return Gears(*record.teeth, record.fs_hz, float(labels["speed_hz"]), float(labels["torque_nm"]))
 
 
 def _check_sendable(own: Sequence[OwnIndicator]) -> None:
@@ -283,10 +282,9 @@ def _check_function(function: object, reference: str, attribute: str) -> None:
 
 
 def _check_name(name: str) -> None:
-    if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name) or base_name(name) != name:
+    if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name):
         raise UsageError(
-            f"indicator name: received {name!r}; allowed are lower case letters, digits and single underscores, "
-            "without an ending such as _pinion, _h1 or _k1"
+            f"indicator name: received {name!r}; allowed are lower case letters, digits and single underscores"
         )
-    if name in BY_NAME or name in LEVELS:
+    if name in BY_NAME or name in LEVELS or name in indicator_columns(IndicatorSettings()):
         raise UsageError(f"indicator name: {name!r} is one of the package's own; choose another")

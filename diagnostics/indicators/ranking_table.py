@@ -17,12 +17,11 @@ import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import SETTINGS_KEY
 from diagnostics.indicators.history import history_indicators
-from diagnostics.indicators.indicator import of_mesh
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.indicators.table import RecordTable
+from diagnostics.indicators.table import RecordTable, revolution_columns
 from diagnostics.records.record_problems import FEWEST_REVOLUTIONS, RecordProblem, is_rate, problem_list
-from diagnostics.records.recording import gear_names, pair_teeth
+from diagnostics.records.recording import names_of, pair_teeth
 from diagnostics.records.state_classes import chosen_states
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 from siggen.dataset.reading import Dataset
@@ -46,11 +45,11 @@ def needed_duration(dataset: Dataset, frame_samples: int) -> tuple[float, float]
     """
     labels = dataset.labels(columns=["speed_hz", *pair_teeth(dataset)])
     columns = np.array([labels.column(name).to_pylist() for name in labels.column_names], dtype=np.float64)
-    speed_hz, pinion, gear = columns[:, (np.isfinite(columns) & (columns > 0.0)).all(axis=0)]
+    speed_hz, first, last = columns[:, (np.isfinite(columns) & (columns > 0.0)).all(axis=0)]
     if not speed_hz.size:
         return math.nan, math.nan
-    turns = np.ceil(FEWEST_REVOLUTIONS * np.maximum(1.0, gear / pinion)) + 1.0
-    against_carrier = gear / (pinion + gear) if gear_names(dataset).is_planetary else 1.0
+    turns = np.ceil(FEWEST_REVOLUTIONS * np.maximum(1.0, last / first)) + 1.0
+    against_carrier = last / (first + last) if names_of(dataset)[0].planetary else 1.0
     needed_s = turns / (speed_hz * against_carrier)
     longest = int(np.argmax(needed_s))
     frames_s = (FEWEST_FRAMES + 1) * (frame_samples // 2) / dataset.fs_hz
@@ -82,7 +81,7 @@ class IndicatorTable:
         them, `snr_<channel>_db`.
     channels : tuple of str
     revolutions : (records, 2) int
-        Whole revolutions of pinion and gear that were averaged.
+        Whole revolutions of the first mesh's gears that were averaged.
     notes : tuple of str
         Per record, what is undefined and why beyond the definitions.
     problems : tuple of RecordProblem
@@ -101,7 +100,7 @@ class IndicatorTable:
         """Return everything as one table, the settings in its metadata."""
         labels = {name: values.tolist() for name, values in self.matrix.labels.items()}
         values = dict(zip(self.matrix.names, self.matrix.values.T, strict=True))
-        revolutions = {"revolutions_pinion": self.revolutions[:, 0], "revolutions_gear": self.revolutions[:, 1]}
+        revolutions = dict(zip(revolution_columns(self.matrix.gears), self.revolutions.T, strict=True))
         table = pa.table({**labels, **revolutions, "notes": list(self.notes), **values})
         return table.replace_schema_metadata({SETTINGS_KEY: json.dumps(asdict(self.settings)).encode()})
 
@@ -152,7 +151,7 @@ def ranking_table(
             f"{dataset.path}: not one of {rows.size} records can be used\n{problem_list(problems)}\n"
             f"{duration_advice(dataset, table.settings.frame_samples)}Without usable records there is nothing to rank."
         )
-    matrix = FeatureMatrix(np.stack(list(values.values()), axis=1), tuple(values), labels)
+    matrix = FeatureMatrix(np.stack(list(values.values()), axis=1), tuple(values), labels, gears=table.named)
     return IndicatorTable(
         matrix,
         table.channels,
@@ -191,16 +190,13 @@ def with_history(
     found = {name: values[rows] for name, values in table.moments(channel).items()}
     moments = {name: np.where(unusable, np.nan, values) for name, values in found.items()}
     columns: dict[str, np.ndarray] = {}
-    shafts = table.named.shafts
-    for mesh in ("", *table.named.meshes):
-        ending = of_mesh("", mesh)
-        own = {name.removesuffix(ending): values for name, values in moments.items() if name.endswith(ending)}
-        columns |= {of_mesh(name, mesh): values for name, values in history_indicators(labels, own, shafts).items()}
+    for mesh in table.named:
+        columns |= history_indicators(labels, moments, mesh)
     return {f"{name}__{channel}": values for name, values in columns.items()}
 
 
 def _revolutions(table: RecordTable, rows: np.ndarray) -> np.ndarray:
-    found = table.select(["revolutions_pinion", "revolutions_gear"])
+    found = table.select(revolution_columns(table.named))
     turns = np.stack([column.to_numpy() for column in found.columns], axis=1)[rows]
     whole = [any(not channel for channel, _ in pairs) for pairs in table.texts("problems")]
     return np.where(np.array(whole)[rows, None], 0, turns)

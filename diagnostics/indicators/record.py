@@ -21,7 +21,7 @@ from diagnostics.indicators.mesh_signals import MeshSignals, mesh_signals
 from diagnostics.indicators.registry import taken_of
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
-from diagnostics.records.gear_train import Mesh, gear_train
+from diagnostics.records.gear_train import Gearing, meshes_of, train_of
 from diagnostics.records.record_problems import RecordProblem, clipped_channels, record_problems
 from diagnostics.records.recording import Recording
 from diagnostics.records.sample_bytes import sample_bytes
@@ -29,6 +29,7 @@ from diagnostics.records.usable_records import refused_parts
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, speed_variation_percent
 from diagnostics.signal.shaft_angle import shaft_angle
+from diagnostics.signal.shaft_signals import ShaftSignals
 from diagnostics.signal.spectrum import OrderLines
 from siggen.errors import UsageError
 
@@ -62,7 +63,7 @@ class RecordResult:
     pulses_s : (k,) float64
         Pulse times that the angles come from.
     revolutions : (int, int)
-        Whole revolutions of pinion and gear that were averaged.
+        Whole revolutions of the first mesh's gears that were averaged.
     conditions : dict of str to float
         Speed, speed variation and start angle by the pulses.
     shaft_notes : str
@@ -95,11 +96,11 @@ class RecordValues:
     values : dict of str to float
         Indicators by column with channel.
     revolutions : (int, int)
-        Whole revolutions of pinion and gear.
+        Whole revolutions of the first mesh's gears.
     notes : str
         What is undefined, and why.
     waveforms : dict of str to (orders,) complex64
-        Lines of the pinion's average by channel, see `ChannelResult.waveform`; none below two revolutions.
+        Lines of the first driver's average by channel, see `ChannelResult.waveform`; none below two revolutions.
     """
 
     values: dict[str, float]
@@ -112,10 +113,9 @@ def record_values(
     channels: Mapping[str, np.ndarray],
     tacho_s: np.ndarray,
     fs_hz: float,
-    teeth: tuple[int, int],
+    gears: Gearing,
     settings: IndicatorSettings | None = None,
     quantities: Mapping[str, str] = MappingProxyType({}),
-    train: tuple[Mesh, ...] = (),
 ) -> RecordValues:
     """Return the indicators of a record that is not one of a set: a window, or a piece of a recording.
 
@@ -124,20 +124,18 @@ def record_values(
     channels : mapping of str to (n,) float
         Signals by channel name.
     tacho_s : (k,) float64
-        Pulse times, one per pinion revolution; with fewer than two everything but the raw indicators is undefined.
+        Pulse times, one per turn of the first shaft; with fewer than two all but the raw indicators is undefined.
     fs_hz : float
         Sampling frequency [Hz].
-    teeth : (int, int)
-        Teeth of pinion and gear.
+    gears : GearTrain or (int, int)
+        The gearbox with its teeth, or the teeth of one pair.
     settings : IndicatorSettings, optional
         Default: `IndicatorSettings()`.
     quantities : mapping of str to str
         What channels hold that hold no acceleration.
-    train : tuple of Mesh
-        All meshes of the gearbox; empty: one, of these teeth.
     """
     signals = {name: _float64(signal) for name, signal in channels.items()}
-    meshes = mesh_signals(signals, tacho_s, fs_hz, train or (Mesh("", teeth),), settings or IndicatorSettings())
+    meshes = mesh_signals(signals, tacho_s, fs_hz, meshes_of(train_of(gears)), settings or IndicatorSettings())
     values = {
         f"{name}__{channel}": value
         for channel in signals
@@ -147,12 +145,12 @@ def record_values(
     turns, waveforms = revolutions(meshes[0]), {}
     if turns[0] >= FEWEST_AUDIT_TURNS:
         first = meshes[0].channels
-        waveforms = {name: _waveform(own.shaft(own.shafts[0].name).average, teeth[0]) for name, own in first.items()}
+        waveforms = {name: _waveform(own.shaft(own.shafts[0].name)) for name, own in first.items()}
     return RecordValues(values, turns, shaft_notes(meshes), waveforms)
 
 
 def revolutions(mesh: MeshSignals) -> tuple[int, int]:
-    """Return the whole revolutions of pinion and gear, of a planetary set those of sun and ring against its carrier."""
+    """Return the whole revolutions of the gears of a mesh, of sun and ring against their carrier."""
     return mesh.shafts[0].revolutions, mesh.shafts[-1].revolutions
 
 
@@ -188,7 +186,7 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
     channels = {name: ChannelResult({}, conditions=channel_conditions(s)) for name, s in record.channels.items()}
     turns, notes = (0, 0), ""
     if usable:
-        meshes = mesh_signals(usable, pulses, record.fs_hz, gear_train(record.labels), chosen)
+        meshes = mesh_signals(usable, pulses, record.fs_hz, meshes_of(record.train), chosen)
         turns, notes = revolutions(meshes[0]), shaft_notes(meshes)
         for name in usable:
             taken = taken_of(record.quantities.get(name, RECORDED.word))
@@ -200,7 +198,7 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
 def _mesh_pulses(
     channels: Mapping[str, np.ndarray], record: Recording, speed_range_hz: tuple[float, float]
 ) -> np.ndarray:
-    angle = shaft_angle(channels, record.fs_hz, _teeth(record), speed_range_hz)
+    angle = shaft_angle(channels, record.fs_hz, record.teeth, speed_range_hz)
     if not angle.given:
         raise UsageError(f"{angle.speed_hz:.4g} Hz, {angle.words}")
     return angle.pulses_s
@@ -226,7 +224,7 @@ def _channel_result(
     return ChannelResult(
         values,
         moments,
-        _waveform(signals.shaft(signals.shafts[0].name).average, teeth[0]),
+        _waveform(signals.shaft(signals.shafts[0].name)),
         noise_sketch(signals.signal, signals.fs_hz, signals.steps, teeth, grid),
         conditions,
     )
@@ -239,16 +237,12 @@ def _levels(signals: ChannelSignals, grid: AngleGrid, pulses: np.ndarray) -> dic
     return record_levels(turns, lines, teeth, signals.fs_hz)
 
 
-def _waveform(average: np.ndarray, teeth: int) -> np.ndarray:
+def _waveform(first: ShaftSignals) -> np.ndarray:
     """Return complex lines of an averaged revolution up to the 20th mesh harmonic and its first sidebands."""
     from scipy import fft
 
-    spectrum = 2.0 * fft.rfft(average) / average.size
-    return np.asarray(spectrum[: WAVEFORM_HARMONICS * teeth + 2].astype(np.complex64))
-
-
-def _teeth(record: Recording) -> tuple[int, int]:
-    return int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"])
+    spectrum = 2.0 * fft.rfft(first.average) / first.average.size
+    return np.asarray(spectrum[: WAVEFORM_HARMONICS * first.shaft.teeth + 2].astype(np.complex64))
 
 
 def _float64(values: np.ndarray) -> np.ndarray:
@@ -267,7 +261,7 @@ def channel_conditions(signal: np.ndarray) -> dict[str, float]:
 
 
 def _pulse_conditions(pulses: np.ndarray) -> dict[str, float]:
-    """Return mean speed [Hz], its slow variation [%], and the pinion's angle at the first sample [revolutions]."""
+    """Return mean speed [Hz], its slow variation [%], and the first shaft's angle at the first sample [turns]."""
     span = float(pulses[-1] - pulses[0]) if pulses.size > 1 else 0.0
     if not span > 0.0:
         return dict.fromkeys(("pulses_per_s", "speed_variation_percent", "start_turn"), math.nan)

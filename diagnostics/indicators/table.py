@@ -30,13 +30,13 @@ from diagnostics.base.beside import beside
 from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.own_indicator import OwnIndicator, all_own, own_columns
 from diagnostics.indicators.record import RecordResult, record_result
-from diagnostics.indicators.registry import check_quantity, columns
+from diagnostics.indicators.registry import IndicatorColumn, check_quantity, columns, indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.channel_quantities import RECORDED
-from diagnostics.records.gear_train import PAIR, GearNames
+from diagnostics.records.gear_train import PAIR, GearNames, in_column
 from diagnostics.records.record_problems import RecordProblem
-from diagnostics.records.recording import LABEL_NAMES, Recording, gear_names, recordings
+from diagnostics.records.recording import Recording, label_names, names_of, pair_teeth, recordings
 from diagnostics.records.sample_bytes import BYTES
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
@@ -157,11 +157,17 @@ class RecordTable:
         What channels hold.
     named : GearNames
         What columns are called after.
+    label_names : tuple of str
+        Columns that go along.
+    teeth : (str, str)
+        Those with the teeth of the first and the last gear of the first mesh.
     """
 
     source: pa.Table | Path
     settings: IndicatorSettings
     channels: tuple[str, ...]
+    label_names: tuple[str, ...]
+    teeth: tuple[str, str]
     own: dict[str, np.ndarray] = field(default_factory=dict)
     own_problems: tuple[RecordProblem, ...] = ()
     note: str = ""
@@ -176,7 +182,12 @@ class RecordTable:
 
     def labels(self) -> dict[str, np.ndarray]:
         """Return the label columns, (records,) each."""
-        return {name: np.asarray(column.to_pylist()) for name, column in _named(self.select(LABEL_NAMES)).items()}
+        return {name: np.asarray(column.to_pylist()) for name, column in _named(self.select(self.label_names)).items()}
+
+    @property
+    def columns(self) -> dict[str, IndicatorColumn]:
+        """What its columns hold, without the channel's name."""
+        return indicator_columns(self.settings, self.named)
 
     def values(self, names: Sequence[str]) -> np.ndarray:
         """Return the named columns as numbers, (records, columns), the user's among them; NaN where undefined.
@@ -187,7 +198,7 @@ class RecordTable:
             If an indicator is not taken of what its channel holds.
         """
         for name in names:
-            check_quantity(name, self.quantities)
+            check_quantity(name, self.columns, self.quantities)
         table = _named(self.select([name for name in names if name not in self.own]))
         found = [self.own[name] if name in self.own else _numbers(table[name]) for name in names]
         return np.stack(found, axis=1) if found else np.empty((self.rows, 0))
@@ -226,6 +237,12 @@ class RecordTable:
         return (*per_channel, *self.own)
 
 
+def revolution_columns(named: GearNames) -> tuple[str, str]:
+    """Return the columns with the revolutions of the first and the last gear of the first mesh that were averaged."""
+    gears = named[0].gears
+    return f"revolutions_{in_column(gears[0])}", f"revolutions_{in_column(gears[-1])}"
+
+
 def _named(table: pa.Table) -> dict[str, pa.ChunkedArray]:
     return dict(zip(table.column_names, table.columns, strict=True))
 
@@ -262,7 +279,7 @@ def record_table(
     DatasetError
         If the set holds no records.
     UsageError
-        If two indicators have one name.
+        If two indicators have one name, or one has the name of a column.
     """
     chosen, mine = settings or IndicatorSettings(), all_own(own)
     channels = tuple(channel.name for channel in dataset.channels)
@@ -274,7 +291,10 @@ def record_table(
         source = _computed(dataset, chosen, channels, workers, advance)
         note = keep_table(source, files[-1]) if files and files[-1] is not None else ""
     held = {channel.name: channel.quantity for channel in dataset.channels}
-    table = RecordTable(source, chosen, channels, note=note, quantities=held, named=gear_names(dataset))
+    labels, teeth, named = label_names(dataset), pair_teeth(dataset), names_of(dataset)
+    table = RecordTable(source, chosen, channels, labels, teeth, note=note, quantities=held, named=named)
+    if taken := sorted({one.name for one in mine} & table.columns.keys()):
+        raise UsageError(f"indicators: {', '.join(taken)}: names of columns that the set has already; choose others")
     pulses = [np.asarray(row.values, np.float64) for row in table.select(["pulses_s"]).column("pulses_s")]
     refused = table.texts("refused")
     found, problems = own_columns(dataset, mine, pulses, refused, workers=workers, advance=advance if kept else None)
@@ -288,7 +308,7 @@ def _computed(
     if not results:
         raise DatasetError(f"{dataset.path}: no records to take indicators of; received splits {list(dataset.splits)}")
     held = {channel.name: channel.quantity for channel in dataset.channels}
-    return _as_table(results, settings, {name: held[name] for name in channels}, gear_names(dataset))
+    return _as_table(results, settings, {name: held[name] for name in channels}, dataset)
 
 
 def _results(
@@ -306,12 +326,12 @@ def _record_result(settings: IndicatorSettings, record: Recording) -> RecordResu
 
 
 def _as_table(
-    results: list[RecordResult], settings: IndicatorSettings, held: Mapping[str, str], named: GearNames
+    results: list[RecordResult], settings: IndicatorSettings, held: Mapping[str, str], dataset: Dataset
 ) -> pa.Table:
-    found: dict[str, Any] = {name: [result.labels[name] for result in results] for name in LABEL_NAMES}
+    named, labels = names_of(dataset), label_names(dataset)
+    found: dict[str, Any] = {name: [result.labels[name] for result in results] for name in labels}
+    found |= {name: [result.revolutions[k] for result in results] for k, name in enumerate(revolution_columns(named))}
     found |= {
-        "revolutions_pinion": [result.revolutions[0] for result in results],
-        "revolutions_gear": [result.revolutions[1] for result in results],
         "notes": [result.shaft_notes for result in results],
         "problems": [json.dumps([(p.channel, p.text) for p in result.problems]) for result in results],
         "refused": [json.dumps(result.refused) for result in results],

@@ -15,16 +15,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.records.gear_train import in_column
 from diagnostics.records.record_classes import STATE, check_kind, set_classes
 from siggen.dataset.reading import Dataset, RowGroup
 from siggen.errors import DatasetError, UsageError
 
-TEETH = {"tooth_pinion": "faulty_teeth_pinion", "tooth_gear": "faulty_teeth_gear"}
-"""Lowest index of the damaged teeth, -1 where there is none."""
-
 OUTLINE = "outline_mm"
 ANGLES = ("start_angle_rad", "tooth_0_entry_sample")
-OWN = (*TEETH, OUTLINE, *ANGLES)
 
 FEWEST_REVOLUTIONS = 8
 """Fewer resolve no sidebands and show a once-per-revolution event too seldom."""
@@ -43,8 +40,8 @@ def record_labels(dataset: Dataset, split: str, names: Sequence[str]) -> dict[st
         Its split.
     names : sequence of str
         Numbers among the set's labels (`speed_hz`, `torque_nm`, `damaged_area_share` ...) as float64 or int64;
-        `tooth_pinion`, `tooth_gear`: lowest index of the damaged teeth, -1 for none; `outline_mm`: the box round all
-        damage of that tooth, (4,): from and to across the face, from and to in height [mm], NaN without damage.
+        `tooth_GEAR` (`tooth_pinion` ...): lowest index of the damaged teeth, -1 for none; `outline_mm`: the box round
+        all damage of that tooth, (4,): from and to across the face, from and to in height [mm], NaN without damage.
 
     Raises
     ------
@@ -55,14 +52,15 @@ def record_labels(dataset: Dataset, split: str, names: Sequence[str]) -> dict[st
 
 
 def _label(dataset: Dataset, split: str, name: str) -> np.ndarray:
-    if name in TEETH:
-        return _lowest_teeth(dataset, split, TEETH[name])
+    teeth = {f"tooth_{in_column(gear)}": column for gear, column in dataset.columns_of("faulty_teeth").items()}
+    if name in teeth:
+        return _lowest_teeth(dataset, split, teeth[name])
     if name == OUTLINE:
         return _outlines(dataset, split)
     schema = dataset.labels(split).schema
     numbers = [field.name for field in schema if pa.types.is_integer(field.type) or pa.types.is_floating(field.type)]
     if name not in numbers:
-        raise UsageError(f"labels: received {name!r}; allowed are {', '.join((*OWN, *numbers))}")
+        raise UsageError(f"labels: received {name!r}; allowed are {', '.join((*teeth, OUTLINE, *ANGLES, *numbers))}")
     kind = np.int64 if pa.types.is_integer(schema.field(name).type) else np.float64
     column = dataset.labels(split, [name]).column(name)
     return np.asarray(column.to_numpy(zero_copy_only=False)).astype(kind)
@@ -74,13 +72,15 @@ def _lowest_teeth(dataset: Dataset, split: str, column: str) -> np.ndarray:
 
 
 def _outlines(dataset: Dataset, split: str) -> np.ndarray:
-    """Return the box round all damage of the lowest damaged tooth, the pinion's first, (records, 4) float64."""
+    """Return the box round all damage of the lowest damaged tooth, by the order of gears, (records, 4) float64."""
     place = {number: k for k, number in enumerate(dataset.labels(split, ["record_id"]).column("record_id").to_pylist())}
-    pinion, gear = (_lowest_teeth(dataset, split, column) for column in TEETH.values())
+    lowest = [
+        (gear, _lowest_teeth(dataset, split, column)) for gear, column in dataset.columns_of("faulty_teeth").items()
+    ]
     found = np.tile([np.inf, -np.inf, np.inf, -np.inf], (len(place), 1))
     for row in dataset.damage(split).to_pylist():
         k = place[row["record_id"]]
-        tooth = ("pinion", int(pinion[k])) if pinion[k] >= 0 else ("gear", int(gear[k]))
+        tooth = next(((gear, int(teeth[k])) for gear, teeth in lowest if teeth[k] >= 0), ("", -1))
         if (row["gear"], row["tooth"]) == tooth:
             face, height = row["semi_axis_face_mm"], row["semi_axis_profile_mm"]
             box = (row["face_mm"] - face, row["face_mm"] + face, row["height_mm"] - height, row["height_mm"] + height)
@@ -92,7 +92,7 @@ def _outlines(dataset: Dataset, split: str) -> np.ndarray:
 def window_angles(
     pulses: np.ndarray, turn: int, start: int, fs_hz: float, samples_per_revolution: int | None
 ) -> tuple[float, float]:
-    """Return the pinion's angle at a window's first sample, 0 to 2 pi, and the sample at which tooth 0 next enters.
+    """Return the first shaft's angle at a window's start, 0 to 2 pi, and the sample at which tooth 0 next enters.
 
     Parameters
     ----------
@@ -243,8 +243,8 @@ def window_index(dataset: Dataset, split: str, settings: StreamSettings, further
             record += 1
     if not rows:
         raise DatasetError(
-            f"{dataset.path}: no record of split {split!r} holds {settings.revolutions} whole pinion revolutions. "
-            "Use longer records (`duration_s`) or a higher speed."
+            f"{dataset.path}: no record of split {split!r} holds {settings.revolutions} whole turns of the first "
+            "shaft. Use longer records (`duration_s`) or a higher speed."
         )
     found = np.array(rows, dtype=np.int64).T
     of_windows = {name: column for name, column in zip(ANGLES, np.array(angles).T, strict=True) if name in further}

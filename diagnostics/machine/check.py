@@ -16,13 +16,14 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnostics.indicators.registry import column_title
 from diagnostics.machine.comparable import FEWEST_OVER_SPEED, LOAD_RATIO, SPEED_RATIO, comparable
 from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import CHECKS, Machine
-from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.prediction.record_pieces import RecordPieces
 from diagnostics.recordings.level_alike import MOST_DB
 from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.records.gear_train import gear_names
 from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
 from diagnostics.training.referenced import log_values
 from siggen.errors import UsageError
@@ -92,6 +93,7 @@ class Moved:
     channel: str
     factor: float
     spreads: float
+    title: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,7 +261,8 @@ def _moved(machine: Machine, logs: np.ndarray, score: ChangeScore) -> tuple[Move
     for k in np.argsort(-np.nan_to_num(np.abs(score.deviation)))[:LISTED]:
         indicator, _, channel = machine.names[k].partition("__")
         factor = float(np.exp(logs[k] - score.mean[k]))
-        found.append(Moved(indicator, channel, factor, float(score.deviation[k])))
+        title = column_title(indicator, gear_names(machine.train))
+        found.append(Moved(indicator, channel, factor, float(score.deviation[k]), title))
     return tuple(found)
 
 
@@ -270,4 +273,4 @@ def _reason(score: ChangeScore, moved: tuple[Moved, ...], used: int) -> str:
 
 
 def _names(moved: tuple[Moved, ...]) -> str:
-    return "; ".join(f"{indicator_title(m.indicator)} on {m.channel} x {m.factor:.3g}" for m in moved[:3])
+    return "; ".join(f"{m.title} on {m.channel} x {m.factor:.3g}" for m in moved[:3])

@@ -19,14 +19,14 @@ from diagnostics.recordings.level_alike import check_levels_alike
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
 from diagnostics.recordings.taken import RecordingFacts, TakenRecording, take
-from diagnostics.records.gear_train import Mesh
 from diagnostics.statistics.change_score import FEWEST
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError, counted
 
 LONGEST_PIECE_S = 10.0
 LEAST_SLIP, MOST_SLIP = 0.001, 0.05
 FEWEST_TURNS = 10
-"""Of the pinion in a piece; averages of fewer leave the noise in."""
+"""Of the first shaft in a piece; averages of fewer leave the noise in."""
 
 Source = tuple[Path, int | None]
 """A file, and which row of it."""
@@ -36,7 +36,7 @@ def healthy_state(
     sources: Sequence[Source],
     channels: tuple[str, ...],
     facts: RecordingFacts,
-    train: tuple[Mesh, ...],
+    train: GearTrain,
     speed_range_hz: tuple[float, float] | None,
     loads: Sequence[float] | None,
     false_alarms: float,
@@ -78,7 +78,7 @@ def healthy_state(
     for k, recording in read.items():
         try:
             pieces, pulses = pieces_of(recording, fs_hz, train, speed_range_hz, duration_s)
-            check_mesh_lines(recording, pulses, train[0])
+            check_mesh_lines(recording, pulses, train)
             rows[k] = pieces, pulses
         except UsageError as error:
             refused[called[k]] = str(error)
@@ -139,11 +139,11 @@ def thin_sentence(machine: Machine) -> str:
 def pieces_of(
     recording: MeasuredRecording,
     fs_hz: float,
-    train: tuple[Mesh, ...],
+    train: GearTrain,
     speed_range_hz: tuple[float, float] | None,
     duration_s: float,
 ) -> tuple[RecordPieces, ShaftPulses]:
-    """Return the indicators of a recording's pieces at the machine's rate, and the pulses of its pinion.
+    """Return the indicators of a recording's pieces at the machine's rate, and the pulses of its first shaft.
 
     Raises
     ------
@@ -155,15 +155,14 @@ def pieces_of(
             f"{recording.path}: sampled at {recording.fs_hz:g} Hz, the references at {fs_hz:g} Hz; allowed: no less"
         )
     slow = at_rate(recording, fs_hz)
-    first = train[0]
-    pulses = shaft_pulses(slow, first.teeth, speed_range_hz, first.planets)
+    pulses = shaft_pulses(slow, train, speed_range_hz)
     if duration_s * pulses.speed_hz < FEWEST_TURNS:
         raise UsageError(
             f"{recording.path}: pieces of {duration_s:.3g} s, as long as the shortest recording, hold "
             f"{duration_s * pulses.speed_hz:.1f} turns of the first shaft; allowed: at least {FEWEST_TURNS}. Use "
             "longer recordings, or leave the shortest out"
         )
-    return record_pieces(slow, pulses, first.teeth, duration_s, IndicatorSettings(), train=train), pulses
+    return record_pieces(slow, pulses, train, duration_s, IndicatorSettings()), pulses
 
 
 def _slips(speed_hz: np.ndarray) -> np.ndarray:

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from diagnostics.recordings.taken import RecordingFacts
-from diagnostics.records.gear_train import Mesh, gear_train, train_labels
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
 FACTS, TABLE, CHECKS = "machine.json", "references.parquet", "checks.jsonl"
-VERSION = 4
+VERSION = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,13 +24,13 @@ class Machine:
 
     Attributes
     ----------
-    train : tuple of Mesh
-        Its meshes, the first one first.
+    train : GearTrain
+        What turns in it.
     channels : tuple of str
     facts : RecordingFacts
         How its files are read.
     speed_range_hz : (float, float) or None
-        Where the pinion's speed is searched without a tacho.
+        Where the first shaft's speed is searched without a tacho.
     fs_hz, duration_s : float
         Rate and length of the pieces whose indicators are compared.
     false_alarms : float
@@ -42,7 +42,7 @@ class Machine:
     references : tuple of str
         Names of the recordings.
     speed_hz, load : (references,) float64
-        Pinion speed, and load as the user gave it (NaN where he did not).
+        Speed of the first shaft, and load as the user gave it (NaN where he did not).
     load_from_slip : bool
         Whether differences of speed tell the load.
     doubts : tuple of str
@@ -51,7 +51,7 @@ class Machine:
         Where the angles of the references come from, and how sure they are.
     """
 
-    train: tuple[Mesh, ...]
+    train: GearTrain
     channels: tuple[str, ...]
     facts: RecordingFacts
     speed_range_hz: tuple[float, float] | None
@@ -88,7 +88,7 @@ def save_machine(machine: Machine, folder: Path) -> None:
     facts = asdict(machine.facts) | {"columns": dict(machine.facts.columns)}
     content = {
         "version": VERSION,
-        "gears": train_labels(machine.train),
+        "drivetrain": asdict(machine.train),
         "channels": machine.channels,
         "facts": facts,
         "speed_range_hz": machine.speed_range_hz,
@@ -112,6 +112,7 @@ def load_machine(folder: Path) -> Machine:
     """
     import pyarrow as pa
     from pyarrow import parquet
+    from pydantic import TypeAdapter
 
     try:
         content: dict[str, Any] = json.loads((folder / FACTS).read_text(encoding="utf-8"))
@@ -127,7 +128,7 @@ def load_machine(folder: Path) -> Machine:
     names = tuple(name for name in table.column_names if name not in {"recording", "speed_hz", "load"})
     span = content["speed_range_hz"]
     return Machine(
-        gear_train(content["gears"]),
+        TypeAdapter(GearTrain).validate_python(content["drivetrain"]),
         tuple(content["channels"]),
         RecordingFacts(**content["facts"]),
         None if span is None else (span[0], span[1]),

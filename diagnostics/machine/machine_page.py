@@ -10,7 +10,6 @@ import numpy as np
 
 from diagnostics.machine.check import CHANGED, UNCHANGED, Check, PastCheck, rate_sentence
 from diagnostics.machine.machine import Machine
-from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.page import html
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, new_figure, png_bytes, styled
 from diagnostics.page.wording import capitalised
@@ -93,7 +92,7 @@ def _used(machine: Machine, checks: Sequence[Check]) -> int:
 def _moved_table(check: Check) -> str:
     rows = [
         [
-            html.Cell(indicator_title(moved.indicator), moved.indicator),
+            html.Cell(moved.title, moved.indicator),
             html.Cell(moved.channel),
             html.Cell(f"{moved.factor:.3g}", value=moved.factor),
             html.Cell(f"{moved.spreads:+.1f}", value=moved.spreads),

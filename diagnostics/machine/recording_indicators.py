@@ -17,7 +17,7 @@ import numpy as np
 
 import siggen
 from diagnostics.indicators.record import record_values
-from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page import html
 from diagnostics.page.angle_figure import ANGLE_CAPTION, angle_figure
@@ -27,9 +27,10 @@ from diagnostics.recordings.level_alike import level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
 from diagnostics.recordings.taken import RecordingFacts
-from diagnostics.records.gear_train import Mesh, names_of
+from diagnostics.records.gear_train import Gearing, Mesh, gear_names, meshes_of, train_of
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resample_to_angle
 from diagnostics.signal.spectrum import OrderLines, noise_density, order_lines
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
@@ -78,7 +79,7 @@ def _overview(found: Sequence[RecordingIndicators]) -> str:
         ]
         for one in found
     ]
-    head = ("Recording", "Pinion [Hz]", "Mesh [Hz]", "Turns averaged", "Angle from", "Length [s]")
+    head = ("Recording", "First shaft [Hz]", "Mesh [Hz]", "Turns averaged", "Angle from", "Length [s]")
     return html.table(head, rows, caption="What was found in each recording.", text=True)
 
 
@@ -89,11 +90,12 @@ def _section(found: RecordingIndicators) -> list[str]:
             blocks.append(html.figure_block(png_bytes(angle_figure(angle)), ANGLE_CAPTION))
     for channel in found.recording.channels if found.pulses.outcome == "angle" else ():
         with styled():
-            png = png_bytes(sideband_figure(found.recording, found.train[0], found.pulses, channel))
+            png = png_bytes(sideband_figure(found.recording, found.mesh, found.pulses, channel))
         blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     names, values = indicator_matrix(found)
+    known = indicator_columns(IndicatorSettings(), gear_names(found.train))
     rows = [
-        [html.Cell(indicator_title(name), small=name), *(_cell(value) for value in of_channels)]
+        [html.Cell(known[name].title, small=name), *(_cell(value) for value in of_channels)]
         for name, of_channels in zip(names, values.tolist(), strict=True)
     ]
     head = ("Indicator", *found.recording.channels)
@@ -110,14 +112,15 @@ def _cell(value: float) -> html.Cell:
     return html.Cell("undefined" if np.isnan(value) else f"{value:.4g}", value=value)
 
 
-def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, mesh: Mesh) -> None:
-    """Check that one of the first five lines of a mesh stands 10 dB over the noise on a channel.
+def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, train: GearTrain) -> None:
+    """Check that one of the first five lines of the first mesh stands 10 dB over the noise on a channel.
 
     Raises
     ------
     UsageError
         If none does; names the file.
     """
+    mesh = meshes_of(train)[0]
     teeth, orders = mesh.teeth, _mesh_orders(mesh)
     grid = angle_grid(pulses.times_s, SAMPLES_PER_TOOTH * teeth[0])
     duration_s = float(pulses.times_s[-1] - pulses.times_s[0])
@@ -125,7 +128,7 @@ def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, mesh: Me
         turns = resample_to_angle(signal, recording.fs_hz, grid).reshape(grid.revolutions, -1)
         if strongest_mesh_line(order_lines(turns, duration_s), teeth, orders) > OVER_NOISE:
             return
-    shaft = names_of([mesh]).shafts[0]
+    shaft = mesh.names.gears[0]
     raise UsageError(
         f"{recording.path}: no mesh line of {teeth[0]} teeth stands out at {pulses.speed_hz:.4g} Hz of the {shaft}; "
         f"are these the teeth (--teeth, --config), is the tacho on the {shaft}, and was the machine loaded?"
@@ -161,35 +164,38 @@ class RecordingIndicators:
         The file's, with the row of a Parquet file.
     recording : MeasuredRecording
         In m/s².
-    teeth : (int, int)
+    train : GearTrain
+        The gearbox.
     pulses : ShaftPulses
-        Of the pinion, from the tacho or from the mesh lines; none where these gave the speed only.
+        Of the first shaft, from the tacho or from the mesh lines; none where these gave the speed only.
     values : dict of str to float
         Indicators of the whole recording, `<indicator>__<channel>`; NaN where undefined.
     revolutions : (int, int)
-        Whole revolutions of pinion and gear that were averaged.
+        Whole revolutions of the first mesh's gears that were averaged.
     note : str
         What is undefined, and why.
     doubts : tuple of str
         What speaks against unit, teeth or tacho.
-    train : tuple of Mesh
-        All meshes of the gearbox.
     """
 
     name: str
     recording: MeasuredRecording
-    teeth: tuple[int, int]
+    train: GearTrain
     pulses: ShaftPulses
     values: dict[str, float]
     revolutions: tuple[int, int]
     note: str
     doubts: tuple[str, ...] = ()
-    train: tuple[Mesh, ...] = ()
+
+    @property
+    def mesh(self) -> Mesh:
+        """The first mesh."""
+        return meshes_of(self.train)[0]
 
     @property
     def mesh_hz(self) -> float:
         """Mean mesh frequency."""
-        return self.pulses.pulses_hz * self.teeth[0]
+        return self.pulses.pulses_hz * self.mesh.teeth[0]
 
     def channel(self, name: str) -> dict[str, float]:
         """Return the indicators of one channel by their own names."""
@@ -199,10 +205,9 @@ class RecordingIndicators:
 
 def recording_indicators(
     path: Path,
-    teeth: tuple[int, int],
+    gears: Gearing,
     facts: RecordingFacts | None = None,
     speed_range_hz: tuple[float, float] | None = None,
-    train: tuple[Mesh, ...] = (),
 ) -> RecordingIndicators:
     """Return all indicators of a recording that is no record of a set.
 
@@ -210,14 +215,12 @@ def recording_indicators(
     ----------
     path : Path
         Of a format in `diagnostics.recordings.file_columns.READERS`.
-    teeth : (int, int)
-        Of pinion and gear.
+    gears : GearTrain or (int, int)
+        The gearbox with its teeth, or the teeth of one pair.
     facts : RecordingFacts, optional
         Rate, columns, unit, tacho. Channels are its columns, or else all columns of numbers but time and tacho.
     speed_range_hz : (float, float), optional
-        Where to look for the pinion's speed; needed without a tacho.
-    train : tuple of Mesh
-        All meshes of the gearbox; empty: one, of these teeth.
+        Where to look for the first shaft's speed; needed without a tacho.
 
     Raises
     ------
@@ -226,38 +229,25 @@ def recording_indicators(
     """
     facts = facts or RecordingFacts()
     recording = read_recording(path, None, facts)
-    meshes = train or (Mesh("", teeth),)
-    pulses = shaft_pulses(recording, teeth, speed_range_hz, meshes[0].planets, speed_alone=True)
-    settings = IndicatorSettings()
-    found = record_values(recording.channels, pulses.times_s, recording.fs_hz, teeth, settings, train=meshes)
+    train = train_of(gears)
+    pulses = shaft_pulses(recording, train, speed_range_hz, speed_alone=True)
+    found = record_values(recording.channels, pulses.times_s, recording.fs_hz, train)
     name = path.name if facts.row is None else f"{path.name}:{facts.row}"
-    doubts = _doubts(recording, pulses, meshes[0])
+    doubts = _doubts(recording, pulses, train)
     if pulses.outcome != "angle":
         angled = f"{pulses.origin}. Only indicators of the raw signal are given"
-        return RecordingIndicators(name, recording, teeth, pulses, found.values, (0, 0), angled, doubts, meshes)
-    return RecordingIndicators(
-        name, recording, teeth, pulses, found.values, found.revolutions, found.notes, doubts, meshes
-    )
+        return RecordingIndicators(name, recording, train, pulses, found.values, (0, 0), angled, doubts)
+    return RecordingIndicators(name, recording, train, pulses, found.values, found.revolutions, found.notes, doubts)
 
 
-def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, mesh: Mesh) -> tuple[str, ...]:
+def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, train: GearTrain) -> tuple[str, ...]:
     if pulses.outcome != "angle":
         return tuple(text for text in (level_note(recording),) if text)
     try:
-        check_mesh_lines(recording, pulses, mesh)
+        check_mesh_lines(recording, pulses, train)
     except UsageError as error:
         return tuple(text for text in (level_note(recording), str(error)) if text)
     return tuple(text for text in (level_note(recording),) if text)
-
-
-def indicator_title(name: str) -> str:
-    """Return an indicator's name for readers, with its column's parts where it has several."""
-    known = [entry for key, entry in BY_NAME.items() if name == key or name.startswith(f"{key}_")]
-    if not known:
-        return name
-    entry = max(known, key=lambda one: len(one.name))
-    rest = name.removeprefix(entry.name).strip("_").replace("_", " ")
-    return f"{entry.title}, {rest}" if rest else entry.title
 
 
 def indicator_matrix(found: RecordingIndicators) -> tuple[tuple[str, ...], np.ndarray]:

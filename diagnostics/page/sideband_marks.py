@@ -1,4 +1,4 @@
-"""Where spectra are marked around a mesh line: sidebands of the shafts, as offsets in orders of the pinion or sun."""
+"""Where spectra are marked around a mesh line: sidebands of the shafts, as offsets in orders of the first gear."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR
-from diagnostics.records.gear_train import Mesh
-from diagnostics.records.planetary_members import Planets
+from diagnostics.records.gear_train import Mesh, Planets
 
 PASSING = "passing planets"
 MARKS = (("v", PINION_COLOUR), ("|", GEAR_COLOUR), ("^", "#6a1b6e"))
@@ -20,12 +19,16 @@ ABOVE = 1.9
 
 def order_words(mesh: Mesh) -> str:
     """Return what the orders of a mesh's spectra count."""
-    return "pinion orders" if mesh.planets is None else "orders of the sun against the carrier"
+    return f"{mesh.names.gears[0]} orders" if mesh.planets is None else f"orders of {_against_carrier(mesh)}"
 
 
 def turn_words(mesh: Mesh) -> str:
     """Return what passes between two pulses."""
-    return "pinion revolution" if mesh.planets is None else "turn of the sun against the carrier"
+    return f"{mesh.names.gears[0]} revolution" if mesh.planets is None else f"turn of {_against_carrier(mesh)}"
+
+
+def _against_carrier(mesh: Mesh) -> str:
+    return f"the {mesh.names.gears[0]} against the carrier"
 
 
 def sideband_places(mesh: Mesh, harmonic: int, count: int) -> dict[str, np.ndarray]:
@@ -36,11 +39,12 @@ def sideband_places(mesh: Mesh, harmonic: int, count: int) -> dict[str, np.ndarr
     """
     steps = np.array([k for k in range(-count, count + 1) if k], dtype=np.float64)
     if mesh.planets is None:
-        return {"pinion": steps, "gear": steps * (mesh.teeth[0] / mesh.teeth[1])}
-    return _of_planets(mesh.planets, harmonic, steps)
+        driver, driven = mesh.names.gears
+        return {driver: steps, driven: steps * (mesh.teeth[0] / mesh.teeth[1])}
+    return _of_planets(mesh.names.gears, mesh.planets, harmonic, steps)
 
 
-def _of_planets(planets: Planets, harmonic: int, steps: np.ndarray) -> dict[str, np.ndarray]:
+def _of_planets(gears: tuple[str, ...], planets: Planets, harmonic: int, steps: np.ndarray) -> dict[str, np.ndarray]:
     sun, planet, ring = planets.teeth
     step, carrier = planets.passing, sun / ring
     own = harmonic * sun + steps
@@ -49,7 +53,7 @@ def _of_planets(planets: Planets, harmonic: int, steps: np.ndarray) -> dict[str,
     paths = np.arange(-(len(planets.places) // 2), len(planets.places) // 2 + 1)
     one = (steps[:, None] * (ring / planet) + paths).ravel()
     passing = nearest + step * np.concatenate([[0.0], steps])
-    return {"sun": steps + through * carrier, PASSING: passing * carrier, "planet": one * carrier}
+    return {gears[0]: steps + through * carrier, PASSING: passing * carrier, gears[1]: one * carrier}
 
 
 def draw_marks(

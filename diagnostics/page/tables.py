@@ -129,7 +129,7 @@ def calibration_table(training: Training) -> str:
 def _details(name: str, details: dict[str, Any]) -> str:
     if "strength" in details:
         return f"{counted(details['features'], 'feature')}, {strength_text(name, details['strength'])}"
-    return f"averaged revolutions of the pinion, epoch {details['best_epoch']} of {details['epochs']}"
+    return f"averaged revolutions, epoch {details['best_epoch']} of {details['epochs']}"
 
 
 def strength_text(name: str, strength: float) -> str:

@@ -86,7 +86,8 @@ def known_reasons(
     found += _rate_reasons(facts, recording)
     low, high = facts.speed_range_hz
     if not 0.99 * low <= pulses.speed_hz <= 1.01 * high:  # a mean speed scatters by less than one per cent
-        found.append(f"the pinion speed is {pulses.speed_hz:.4g} Hz, training covers {low:.4g} to {high:.4g} Hz")
+        speed = f"the {facts.first_gear} speed is {pulses.speed_hz:.4g} Hz"
+        found.append(f"{speed}, training covers {low:.4g} to {high:.4g} Hz")
     return found + _length_reasons(facts, pieces)
 
 
@@ -118,7 +119,8 @@ def _rate_reasons(facts: ModelFacts, recording: MeasuredRecording) -> list[str]:
 def _length_reasons(facts: ModelFacts, pieces: RecordPieces) -> list[str]:
     if pieces.revolutions >= facts.fewest_revolutions - 1:  # one may be lost to where the piece begins
         return []
-    return [f"averages cover {pieces.revolutions} pinion revolutions, in training {facts.fewest_revolutions} or more"]
+    covered = f"averages cover {pieces.revolutions} {facts.first_gear} revolutions"
+    return [f"{covered}, in training {facts.fewest_revolutions} or more"]
 
 
 def reference_reasons(
@@ -129,7 +131,7 @@ def reference_reasons(
     allowed = 1.01 * (facts.reference_speed_ratio or 1.0)  # a mean speed scatters by less than one per cent
     if max(pulses.speed_hz / speed_hz, speed_hz / pulses.speed_hz) > allowed:
         found.append(
-            f"the pinion speed is {pulses.speed_hz:.4g} Hz, the recording has {speed_hz:.4g} Hz, in training they "
-            f"differed by a factor of {facts.reference_speed_ratio or 1.0:.3g} at most"
+            f"the {facts.first_gear} speed is {pulses.speed_hz:.4g} Hz, the recording has {speed_hz:.4g} Hz, in "
+            f"training they differed by a factor of {facts.reference_speed_ratio or 1.0:.3g} at most"
         )
     return [f"reference {reference.path.name}: {text}" for text in found]

@@ -17,8 +17,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from diagnostics.indicators.table import revolution_columns
 from diagnostics.prediction.training_distance import TrainingDistance, distance_facts, distance_from_facts
+from diagnostics.records.gear_train import GearNames, MeshNames
 from diagnostics.records.record_classes import check_kind
+from diagnostics.records.recording import names_of, pair_teeth
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.splits import TEST, SpecimenSplit
 from siggen.dataset.reading import Dataset
@@ -34,8 +37,8 @@ MODEL_FILES = (
 
 DIGEST = "digest"
 
-FORMAT = "siggen-diagnostics model 6"
-"""The only one that is read: earlier ones do not say what their classes are."""
+FORMAT = "siggen-diagnostics model 7"
+"""The only one that is read: earlier ones do not say what gears and meshes are called."""
 
 
 def sealed_text(content: Mapping[str, Any]) -> str:
@@ -108,12 +111,14 @@ class ModelFacts:
         Unit of each channel.
     fs_hz, duration_s : float
         Rate and length of the training records.
+    names : tuple of MeshNames
+        Meshes and gears.
     teeth : tuple of (int, int)
         Pairs of teeth that occur in training and validation, as all that follows: models never saw test records.
     speed_range_hz, torque_range_nm : (float, float)
         Operating points.
     fewest_revolutions : int
-        Pinion revolutions of the shortest average.
+        Turns of the first shaft of the shortest average.
     reference_speed_ratio : float or None
         Largest ratio, 1 or more, of the speeds of a record and of one it refers to; None without the
         healthy-referenced variant.
@@ -128,11 +133,17 @@ class ModelFacts:
     units: tuple[str, ...]
     fs_hz: float
     duration_s: float
+    names: GearNames
     teeth: tuple[tuple[int, int], ...]
     speed_range_hz: tuple[float, float]
     torque_range_nm: tuple[float, float]
     fewest_revolutions: int
     reference_speed_ratio: float | None = None
+
+    @property
+    def first_gear(self) -> str:
+        """What drives the first mesh."""
+        return self.names[0].gears[0]
 
 
 def manifest_digest(manifest: dict[str, Any]) -> str:
@@ -161,7 +172,7 @@ def model_facts(dataset: Dataset, table: pa.Table, split: SpecimenSplit) -> Mode
     def limits(name: str) -> tuple[float, float]:
         return float(column(name).min()), float(column(name).max())
 
-    pairs = {(int(a), int(b)) for a, b in zip(column("teeth_pinion"), column("teeth_gear"), strict=True)}
+    pairs = {(int(a), int(b)) for a, b in zip(*map(column, pair_teeth(dataset)), strict=True)}
     return ModelFacts(
         set_name=str(dataset.manifest.get("name", dataset.path.name)),
         identity=str(dataset.manifest["identity"]),
@@ -173,9 +184,10 @@ def model_facts(dataset: Dataset, table: pa.Table, split: SpecimenSplit) -> Mode
         fs_hz=float(dataset.fs_hz),
         duration_s=float(dataset.duration_s),
         teeth=tuple(sorted(pairs)),
+        names=names_of(dataset),
         speed_range_hz=limits("speed_hz"),
         torque_range_nm=limits("torque_nm"),
-        fewest_revolutions=int(column("revolutions_pinion").min()),
+        fewest_revolutions=int(column(revolution_columns(names_of(dataset))[0]).min()),
     )
 
 
@@ -211,6 +223,7 @@ def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDist
         content = _content(path)
         facts = {name: _tuples(value) for name, value in content["facts"].items()}
         check_kind(facts["class_kind"])
+        facts["names"] = tuple(MeshNames(*mesh) for mesh in facts["names"])
         referenced = content["referenced_distance"]
         return (
             ModelFacts(**facts),
@@ -265,8 +278,8 @@ def _content(path: Path) -> dict[str, Any]:
     found = content.get("format")
     if found != FORMAT:
         raise UsageError(
-            f"{path}: received format {found!r}; allowed is {FORMAT!r}, which says whether classes are states or "
-            f"faults. Train again: siggen-diagnostics report SET --models-only --out {path.parent}"
+            f"{path}: received format {found!r}; allowed is {FORMAT!r}, which says what gears and meshes are "
+            f"called. Train again: siggen-diagnostics report SET --models-only --out {path.parent}"
         )
     return unsealed_text(text)
 

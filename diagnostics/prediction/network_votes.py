@@ -23,9 +23,9 @@ def network_probabilities(
     facts : NetworkFacts
         Channels that it takes.
     waveforms : sequence of mapping of str to (orders,) complex64
-        Lines of the pinion's average of every piece by channel.
+        Lines of the first driver's average of every piece by channel.
     teeth : int
-        Teeth of the pinion; any number will do.
+        Teeth of the first driver; any number will do.
     """
     lines = padded_lines([[piece[name] for name in facts.channels] for piece in waveforms])
     records = AveragedRecords(lines, np.full(len(lines), teeth), facts.channels)

@@ -20,10 +20,12 @@ from diagnostics.prediction.released_model import ReleasedModel, check_one_mesh
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.records.gear_train import pair_train
 from diagnostics.records.record_classes import STATE
 from diagnostics.statistics.calibration import tempered
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.referenced import log_mean, log_values
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
 
 NO_REFERENCE = (
@@ -90,7 +92,7 @@ class Prediction:
     recording : MeasuredRecording
         At the rate of the model.
     pulses : ShaftPulses
-    teeth : (int, int)
+    train : GearTrain
     classes : tuple of str
         In the order of the probabilities; `class_kind` says what they are: `state` or `fault`.
     votes : tuple of Vote
@@ -111,7 +113,7 @@ class Prediction:
 
     recording: MeasuredRecording
     pulses: ShaftPulses
-    teeth: tuple[int, int]
+    train: GearTrain
     classes: tuple[str, ...]
     votes: tuple[Vote, ...]
     nearness: Nearness
@@ -152,9 +154,9 @@ def predict_recording(
     recording : MeasuredRecording
         With the model's channels.
     teeth : (int, int)
-        Teeth of pinion and gear.
+        Teeth of both gears.
     speed_range_hz : (float, float), optional
-        Where to look for the pinion's speed without a tacho.
+        Where to look for the first shaft's speed without a tacho.
     references : tuple of MeasuredRecording
         Recordings of the same machine in healthy state; with them the healthy-referenced variant answers.
 
@@ -172,10 +174,11 @@ def predict_recording(
         _check_references(recording, references)
     facts, source = model.facts, recording
     recording = at_rate(recording, facts.fs_hz)
-    pulses = shaft_pulses(recording, teeth, speed_range_hz)
-    pieces = record_pieces(recording, pulses, teeth, facts.duration_s, model.settings, model.own)
+    train = pair_train(teeth, facts.names[0])
+    pulses = shaft_pulses(recording, train, speed_range_hz)
+    pieces = record_pieces(recording, pulses, train, facts.duration_s, model.settings, model.own)
     plain = _nearness(model.distance, log_values(pieces.columns(model.distance.features)), pulses.speed_hz)
-    healthy = tuple(_reference(model, reference, teeth, speed_range_hz) for reference in references)
+    healthy = tuple(_reference(model, reference, train, speed_range_hz) for reference in references)
     if healthy:
         answer, nearness = _referenced_vote(model, pieces, healthy, pulses.speed_hz)
     else:
@@ -189,7 +192,7 @@ def predict_recording(
     return Prediction(
         recording=recording,
         pulses=pulses,
-        teeth=teeth,
+        train=train,
         classes=facts.classes,
         votes=() if unreferenced else votes,
         nearness=nearness,
@@ -242,12 +245,12 @@ def _check_references(recording: MeasuredRecording, references: tuple[MeasuredRe
 def _reference(
     model: ReleasedModel,
     reference: MeasuredRecording,
-    teeth: tuple[int, int],
+    train: GearTrain,
     speed_range_hz: tuple[float, float] | None,
 ) -> Reference:
     slow = at_rate(reference, model.facts.fs_hz)
-    pulses = shaft_pulses(slow, teeth, speed_range_hz)
-    return reference, pulses, record_pieces(slow, pulses, teeth, model.facts.duration_s, model.settings, model.own)
+    pulses = shaft_pulses(slow, train, speed_range_hz)
+    return reference, pulses, record_pieces(slow, pulses, train, model.facts.duration_s, model.settings, model.own)
 
 
 def _vote(name: str, probability: np.ndarray, temperature: float) -> Vote:
@@ -299,7 +302,7 @@ def _network_vote(
 
     network, facts = model.network
     if not all(pieces.waveforms):
-        return (), ("the 1-D network takes averages of two pinion revolutions or more: left out",)
+        return (), ("the 1-D network takes averages of two turns of the first shaft or more: left out",)
     return (_vote(NETWORK, network_probabilities(network, facts, pieces.waveforms, teeth[0]), facts.temperature),), ()
 
 

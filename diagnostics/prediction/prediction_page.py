@@ -27,7 +27,7 @@ from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
-from diagnostics.records.gear_train import Mesh
+from diagnostics.records.gear_train import Mesh, first_teeth, meshes_of
 from diagnostics.records.record_classes import STATE
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
 from siggen.file_writing import write_file
@@ -74,11 +74,11 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
         },
         "distance": _nearness(found.nearness),
         "distance_without_reference": _nearness(found.plain_nearness),
-        "pinion_speed_hz": found.pulses.speed_hz,
-        "mesh_frequency_hz": found.pulses.speed_hz * found.teeth[0],
+        "speed_hz": found.pulses.speed_hz,
+        "mesh_frequency_hz": found.pulses.speed_hz * first_teeth(found.train)[0],
         "speed_from": found.pulses.origin,
         **found.pulses.facts,
-        "teeth": list(found.teeth),
+        "teeth": list(first_teeth(found.train)),
         "pieces": len(found.pieces.values),
         "revolutions_per_piece": found.pieces.revolutions,
         "notes": list(found.notes),
@@ -127,14 +127,15 @@ def prediction_headline(found: Prediction) -> str:
 
 def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
     """Return what the terminal and the page show first: label and text."""
-    pulses = found.pulses
+    pulses, mesh = found.pulses, meshes_of(found.train)[0]
+    shaft, mesh_hz = mesh.names.gears[0], pulses.speed_hz * mesh.teeth[0]
     pieces = counted(len(found.pieces.values), "piece")
     own = found.own_state
     rows = [
         *([] if own is None else [("against its own healthy state", f"{own.verdict} ({own.reason})")]),
         ("answer" if found.class_kind == STATE else f"answer ({found.class_kind})", found.state),
-        ("pinion speed", f"{pulses.speed_hz:.4f} Hz ({pulses.origin}); mesh {pulses.speed_hz * found.teeth[0]:.2f} Hz"),
-        ("averaged", f"{pieces} of {found.pieces.revolutions} or more pinion revolutions"),
+        (f"{shaft} speed", f"{pulses.speed_hz:.4f} Hz ({pulses.origin}); mesh {mesh_hz:.2f} Hz"),
+        ("averaged", f"{pieces} of {found.pieces.revolutions} or more {shaft} revolutions"),
     ]
     for vote in found.votes:
         rows.append((f"by {vote.classifier}", _vote_text(found, vote)))
@@ -174,13 +175,14 @@ def prediction_summary(found: Prediction) -> list[str]:
     if (own := found.own_state) is not None:
         told = "nothing can be said" if own.score is None else f"the machine is {own.verdict}"
         answer = f"Against its own healthy recordings {told} ({own.reason}). {answer}"
+    shaft = meshes_of(found.train)[0].names.gears[0]
     withheld = f" Do not use these {found.class_kind}s." if found.reasons else ""
     return [
         answer,
         *([f"The most probable {found.class_kind} is {joined(votes)}.{withheld}"] if votes else []),
         f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
-        f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
-        f"revolutions. The pinion speed is {speed} ({found.pulses.origin}).",
+        f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more {shaft} "
+        f"revolutions. The {shaft} speed is {speed} ({found.pulses.origin}).",
     ]
 
 
@@ -253,7 +255,7 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
     blocks = []
     for channel in found.recording.channels:
         with styled():
-            png = png_bytes(sideband_figure(found.recording, Mesh("", found.teeth), found.pulses, channel))
+            png = png_bytes(sideband_figure(found.recording, meshes_of(found.train)[0], found.pulses, channel))
         write_file(folder / f"sidebands_{channel}.png", png)
         blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     page = folder / "prediction.html"

@@ -20,8 +20,8 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
-from diagnostics.records.gear_train import Mesh
 from diagnostics.records.recording import Recording
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
 
 LARGEST_DENOMINATOR = 1000
@@ -42,7 +42,7 @@ class RecordPieces:
     notes : tuple of str
         What is undefined and why.
     waveforms : tuple of dict of str to (orders,) complex64
-        Lines of the pinion's average of every piece by channel, see `diagnostics.indicators.record.RecordValues`.
+        Lines of the first driver's average of every piece by channel, see `diagnostics.indicators.record.RecordValues`.
     """
 
     values: np.ndarray
@@ -84,11 +84,10 @@ def at_rate(recording: MeasuredRecording, fs_hz: float) -> MeasuredRecording:
 def record_pieces(
     recording: MeasuredRecording,
     pulses: ShaftPulses,
-    teeth: tuple[int, int],
+    train: GearTrain,
     duration_s: float,
     settings: IndicatorSettings,
     own: Sequence[OwnIndicator] = (),
-    train: tuple[Mesh, ...] = (),
 ) -> RecordPieces:
     """Return features of consecutive pieces, between lines too; a rest shorter than a piece counts if there is no more.
 
@@ -97,17 +96,15 @@ def record_pieces(
     recording : MeasuredRecording
         At the rate of the model.
     pulses : ShaftPulses
-        Of the pinion.
-    teeth : (int, int)
-        Teeth of pinion and gear.
+        Of the first shaft.
+    train : GearTrain
+        The gearbox, with teeth.
     duration_s : float
         Length of a piece.
     settings : IndicatorSettings
         How features are taken.
     own : sequence of OwnIndicator
         The user's indicators.
-    train : tuple of Mesh
-        All meshes of the gearbox; empty: one, of these teeth.
 
     Raises
     ------
@@ -116,15 +113,14 @@ def record_pieces(
     """
     samples = next(iter(recording.channels.values())).size
     length = min(round(duration_s * recording.fs_hz), samples)
-    labels: dict[str, float] = {"record_id": 0, "teeth_pinion": teeth[0], "teeth_gear": teeth[1]}
-    labels |= {"speed_hz": pulses.speed_hz, "torque_nm": math.nan}
+    labels: dict[str, float] = {"record_id": 0, "speed_hz": pulses.speed_hz, "torque_nm": math.nan}
     found, values = [], []
     for start in range(0, samples - length + 1, length):
         begin_s, end_s = start / recording.fs_hz, (start + length - 1) / recording.fs_hz
         times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
         piece = {name: signal[start : start + length] for name, signal in recording.channels.items()}
-        found.append(record_values(piece, times_s, recording.fs_hz, teeth, settings, train=train))
-        mine = _own_values(own, Recording(labels, piece, times_s, recording.fs_hz))
+        found.append(record_values(piece, times_s, recording.fs_hz, train, settings))
+        mine = _own_values(own, Recording(labels, piece, times_s, recording.fs_hz, train))
         values.append(found[-1].values | mine | floor_features(piece, recording.fs_hz))
     names = tuple(values[0])
     table = np.array([[piece[name] for name in names] for piece in values])

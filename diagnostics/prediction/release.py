@@ -14,8 +14,9 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
+from diagnostics.records.gear_train import GearNames
 from diagnostics.records.record_classes import set_classes
-from diagnostics.records.recording import recordings
+from diagnostics.records.recording import names_of, recordings
 from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
 from diagnostics.statistics.scores import Scores
 from diagnostics.training.baselines import FeatureClassifier
@@ -80,8 +81,8 @@ def release(training: Training, table: pa.Table, dataset: Dataset) -> Release:
     split = training.split
     matrix = feature_matrix(table, set_classes(dataset, split.kind))
     whole = with_floor_features(matrix, dataset)
-    distance, distances = _distance(log_values(whole.values), whole, split)
-    referenced, note = _referenced(training, whole)
+    distance, distances = _distance(log_values(whole.values), whole, split, names_of(dataset))
+    referenced, note = _referenced(training, whole, names_of(dataset))
     seen = {name: column[~split.test] for name, column in matrix.labels.items()}
     ratio = reference_speed_ratio(seen) if referenced else None
     return Release(
@@ -111,11 +112,13 @@ def with_floor_features(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatri
     }
     names = tuple(next(iter(found.values())))
     floors = np.array([[found[number][name] for name in names] for number in matrix.labels["record_id"].tolist()])
-    return FeatureMatrix(np.hstack([matrix.values, floors]), (*matrix.names, *names), matrix.labels)
+    return replace(matrix, values=np.hstack([matrix.values, floors]), names=(*matrix.names, *names))
 
 
-def _distance(logs: np.ndarray, matrix: FeatureMatrix, split: SpecimenSplit) -> tuple[TrainingDistance, np.ndarray]:
-    parts = distance_features(matrix.names)
+def _distance(
+    logs: np.ndarray, matrix: FeatureMatrix, split: SpecimenSplit, gears: GearNames
+) -> tuple[TrainingDistance, np.ndarray]:
+    parts = distance_features(matrix.names, gears)
     chosen = logs[:, [matrix.names.index(name) for part in parts for name in part]]
     speed_hz = matrix.labels["speed_hz"].astype(np.float64)
     found = calibrated_distance(chosen, speed_hz, parts, split, matrix.labels["specimen_id"])
@@ -126,7 +129,7 @@ def _share_outside(distances: np.ndarray, found: TrainingDistance) -> float:
     return float(np.mean(distances > found.threshold))
 
 
-def _referenced(training: Training, whole: FeatureMatrix) -> tuple[ReferencedVariant | None, str]:
+def _referenced(training: Training, whole: FeatureMatrix, gears: GearNames) -> tuple[ReferencedVariant | None, str]:
     """Return the variant with a distance on the features of `whole`, or why there is none."""
     found = training.referenced
     if found is None:
@@ -136,7 +139,7 @@ def _referenced(training: Training, whole: FeatureMatrix) -> tuple[ReferencedVar
         )
     (judged,) = [own for own in found.judged if own.name == REFERENCED_NAME]
     apart = healthy_referenced(whole)[0]
-    distance, distances = _distance(apart.values, apart, found.split)
+    distance, distances = _distance(apart.values, apart, found.split, gears)
     return ReferencedVariant(found.classifier, distance, judged.scores, distances, found.split.test), ""
 
 

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import missing_packages
 from diagnostics.base.reading_process import read_apart
-from diagnostics.indicators.indicator import base_name, without_mesh
 from diagnostics.indicators.own_indicator import OwnIndicator, all_own
-from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.model_facts import (
     FACTS_FILE,
@@ -27,7 +26,6 @@ from diagnostics.prediction.model_facts import (
 )
 from diagnostics.prediction.release import REFERENCED
 from diagnostics.prediction.training_distance import TrainingDistance
-from diagnostics.records.planetary_members import MEMBERS
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import NETWORK
@@ -218,7 +216,7 @@ def written_model(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedM
         network=network,
         accuracy=accuracy,
         note=note,
-        own=() if own is None else _own_of(folder, classifiers, own),
+        own=() if own is None else _own_of(folder, facts, classifiers, own),
     )
 
 
@@ -230,17 +228,18 @@ def check_one_mesh(model: ReleasedModel) -> None:
     UsageError
         Naming the further meshes, or the members of planetary sets.
     """
-    taken = [one.features for one in (model.classifier, model.referenced_classifier) if one is not None]
-    if meshes := sorted({mesh for names in taken for name in names if (mesh := without_mesh(name)[1])}):
-        what = "planetary sets with" if set(meshes) <= set(MEMBERS) else "gearboxes with the further meshes"
+    first, *behind = model.facts.names
+    if first.planetary or behind:
+        parts = first.gears if first.planetary else tuple(mesh.name for mesh in behind)
+        what = "planetary sets with" if first.planetary else "gearboxes with the further meshes"
         raise UsageError(
-            f"{model.folder}: was trained on {what} {', '.join(meshes)}; a recording is judged by the teeth of one "
+            f"{model.folder}: was trained on {what} {', '.join(parts)}; a recording is judged by the teeth of one "
             "pair. Train on a set of pairs, or judge sets like that with `siggen-diagnostics report SET --test OTHER`."
         )
 
 
 def _own_of(
-    folder: Path, classifiers: Mapping[str, FeatureClassifier], own: Sequence[OwnIndicator]
+    folder: Path, facts: ModelFacts, classifiers: Mapping[str, FeatureClassifier], own: Sequence[OwnIndicator]
 ) -> tuple[OwnIndicator, ...]:
     """Return the user's indicators that the classifiers take.
 
@@ -250,7 +249,7 @@ def _own_of(
         If one was not given: a model holds the names of functions, never their code.
     """
     taken = {name.split("__")[0] for classifier in classifiers.values() for name in classifier.features}
-    wanted = sorted(name for name in taken if base_name(name) not in BY_NAME)
+    wanted = sorted(taken - indicator_columns(load_settings(folder), facts.names).keys())
     given = {indicator.name: indicator for indicator in all_own(own)}
     if missing := [name for name in wanted if name not in given]:
         raise UsageError(

@@ -15,10 +15,13 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import table_settings
-from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.registry import indicator_columns
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
 from diagnostics.prediction.release import Release, release, save_release
+from diagnostics.records.gear_train import GearNames
 from diagnostics.records.record_classes import STATE
+from diagnostics.records.recording import names_of
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
 from diagnostics.statistics.evaluation import Interval
@@ -49,7 +52,7 @@ def model_card(training: Training, dataset: Dataset) -> str:
         "## Data",
         _data(training, dataset),
         "## Files",
-        _files(training),
+        _files(training, names_of(dataset)),
         "## Scores on test specimens",
         _scores(training),
         _probabilities(training),
@@ -95,18 +98,18 @@ def _faults_text(dataset: Dataset) -> str:
     return f"faults: {held or 'none'}"
 
 
-def _files(training: Training) -> str:
+def _files(training: Training, gears: GearNames) -> str:
     lines = [
         f"* `classifier.skops`: logistic regression with ridge penalty on {len(training.classifier.features)} columns. "
         f"{len(training.classifier.logarithms)} columns are logarithms. Undefined values are replaced by medians, then "
         f"columns are standardised. C = {training.classifier.strength:g} was chosen by cross-validation over training "
         "and validation gearboxes. `feature_names.json` lists the columns in order, with the settings of their "
-        f"definitions. Columns: {markdown(columns_text(training.classifier.features))}",
+        f"definitions. Columns: {markdown(columns_text(training.classifier.features, gears))}",
     ]
     if training.network:
         count = len(training.network.channels)
         lines += [
-            "* `cnn.safetensors`: convolutional 1-D network round the pinion's synchronous average. The input is "
+            "* `cnn.safetensors`: convolutional 1-D network round the first driver's synchronous average. The input is "
             f"(batch, {3 * count}, 1024): one averaged revolution of every channel, then their residuals (without "
             "shaft orders 0 to 2 and mesh harmonics), then these whitened, all with orders up to 511. The function "
             "`diagnostics.training.average_rows.average_rows` makes it. `predict` uses the network.",
@@ -116,9 +119,10 @@ def _files(training: Training) -> str:
     return "\n".join(lines)
 
 
-def columns_text(columns: Sequence[str]) -> str:
+def columns_text(columns: Sequence[str], gears: GearNames) -> str:
     """Return the indicators that columns are of, with how many columns each has."""
-    counts = Counter(base_name(name) for name in columns)
+    known, names = indicator_columns(IndicatorSettings(), gears), (column.partition("__")[0] for column in columns)
+    counts = Counter(known[name].entry.name if name in known else name for name in names)
     return ", ".join(f"{name} ({count})" for name, count in counts.items())
 
 
@@ -186,7 +190,7 @@ def release_card(found: Release) -> str:
         "## Use on recordings",
         f"* digest of the set's manifest (the manifest holds the hash of every file): `{facts.manifest_digest}`",
         f"* `model.json`: channels ({markdown(', '.join(facts.channels))}), {facts.fs_hz:g} Hz, {teeth} teeth, "
-        f"{facts.speed_range_hz[0]:.3g} to {facts.speed_range_hz[1]:.3g} Hz pinion speed, "
+        f"{facts.speed_range_hz[0]:.3g} to {facts.speed_range_hz[1]:.3g} Hz speed of the first shaft, "
         f"{facts.torque_range_nm[0]:.3g} to {facts.torque_range_nm[1]:.3g} N m in training and validation. Outside "
         "these ranges no answer is given. Torque is not checked, because a recording does not contain it.",
         f"* distance to the training records: the threshold is {distance.threshold:.2f}, from "

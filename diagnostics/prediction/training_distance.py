@@ -33,8 +33,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.indicators.indicator import or_members
+from diagnostics.indicators.registry import first_columns
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.noise_floor import DIFFERENCE, FLOOR, ROUGHNESS
+from diagnostics.records.gear_train import GearNames
 from diagnostics.training.splits import SpecimenSplit
 
 SMALLEST_SPREAD = 0.02
@@ -47,9 +49,9 @@ CLIPPED_AT = 6.0
 ARRAYS = ("centre", "slope", "spread", "precision")
 
 LINES = (
-    *("rms", "average_rms_pinion", "energy_ratio_pinion"),
-    *(f"mesh_amplitude_h{h}" for h in range(1, 6)),
-    "sideband_ratio_pinion_h1_k3",
+    *(("rms", {}), ("average_rms", {}), ("energy_ratio", {})),
+    *(("mesh_amplitude", {"harmonic": h}) for h in range(1, 6)),
+    ("sideband_ratio", {"harmonic": 1}),
 )
 SHARE_INSIDE = 0.97
 """Share of records of new gearboxes that counts as like training: 5 % of false alarms are allowed, of which two fifths
@@ -74,7 +76,7 @@ class DistancePart:
     features : tuple of str
         Columns it takes.
     centre, slope : (k,) float64
-        Log features at a pinion speed of 1 Hz on the fitted line, and their slope over log speed.
+        Log features at a speed of 1 Hz on the fitted line, and their slope over log speed.
     spread : (k,) float64
         Median absolute deviation from the line, times 1.4826.
     precision : (k, k) float64
@@ -103,7 +105,7 @@ class DistancePart:
         logs : (n, k) float64
             Log features in the order of `features`.
         speed_hz : (n,) float64
-            Mean speed of the pinion.
+            Mean speed of the first shaft.
         """
         standard = np.clip(self.standardised(logs, speed_hz), -CLIPPED_AT, CLIPPED_AT)
         square = np.einsum("ij,jk,ik->i", standard, self.precision, standard) / logs.shape[1]
@@ -219,7 +221,7 @@ class TrainingDistance:
         logs : (n, k) float64
             Log features in the order of `features`.
         speed_hz : (n,) float64
-            Mean speed of the pinion.
+            Mean speed of the first shaft.
         """
         return np.asarray(np.max([part.distance(own, speed_hz) for part, own in self._columns(logs)], axis=0))
 
@@ -239,10 +241,10 @@ class TrainingDistance:
         return list(zip(self.parts, np.split(logs, ends[:-1], axis=1), strict=True))
 
 
-def distance_features(names: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+def distance_features(names: tuple[str, ...], gears: GearNames) -> tuple[tuple[str, ...], ...]:
     """Return the columns that each part of the distance takes, of all channels."""
-    known = {name.split("__")[0] for name in names}
-    of_lines = {column for line in LINES for column in or_members(line, known)}
+    settings = IndicatorSettings()
+    of_lines = {column for line, fields in LINES for column in first_columns(settings, gears, line, **fields)}
     lines = tuple(name for name in names if name.split("__")[0] in of_lines)
     floor = tuple(name for name in names if name.startswith(FLOOR))
     roughness = tuple(name for name in names if name in (ROUGHNESS, DIFFERENCE))
@@ -263,7 +265,7 @@ def calibrated_distance(
     logs : (records, k) float64
         Log features of all records, part by part.
     speed_hz : (records,) float64
-        Their mean pinion speed.
+        Their mean speed of the first shaft.
     parts : tuple of tuple of str
         Names of the features of each part.
     split : SpecimenSplit

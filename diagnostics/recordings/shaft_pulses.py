@@ -1,4 +1,4 @@
-"""Pulse times of the pinion of a recording: from its tacho, or from the mesh lines of all channels."""
+"""Pulse times of the first shaft of a recording: from its tacho, or from the mesh lines of all channels."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnostics.recordings.measured_recording import MeasuredRecording
-from diagnostics.records.planetary_members import Planets
+from diagnostics.records.gear_train import Planets, meshes_of
 from diagnostics.signal.order_domain import geared_pulses
 from diagnostics.signal.shaft_angle import ShaftAngle, shaft_angle
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
 
 FEWEST_REVOLUTIONS = 2
@@ -17,7 +18,7 @@ FEWEST_REVOLUTIONS = 2
 
 @dataclass(frozen=True, slots=True)
 class ShaftPulses:
-    """Pulse times (k,) [s] of the pinion, and where they come from.
+    """Pulse times (k,) [s] of the first shaft, and where they come from.
 
     `angle`: what the mesh lines gave; None with a tacho. Where they gave the speed only, there are no pulses. Of a
     planetary set pulses are those of the sun against its carrier, `turns` per turn of its shaft.
@@ -46,7 +47,7 @@ class ShaftPulses:
 
     @property
     def speed_hz(self) -> float:
-        """Mean speed of the shaft of the pinion or of the sun."""
+        """Mean speed of the first shaft."""
         return self.pulses_hz / self.turns
 
     @property
@@ -63,24 +64,21 @@ class ShaftPulses:
 
 def shaft_pulses(
     recording: MeasuredRecording,
-    teeth: tuple[int, int],
+    train: GearTrain,
     speed_range_hz: tuple[float, float] | None,
-    planets: Planets | None = None,
     *,
     speed_alone: bool = False,
 ) -> ShaftPulses:
-    """Return the pulses of the pinion.
+    """Return the pulses of the first shaft.
 
     Parameters
     ----------
     recording : MeasuredRecording
         With or without a tacho.
-    teeth : (int, int)
-        Teeth of pinion and gear.
+    train : GearTrain
+        The gearbox, with teeth; of a planetary set with the tacho on the shaft of the sun.
     speed_range_hz : (float, float), optional
-        Slowest and fastest pinion speed; needed without a tacho or a column of speed, and not left.
-    planets : Planets, optional
-        Of a planetary set, whose tacho is on the shaft of the sun.
+        Slowest and fastest speed of the first shaft; needed without a tacho or a column of speed, and not left.
     speed_alone : bool
         Whether a speed without an angle is an answer too.
 
@@ -89,8 +87,10 @@ def shaft_pulses(
     UsageError
         Naming the file: no tacho and no range, no angle that is certain, or fewer than two revolutions of either shaft.
     """
-    if planets is not None:
-        found = _against_carrier(recording, planets)
+    mesh = meshes_of(train)[0]
+    teeth = mesh.teeth
+    if mesh.planets is not None:
+        found = _against_carrier(recording, mesh.planets)
     elif recording.tacho_s is not None:
         found = ShaftPulses(recording.tacho_s)
         low, high = speed_range_hz or (0.0, np.inf)

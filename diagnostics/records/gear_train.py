@@ -1,21 +1,69 @@
-"""Which meshes a gearbox has, from the labels of its records: names, teeth, and how often their shafts turn.
+"""What records of a gearbox are averaged by: its meshes, their gears by the user's names, and how often shafts turn.
 
-The first mesh has no name and the labels `teeth_pinion` and `teeth_gear`. A further mesh NAME has `teeth_NAME_pinion`
-and `teeth_NAME_gear`. Its pinion stands on the shaft of the gear in front. The columns stand in the order of power.
+All follows from the drivetrain that a set stores, or that options of a command give for recordings. Against its carrier
+the sun of a planetary set whose ring is held turns once in as many mesh periods as it has teeth, and so do planets and
+ring. So sun and ring are to each other as the gears of a pair, with pulses that come once per turn of the sun against
+the carrier: records of such a set are read in that way.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple, TypeAlias
 
-from diagnostics.records.planetary_members import MEMBERS, Planets, planet_labels, planets_of
+import numpy as np
 
-TEETH = re.compile(r"teeth_(?P<mesh>[a-z][a-z0-9_]*)_pinion")
-GEARS = ("pinion", "gear")
+from siggen.columns.drivetrain import GearTrain, TrainGear, TrainMesh, TrainShaft
+
+EVEN = 1e-9
+"""Turns by which evenly spaced planets may stand off: rounding of degrees."""
+
+
+@dataclass(frozen=True, slots=True)
+class Planets:
+    """Teeth of sun, planets and ring, and where the planets stand on the carrier, in turns of it."""
+
+    teeth: tuple[int, int, int]
+    places: tuple[float, ...]
+
+    @property
+    def ring(self) -> int:
+        """Teeth of the ring."""
+        return self.teeth[2]
+
+    @property
+    def passing(self) -> int:
+        """Orders of the carrier that equal planets leave a sensor are multiples of this: 1 at unequal distances."""
+        gaps = np.diff(np.sort(np.asarray(self.places)), append=min(self.places) + 1.0)
+        return len(self.places) if float(np.ptp(gaps)) < EVEN else 1
+
+    @property
+    def sun_turns(self) -> Fraction:
+        """Turns of the sun against the carrier per turn of its shaft. Source: Willis."""
+        sun, _, ring = self.teeth
+        return Fraction(ring, sun + ring)
+
+
+class MeshNames(NamedTuple):
+    """What indicators of a mesh are called after: its name, empty of a plain pair, and its gears in order of power.
+
+    A planetary set counts as one mesh of sun, planet and ring, whose averages are against the carrier.
+    """
+
+    name: str
+    gears: tuple[str, ...]
+    planetary: bool = False
+
+
+GearNames: TypeAlias = tuple[MeshNames, ...]
+"""Of all meshes, the first one first."""
+Gearing: TypeAlias = GearTrain | tuple[int, int]
+"""A drivetrain with teeth, or the teeth of one pair."""
+PAIR: GearNames = (MeshNames("", ("pinion", "gear")),)
+"""Of recordings of which teeth alone are known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,19 +72,18 @@ class Mesh:
 
     Attributes
     ----------
-    name : str
-        Empty for the first one.
+    names : MeshNames
     teeth : (int, int)
-        Of its pinion and its gear.
+        Of its driver and its driven gear; of a planetary set of sun and ring.
     turns : Fraction
-        Of its pinion per turn of the first pinion.
+        Of its driver per turn of the input.
     before, behind : int
-        Teeth of the other gear on its pinion's and on its gear's shaft; 0 where there is none.
+        Teeth of the other gear on the driver's and on the driven gear's shaft; 0 where there is none.
     planets : Planets, optional
-        Of a planetary set, whose sun and ring are pinion and gear here.
+        Of a planetary set.
     """
 
-    name: str
+    names: MeshNames
     teeth: tuple[int, int]
     turns: Fraction = Fraction(1)
     before: int = 0
@@ -44,76 +91,71 @@ class Mesh:
     planets: Planets | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class GearNames:
-    """What columns of indicators are called after: shafts of the first mesh, and further meshes."""
-
-    shafts: tuple[str, ...] = GEARS
-    meshes: tuple[str, ...] = ()
-
-    @property
-    def is_planetary(self) -> bool:
-        """Whether the shafts are members of a planetary set, which turn against its carrier."""
-        return self.shafts == MEMBERS
+def in_column(gear: str) -> str:
+    """Return what parts of the names of columns call a gear; an idler's flank is MESH.NAME."""
+    return "_".join(gear.split("."))
 
 
-PAIR = GearNames()
+def pair_train(teeth: tuple[int, int], names: MeshNames = PAIR[0]) -> GearTrain:
+    """Return the drivetrain of one pair of gears, each on a shaft of its name."""
+    turns = ((1, 1), Fraction(*teeth).as_integer_ratio())
+    return GearTrain(
+        shafts=tuple(TrainShaft(name=gear, turns=turn) for gear, turn in zip(names.gears, turns, strict=True)),
+        gears=tuple(TrainGear(name=gear, shaft=gear, teeth=z) for gear, z in zip(names.gears, teeth, strict=True)),
+        meshes=(TrainMesh(name=names.name, driver=names.gears[0], driven=names.gears[1], order=(teeth[0], 1)),),
+    )
 
 
-def further_meshes(columns: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of the further meshes by the names of label columns; none for gearboxes with one mesh."""
-    names = tuple(columns)
-    found = (match["mesh"] for name in names if (match := TEETH.fullmatch(name)))
-    return tuple(mesh for mesh in found if f"teeth_{mesh}_gear" in names)
+def train_of(gears: Gearing) -> GearTrain:
+    """Return the drivetrain of what a caller knows: all of it, or the teeth of one pair."""
+    return gears if isinstance(gears, GearTrain) else pair_train(gears)
 
 
-def teeth_columns(meshes: Iterable[str]) -> tuple[str, ...]:
-    """Return the label columns that hold the teeth of further meshes."""
-    return tuple(f"teeth_{mesh}_{gear}" for mesh in meshes for gear in GEARS)
+def with_teeth(train: GearTrain, teeth: Mapping[str, Any]) -> GearTrain:
+    """Return a drivetrain with the teeth of one gearbox, by gear, as they stand in its labels."""
+    return replace(train, gears=tuple(replace(gear, teeth=teeth[gear.name]) for gear in train.gears))
 
 
-def gear_train(labels: Mapping[str, Any]) -> tuple[Mesh, ...]:
-    """Return all meshes of a record's gearbox, the first one first.
+@lru_cache(maxsize=64)
+def gear_names(train: GearTrain) -> GearNames:
+    """Return what indicators of a gearbox are called after."""
+    planet = _planet(train)
+    if planet is None:
+        return tuple(MeshNames(mesh.name, (mesh.driver, mesh.driven)) for mesh in train.meshes)
+    of_sun = next(mesh for mesh in train.meshes if mesh.driven == planet.name)
+    of_ring = next(mesh for mesh in train.meshes if mesh.driver == planet.name)
+    return (MeshNames(of_sun.name, (of_sun.driver, planet.name, of_ring.driven), planetary=True),)
 
-    Parameters
-    ----------
-    labels : mapping of str
-        Of the record, in the order of the set's columns.
-    """
-    if (planets := planets_of(labels)) is not None:
-        return (Mesh("", (planets.teeth[0], planets.ring), planets=planets),)
-    names = ("", *further_meshes(labels))
-    pairs = [_teeth(labels, name) for name in names]
-    turns, found = Fraction(1), []
-    for place, (name, teeth) in enumerate(zip(names, pairs, strict=True)):
-        before = pairs[place - 1][1] if place else 0
-        behind = pairs[place + 1][0] if place + 1 < len(pairs) else 0
-        found.append(Mesh(name, teeth, turns, before, behind))
-        turns *= Fraction(*teeth)
+
+def first_teeth(train: GearTrain) -> tuple[Any, Any]:
+    """Return the teeth of the first and the last gear of the first mesh, as labels have them."""
+    first, *_, last = gear_names(train)[0].gears
+    return train.gear(first).teeth, train.gear(last).teeth
+
+
+@lru_cache(maxsize=1024)
+def meshes_of(train: GearTrain) -> tuple[Mesh, ...]:
+    """Return all meshes of a gearbox whose teeth are known, the first one first."""
+    teeth = {gear.name: int(gear.teeth or 0) for gear in train.gears}
+    names, planet = gear_names(train), _planet(train)
+    if planet is not None:
+        sun, of_planet, ring = (teeth[gear] for gear in names[0].gears)
+        return (Mesh(names[0], (sun, ring), planets=Planets((sun, of_planet, ring), planet.places)),)
+    shaft = {gear.name: gear.shaft for gear in train.gears}
+    turns, found = {shaft[names[0].gears[0]]: Fraction(1)}, []
+    for name in names:
+        driver, driven = name.gears
+        pair = teeth[driver], teeth[driven]
+        own = turns[shaft[driver]]
+        turns[shaft[driven]] = own * Fraction(*pair)
+        before, behind = (
+            next((teeth[other] for other in teeth if shaft[other] == shaft[gear] and other != gear), 0)
+            for gear in name.gears
+        )
+        found.append(Mesh(name, pair, own, before, behind))
     return tuple(found)
 
 
-def names_of(train: Sequence[Mesh]) -> GearNames:
-    """Return what columns of a gearbox's indicators are called after."""
-    shafts = GEARS if train[0].planets is None else MEMBERS
-    return GearNames(shafts, tuple(mesh.name for mesh in train[1:]))
-
-
-def train_labels(train: Sequence[Mesh]) -> dict[str, Any]:
-    """Return the labels that `gear_train` makes meshes of: what a file keeps of them."""
-    first = train[0]
-    if first.planets is not None:
-        return planet_labels(first.planets)
-    found: dict[str, Any] = {}
-    for mesh in train:
-        found |= dict(zip(_columns(mesh.name), mesh.teeth, strict=True))
-    return found
-
-
-def _columns(mesh: str) -> tuple[str, ...]:
-    return teeth_columns([mesh]) if mesh else ("teeth_pinion", "teeth_gear")
-
-
-def _teeth(labels: Mapping[str, Any], mesh: str) -> tuple[int, int]:
-    pinion, gear = _columns(mesh)
-    return int(labels[pinion]), int(labels[gear])
+def _planet(train: GearTrain) -> TrainGear | None:
+    """Return the planets of a planetary set, which stand on pins."""
+    return next((gear for gear in train.gears if gear.places), None)

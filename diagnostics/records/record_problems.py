@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.records.channel_quantities import ANGULAR_SPEED
-from diagnostics.records.planetary_members import AS_PAIR, is_planetary
+from diagnostics.records.gear_train import first_teeth, gear_names
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 
@@ -67,20 +67,21 @@ def whole_record_problem(record: Recording, *, needs_tacho: bool = True, gear_tu
     gear_turns : bool
         Whether the gear has to turn as often as an average needs, not the pinion alone.
     """
-    teeth = [_number(record.labels.get(name)) for name in AS_PAIR]
+    teeth = [_number(count) for count in first_teeth(record.train)]
     if not is_rate(record.fs_hz):
         return f"sampling rate: received {record.fs_hz}; it must be positive. Correct fs_hz in the set's manifest."
     if not all(np.isfinite(z) and z >= 3 and z == round(z) for z in teeth):
         return (
-            f"{', '.join(_named(record))}: received {teeth[0]:g}, {teeth[1]:g}; allowed are whole numbers from 3 on. "
-            "Orders and averages need both: correct the columns."
+            f"teeth of {' and '.join(_ends(record))}: received {teeth[0]:g}, {teeth[1]:g}; allowed are whole numbers "
+            "from 3 on. Orders and averages need both: correct the columns."
         )
     return _pulse_problem(record, teeth[1] / teeth[0] if gear_turns else 1.0) if needs_tacho else ""
 
 
-def _named(record: Recording) -> list[str]:
-    """Return the label columns that hold a record's teeth."""
-    return list(AS_PAIR.values() if is_planetary(record.labels) else AS_PAIR)
+def _ends(record: Recording) -> tuple[str, str]:
+    """Return the first and the last gear of a record's first mesh."""
+    first, *_, last = gear_names(record.train)[0].gears
+    return first, last
 
 
 def _pulse_problem(record: Recording, ratio: float) -> str:
@@ -94,7 +95,8 @@ def _pulse_problem(record: Recording, ratio: float) -> str:
     if min(turns, turns / ratio) >= FEWEST_REVOLUTIONS:
         return ""
     shafts = "averages" if ratio == 1.0 else "averages of both shafts"
-    what = "turns of the sun against the carrier" if is_planetary(record.labels) else "turns of the first shaft"
+    planetary = gear_names(record.train)[0].planetary
+    what = f"turns of the {_ends(record)[0]} against the carrier" if planetary else "turns of the first shaft"
     return (
         f"{turns} whole {what} between pulses; {shafts} over at least {FEWEST_REVOLUTIONS} "
         f"revolutions need {int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, ratio)))}. Use longer records (duration_s) or a "

@@ -10,18 +10,16 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from diagnostics.records.gear_train import PAIR, GearNames, further_meshes, teeth_columns
-from diagnostics.records.planetary_members import AS_PAIR, MEMBERS, as_pair, is_planetary, own_columns, planets_of
+from diagnostics.records.gear_train import GearNames, gear_names, meshes_of, with_teeth
 from diagnostics.signal.order_domain import geared_pulses
+from siggen.columns.drivetrain import GearTrain
 from siggen.dataset.reading import Dataset
 
 LABEL_NAMES = (
     *("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split"),
     *("fault", "severity", "damaged_area_mm2", "damaged_area_share", "mesh_stiffness_loss"),
-    *("teeth_pinion", "teeth_gear", "speed_hz", "torque_nm"),
 )
-"""Columns that go along with the indicators; scalars only, so that they fit a CSV file."""
-
+OPERATING = ("speed_hz", "torque_nm")
 TACHO_NAME = "tacho_s"
 BATCH_ROWS = 16
 
@@ -30,14 +28,38 @@ BATCH_ROWS = 16
 class Recording:
     """One record: labels by column name, signals (n,) float32 by channel name, pulse times (k,) [s].
 
-    `quantities` says what channels hold; those it does not name hold accelerations.
+    `train` has the teeth of its gearbox. `quantities` says what channels hold; those it does not name hold
+    accelerations.
     """
 
     labels: Mapping[str, Any]
     channels: Mapping[str, np.ndarray]
     tacho_s: np.ndarray
     fs_hz: float
+    train: GearTrain
     quantities: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def teeth(self) -> tuple[int, int]:
+        """Of the first mesh."""
+        return meshes_of(self.train)[0].teeth
+
+
+def names_of(dataset: Dataset) -> GearNames:
+    """Return what columns of a set's indicators are called after."""
+    return gear_names(dataset.drivetrain)
+
+
+def pair_teeth(dataset: Dataset) -> tuple[str, str]:
+    """Return the label columns with the teeth of the first and the last gear of a set's first mesh."""
+    first, *_, last = names_of(dataset)[0].gears
+    columns = dataset.columns_of("teeth")
+    return columns[first], columns[last]
+
+
+def label_names(dataset: Dataset) -> tuple[str, ...]:
+    """Return the columns that go along with the indicators; scalars only, so that they fit a CSV file."""
+    return (*LABEL_NAMES, *pair_teeth(dataset), *OPERATING)
 
 
 def recordings(
@@ -54,34 +76,18 @@ def recordings(
     states : sequence of str, optional
         States to read; default all.
     """
-    names = gear_names(dataset)
-    labels = own_columns(LABEL_NAMES) if names.is_planetary else [*LABEL_NAMES, *teeth_columns(names.meshes)]
+    labels = list(dict.fromkeys([*label_names(dataset), *dataset.columns_of("teeth").values()]))
     columns = [*labels, *(channel.column for channel in dataset.channels), TACHO_NAME]
     for split in dataset.splits if splits is None else splits:
         for batch in dataset.records(split=split, columns=columns, batch_rows=BATCH_ROWS):
             yield from _rows(batch if states is None else _in_states(batch, states), dataset, labels)
 
 
-def gear_names(dataset: Dataset) -> GearNames:
-    """Return what columns of a set's indicators are called after: shafts, and meshes behind the first one."""
-    names = dataset.labels().column_names
-    return GearNames(shafts=MEMBERS) if is_planetary(names) else GearNames(PAIR.shafts, further_meshes(names))
-
-
-def pair_teeth(dataset: Dataset) -> tuple[str, str]:
-    """Return the label columns that hold the teeth of a set's pair: pinion and gear, or sun and ring."""
-    planetary = gear_names(dataset).is_planetary
-    pinion, gear = (own if planetary else name for name, own in AS_PAIR.items())
-    return pinion, gear
-
-
-def turned(labels: dict[str, Any], tacho_s: np.ndarray) -> tuple[dict[str, Any], np.ndarray]:
-    """Return labels and pulse times (k,) [s] of a record as those of a pair.
-
-    Of a planetary set the pulses are those of the sun against the carrier; other records stay as they are.
-    """
-    planets = planets_of(labels)
-    return (labels, tacho_s) if planets is None else (as_pair(labels), geared_pulses(tacho_s, planets.sun_turns))
+def one_recording(dataset: Dataset, number: int) -> Recording:
+    """Return the record of a number, with all of its labels."""
+    found = dataset.record(number)
+    signals = {channel.name: found[channel.column] for channel in dataset.channels}
+    return _recording(dataset, found, signals, found[TACHO_NAME])
 
 
 def _in_states(batch: Any, states: Sequence[str]) -> Any:
@@ -96,8 +102,20 @@ def _rows(batch: Any, dataset: Dataset, names: list[str]) -> Iterator[Recording]
         for channel in dataset.channels
     }
     tacho = batch.column(TACHO_NAME)
-    held = {channel.name: channel.quantity for channel in dataset.channels}
     for row in range(batch.num_rows):
         channels = {name: signal[row] for name, signal in signals.items()}
-        own, pulses = turned(labels[row], np.asarray(tacho[row].values))
-        yield Recording(own, channels, pulses, dataset.fs_hz, held)
+        yield _recording(dataset, labels[row], channels, tacho[row].values)
+
+
+def _recording(
+    dataset: Dataset, labels: Mapping[str, Any], channels: Mapping[str, np.ndarray], tacho_s: Any
+) -> Recording:
+    """Return a record; of a planetary set with the pulses of the sun against the carrier."""
+    teeth = {gear: labels[column] for gear, column in dataset.columns_of("teeth").items()}
+    train, pulses = with_teeth(dataset.drivetrain, teeth), np.asarray(tacho_s)
+    if names_of(dataset)[0].planetary:
+        planets = meshes_of(train)[0].planets
+        assert planets is not None
+        pulses = geared_pulses(pulses, planets.sun_turns)
+    held = {channel.name: channel.quantity for channel in dataset.channels}
+    return Recording(labels, channels, pulses, dataset.fs_hz, train, held)

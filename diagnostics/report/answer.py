@@ -330,7 +330,7 @@ def _other(family: str, detector: Detector) -> str:
 def _title(detector: Detector) -> str:
     if not detector.basis:
         return detector.title
-    return f"{detector.title} ({in_a_sentence(detector.basis)})"
+    return f"{detector.title} ({in_a_sentence(detector.basis, detector.gears)})"
 
 
 def certainty_sentence(best: Detector) -> str:

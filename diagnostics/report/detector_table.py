@@ -132,7 +132,7 @@ def detector_table(found: Detectors) -> str:
 
 def _row(detector: Detector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
     beside = "beside a healthy record" if detector.referenced and "beside" not in detector.title else ""
-    basis = in_a_sentence(detector.basis) if detector.basis else picked(detector.picks)
+    basis = in_a_sentence(detector.basis, detector.gears) if detector.basis else picked(detector.picks)
     small = ", ".join(part for part in (basis, beside) if part)
     none = Cell("–", value=math.nan)
     shown = {"indicator": detector.basis} if detector.basis else {}

@@ -53,7 +53,7 @@ FIRST_HARMONICS = (1, 2)
 
 
 def stiffness_figure(curves: Mapping[str, siggen.Curve], colours: dict[str, str]) -> Figure:
-    """Return mesh stiffness over the pinion's angle, all states in one frame.
+    """Return mesh stiffness over the driver's angle, all states in one frame.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def stiffness_loss_figure(
 
 
 def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
-    """Return the signal over two revolutions of pinion or sun, one row per state, all on one scale."""
+    """Return the signal over two turns of the first shaft, one row per state, all on one scale."""
     rows = len(examples.examples)
     figure, axes = new_figure(rows, 1, height_in=_height_in(0.7, 1.1, rows), sharex=True, sharey=True)
     for axis, example in zip(axes[:, 0], examples.examples, strict=True):
@@ -240,10 +240,10 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str])
         drawing.behind[f"spectrum_h{harmonic}"] = behind
     for mesh in examples.train[1:]:
         figure = spectrum_figure(around_mesh(examples, mesh), colours, 1)
-        window = f"Hann, {spectra[0].revolutions} revolutions of the first pinion"
-        caption = f"Order spectrum ({window}) around mesh harmonic 1 of {mesh_words(mesh.name)}: {which}."
-        drawing.vibration[f"spectrum_h1_{mesh.name}"] = (figure, caption)
-        drawing.behind[f"spectrum_h1_{mesh.name}"] = behind
+        window = f"Hann, {spectra[0].revolutions} revolutions of {examples.mesh.names.gears[0]}"
+        caption = f"Order spectrum ({window}) around mesh harmonic 1 of {mesh_words(mesh.names.name)}: {which}."
+        drawing.vibration[f"spectrum_h1_{mesh.names.name}"] = (figure, caption)
+        drawing.behind[f"spectrum_h1_{mesh.names.name}"] = behind
 
 
 def strongest(spectrum: OrderSpectrum, mesh: Mesh) -> int:

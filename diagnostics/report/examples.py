@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.records.gear_train import Mesh, gear_train
-from diagnostics.records.recording import TACHO_NAME, turned
+from diagnostics.records.gear_train import Mesh, meshes_of
+from diagnostics.records.recording import Recording, one_recording
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
 from diagnostics.training.splits import TEST
@@ -45,7 +45,7 @@ class ExampleSet:
 
     @property
     def turns_hz(self) -> float:
-        """How often the pinion turns, or the sun against its carrier."""
+        """How often the driver turns, of a planetary set against its carrier."""
         planets = self.mesh.planets
         return self.speed_hz * (1.0 if planets is None else float(planets.sun_turns))
 
@@ -67,25 +67,25 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
     """
     chosen = _example_rows(dataset)
     found = dataset.channels[channel]
-    records = [_record(dataset, row["record_id"]) for row in sorted(chosen, key=lambda row: row["state_id"])]
-    first = records[0]
+    records = [one_recording(dataset, row["record_id"]) for row in sorted(chosen, key=lambda row: row["state_id"])]
+    first, train = records[0].labels, meshes_of(records[0].train)
     return ExampleSet(
-        examples=tuple(_example(record, found.column, dataset.fs_hz) for record in records),
+        examples=tuple(_example(record, found.name) for record in records),
         specimen_id=int(first["specimen_id"]),
         channel=found.name,
         quantity=found.quantity,
         unit=found.shown_unit,
         speed_hz=float(first["speed_hz"]),
         torque_nm=float(first["torque_nm"]),
-        teeth=(int(first["teeth_pinion"]), int(first["teeth_gear"])),
+        teeth=train[0].teeth,
         fs_hz=dataset.fs_hz,
-        train=(train := gear_train(first)),
+        train=train,
         mesh=train[0],
     )
 
 
 def around_mesh(examples: ExampleSet, mesh: Mesh) -> ExampleSet:
-    """Return examples with the teeth, the speed and the orders of a mesh's own pinion."""
+    """Return examples with the teeth, the speed and the orders of a mesh's own driver."""
     turns = float(mesh.turns)
     shown = [
         example
@@ -103,17 +103,11 @@ def around_mesh(examples: ExampleSet, mesh: Mesh) -> ExampleSet:
     return replace(examples, examples=tuple(shown), speed_hz=examples.speed_hz * turns, teeth=mesh.teeth, mesh=mesh)
 
 
-def _record(dataset: Dataset, number: int) -> dict[str, Any]:
-    """Return a record with pulses and teeth as of a pair."""
-    found = dataset.record(number)
-    labels, pulses = turned(found, found[TACHO_NAME])
-    return labels | {TACHO_NAME: pulses}
-
-
-def _example(record: dict[str, Any], column: str, fs_hz: float) -> Example:
-    signal, tacho_s = record[column], record[TACHO_NAME]
-    spectrum = order_spectrum(signal, tacho_s, fs_hz, int(record["teeth_pinion"])) if len(tacho_s) > 1 else None
-    return Example(int(record["record_id"]), record["state"], record["fault"], signal, tacho_s, spectrum)
+def _example(record: Recording, channel: str) -> Example:
+    signal, tacho_s, teeth = record.channels[channel], record.tacho_s, record.teeth[0]
+    spectrum = order_spectrum(signal, tacho_s, record.fs_hz, teeth) if len(tacho_s) > 1 else None
+    labels = record.labels
+    return Example(int(labels["record_id"]), labels["state"], labels["fault"], signal, tacho_s, spectrum)
 
 
 def _example_rows(dataset: Dataset) -> list[dict[str, Any]]:

@@ -12,9 +12,8 @@ import numpy as np
 
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.indicators.classifier_table import write_table
-from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.ranking_table import IndicatorTable
-from diagnostics.records.named_set import words_of
+from diagnostics.report.indicator_figures import known_column
 from diagnostics.report.indicator_sentences import indicator_findings
 from diagnostics.statistics.assessment import AssessmentSettings, assessment, result_table
 from diagnostics.statistics.indicator_result import IndicatorResult
@@ -41,7 +40,8 @@ class Evaluated:
         """The best channel of each of the best indicators of different definition."""
         chosen: dict[str, IndicatorResult] = {}
         for result in self.found:
-            chosen.setdefault(base_name(result.indicator), result)
+            known = known_column(result.column, result.gears)
+            chosen.setdefault(known.entry.name if known else result.indicator, result)
         return list(chosen.values())[:CURVES_SHOWN]
 
 
@@ -78,13 +78,12 @@ def write_evaluation(dataset: Dataset, found: Evaluated, folder: Path, *, values
 
     With `values` also `indicators.parquet`: labels and all indicators of every record, those with a history too.
     """
-    words = words_of(dataset)
     if values:
-        write_table(words.table(found.table.arrow()), folder / "indicators.parquet")
-    results = words.table(result_table(found.found))
+        write_table(found.table.arrow(), folder / "indicators.parquet")
+    results = result_table(found.found)
     write_table(results, folder / "evaluation.parquet")
     write_table(results, folder / "evaluation.csv")
-    numbers = words.document(report_numbers(dataset, found, findings(dataset, found)))
+    numbers = report_numbers(dataset, found, findings(dataset, found))
     write_file(folder / NUMBERS, json.dumps(numbers, indent=1, allow_nan=False) + "\n")
     return folder / "evaluation.csv"
 

@@ -8,18 +8,18 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping, Sequence
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.indicators.indicator import OF_CHANNEL, base_name, without_mesh
+from diagnostics.indicators.indicator import OF_CHANNEL
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.registry import BY_NAME, indicator_titles, mesh_words
+from diagnostics.indicators.registry import IndicatorColumn, column_title, indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.html import Cell
 from diagnostics.page.style import new_figure, state_ticks
 from diagnostics.records.channel_quantities import ShownQuantity
+from diagnostics.records.gear_train import GearNames
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.assessment import SIZES
 from diagnostics.statistics.detectable_size import detection_curve
@@ -40,16 +40,14 @@ MARKERS = "osD^vP"
 LEGEND_SIGNS = 66
 
 
-@cache
-def _titles() -> dict[str, str]:
-    return indicator_titles(IndicatorSettings())
+def known_column(column: str, gears: GearNames) -> IndicatorColumn | None:
+    """Return what a column with its channel holds; None of the user's own."""
+    return indicator_columns(IndicatorSettings(), gears).get(column.partition("__")[0])
 
 
-def column_title(column: str) -> str:
-    """Return what people call a column; the user's own indicators keep their names."""
-    name, mesh = without_mesh(column)
-    title = _titles().get(name, name).rsplit(" [", 1)[0]
-    return f"{title}, {mesh_words(mesh)}" if mesh else title
+def in_words(column: str, gears: GearNames) -> str:
+    """Return what people call a column with its channel; the user's own indicators keep their names."""
+    return column_title(column.partition("__")[0], gears)
 
 
 def channel_title(channel: str) -> str:
@@ -58,25 +56,25 @@ def channel_title(channel: str) -> str:
     return f"{sensor.replace('_', ' ')}, {axis}" if sensor and axis in AXES else channel
 
 
-def term_cell(column: str) -> Cell:
+def term_cell(column: str, gears: GearNames) -> Cell:
     """Return the cell that names a column: its title, which leads to the definition, its channel and its own name."""
-    known = BY_NAME.get(base_name(column))
+    known = known_column(column, gears)
     channel = column.partition("__")[2]
     small = f"{channel_title(channel)}; {column.partition('__')[0]}" if channel else column
-    return Cell(column_title(column), small, link=f"#term-{known.name}" if known else "")
+    return Cell(in_words(column, gears), small, link=f"#term-{known.entry.name}" if known else "")
 
 
-def in_a_sentence(column: str) -> str:
+def in_a_sentence(column: str, gears: GearNames) -> str:
     """Return a column as a sentence names it: its title in small letters where it is no acronym, and its channel."""
-    title, channel = column_title(column), column.partition("__")[2]
+    title, channel = in_words(column, gears), column.partition("__")[2]
     if title[1:2].islower():
         title = title[:1].lower() + title[1:]
     return f"{title} at {channel_title(channel)}" if channel else title
 
 
-def panel_title(column: str, width: int = 38) -> str:
+def panel_title(column: str, gears: GearNames, width: int = 38) -> str:
     """Return title and channel of a column for a figure, in lines of at most so many signs."""
-    title, channel = column_title(column), column.partition("__")[2]
+    title, channel = in_words(column, gears), column.partition("__")[2]
     return "\n".join(textwrap.wrap(f"{title} ({channel_title(channel)})" if channel else title, width))
 
 
@@ -128,20 +126,20 @@ def severity_figure(
         axis.plot(position, middle, color="#b01e3c", linewidth=1.8, marker="o", markersize=4)
         if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
             axis.set_yscale("log")
-        axis.set_title(panel_title(result.column), loc="left", fontsize=7)
-        axis.set_ylabel(f"[{unit_of(result.column, channels)}]", fontsize=7)
+        axis.set_title(panel_title(result.column, result.gears), loc="left", fontsize=7)
+        axis.set_ylabel(f"[{_unit(result, channels)}]", fontsize=7)
         state_ticks(axis, ladder, fontsize=8 if len(ladder) <= CROWDED else 7)
     for axis in axes.ravel()[len(shown) :]:
         axis.set_visible(False)
     return figure
 
 
-def unit_of(feature: str, channels: Mapping[str, ShownQuantity]) -> str:
-    """Return the unit of a feature by its name: that of its channel for levels and amplitudes, - for ratios."""
-    known = BY_NAME.get(base_name(feature))
-    if known is None or not known.unit:
+def _unit(result: IndicatorResult, channels: Mapping[str, ShownQuantity]) -> str:
+    """Return the unit of an indicator: that of its channel for levels and amplitudes, - for ratios."""
+    known = known_column(result.column, result.gears)
+    if known is None or not known.entry.unit:
         return "-"
-    return channels[feature.partition("__")[2]].unit if known.unit == OF_CHANNEL else known.unit
+    return channels[result.channel].unit if known.entry.unit == OF_CHANNEL else known.entry.unit
 
 
 def _draw_ladders(axis: Any, labels: dict[str, np.ndarray], values: np.ndarray, ladder: tuple[str, ...]) -> None:
@@ -181,7 +179,7 @@ def detection_figure(
             color=colour,
             marker=marker,
             markersize=4,
-            label=panel_title(result.column, LEGEND_SIGNS),
+            label=panel_title(result.column, result.gears, LEGEND_SIGNS),
         )
     if not drawn:
         return None

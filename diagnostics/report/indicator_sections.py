@@ -12,11 +12,9 @@ from diagnostics.page import html
 from diagnostics.page.tables import indicator_links, records_line
 from diagnostics.page.wording import percent
 from diagnostics.records.channel_quantities import ShownQuantity
-from diagnostics.records.recording import gear_names
 from diagnostics.records.state_classes import damage_kinds, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
 from diagnostics.report.indicator_evaluation import Evaluated, findings, note_counts
-from diagnostics.report.indicator_figures import column_title
 from diagnostics.report.indicator_sentences import best_by_state
 from siggen.dataset.reading import Dataset
 
@@ -68,13 +66,14 @@ def figures(evaluated: Evaluated, held: Mapping[str, ShownQuantity]) -> dict[str
 def ranking_blocks(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     """Return what is best, and all indicators in order."""
     found, names = evaluated.found, evaluated.records.states
+    gears = evaluated.table.matrix.gears
     _, *told = findings(dataset, evaluated)
     separation = indicator_figures.separation_rows(found, names)
     return [
         *(html.paragraph(sentence) for sentence in told),
-        indicator_tables.best_html(best_by_state(found, names)),
+        indicator_tables.best_html(best_by_state(found, names), gears),
         indicator_tables.ranking_html(found[:MOST_RANKED], names),
-        indicator_tables.separation_html(separation, names),
+        indicator_tables.separation_html(separation, names, gears),
         html.paragraph(HOW_TO_READ),
     ]
 
@@ -92,7 +91,7 @@ def detail_blocks(evaluated: Evaluated, pictures: Mapping[str, tuple[bytes, str]
 
 def _behind(evaluated: Evaluated) -> str:
     """Return the line that leads from figures to their records."""
-    titles = {result.column: column_title(result.column) for result in evaluated.shown}
+    titles = {result.column: indicator_figures.in_words(result.column, result.gears) for result in evaluated.shown}
     return records_line("All records by", indicator_links(titles))
 
 
@@ -109,7 +108,7 @@ def _left_out(evaluated: Evaluated) -> dict[str, float]:
 def evaluation_notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     """Return what was left out, the kinds of damage, and the settings."""
     table = evaluated.table
-    first, *_, last = gear_names(dataset).shafts
+    first, *_, last = evaluated.table.matrix.gears[0].gears
     settings = ", ".join(f"{name} {value}" for name, value in asdict(table.settings).items() if value is not None)
     return [
         *(f"Left out: {problem}" for problem in table.problems),

@@ -42,7 +42,7 @@ def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str
     other = max(single, key=lambda r: r.score_others.value)
     what = "AUC" if len(states) == 1 else "mean AUC over the states"
     text = (
-        f"The indicator {in_a_sentence(other.column)} separates best between different specimens, with "
+        f"The indicator {in_a_sentence(other.column, other.gears)} separates best between different specimens, with "
         f"{'an' if len(states) == 1 else 'a'} {what} of {other.score_others.value:.2f} ({limits(other.score_others)}). "
         "Only indicators of single records are compared here."
     )
@@ -50,7 +50,7 @@ def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str
     if not paired:
         return [text]
     same = max(paired, key=lambda r: r.score_same.value)
-    who = "It is also" if same is other else f"The indicator {in_a_sentence(same.column)} is"
+    who = "It is also" if same is other else f"The indicator {in_a_sentence(same.column, same.gears)} is"
     return [
         f"{text} {who} the best on the same specimen before and after damage: it moves in its "
         f"direction in {percent(same.score_same.value)} of the pairs."
@@ -78,10 +78,11 @@ def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list
     if len(best) == 1:
         return []  # the sentence before has said it
     hardest, easiest = (chosen(best, key=lambda state: best[state][0]) for chosen in (min, max))
+    said = {state: in_a_sentence(best[state][1], found[0].gears) for state in (hardest, easiest)}
     return [
-        f"The state {hardest} is the hardest to find: its best single indicator, {in_a_sentence(best[hardest][1])}, "
+        f"The state {hardest} is the hardest to find: its best single indicator, {said[hardest]}, "
         f"reaches an AUC of {best[hardest][0]:.2f}. The state {easiest} is the easiest: "
-        f"{in_a_sentence(best[easiest][1])} reaches {best[easiest][0]:.2f}. These values are "
+        f"{said[easiest]} reaches {best[easiest][0]:.2f}. These values are "
         f"optimistic, because each is the best of many."
     ]
 
@@ -129,7 +130,7 @@ def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
     size = best.detectable[name]
     at_most = "at most " if size.value <= best.smallest_size["others_area_mm2"] * (1 + 1e-9) else ""
     return [
-        f"The indicator {in_a_sentence(best.column)} finds the smallest damaged area: "
+        f"The indicator {in_a_sentence(best.column, best.gears)} finds the smallest damaged area: "
         f"{at_most}{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}) "
         f"with 90\N{NO-BREAK SPACE}% probability."
     ]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 
-from diagnostics.indicators.indicator import base_name
-from diagnostics.indicators.registry import ALL, BY_NAME
+from diagnostics.indicators.registry import ALL
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell, linked_cell
-from diagnostics.report.indicator_figures import term_cell
+from diagnostics.records.gear_train import GearNames
+from diagnostics.report.indicator_figures import known_column, term_cell
 from diagnostics.statistics.indicator_result import IndicatorResult
 
 ARROWS = {1: "rises", -1: "falls"}
@@ -28,7 +28,7 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
     head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
         [
-            term_cell(r.column), Cell(str(rank), value=rank), interval_cell(r.score_others),
+            term_cell(r.column, r.gears), Cell(str(rank), value=rank), interval_cell(r.score_others),
             *(
                 _behind(interval_cell(r.others[state].separation), r.column, state=state)
                 for state in states
@@ -41,12 +41,12 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
     return table(head, rows, caption=caption + BEHIND, sortable=True, tall=True)
 
 
-def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...]) -> str:
+def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], gears: GearNames) -> str:
     """Return the heat map: separation of every state in both designs, best first, empty without rows."""
     head = ["Indicator", *(f"{state}, {design}" for design in ("others", "same") for state in states)]
     cells = [
         [
-            term_cell(name),
+            term_cell(name, gears),
             *(_behind(_separation(value), name, state=state) for value, state in zip(values, 2 * states, strict=True)),
         ]
         for name, values in rows.items()
@@ -65,10 +65,11 @@ def _separation(value: float) -> Cell:
     return Cell(f"{value:.2f}", value=value, shade=2.0 * value - 1.0)
 
 
-def best_html(best: Mapping[str, tuple[float, str]]) -> str:
+def best_html(best: Mapping[str, tuple[float, str]], gears: GearNames) -> str:
     """Return the best single indicator of every state."""
     rows = [
-        [Cell(state), Cell(f"{value:.2f}", value=value), term_cell(column)] for state, (value, column) in best.items()
+        [Cell(state), Cell(f"{value:.2f}", value=value), term_cell(column, gears)]
+        for state, (value, column) in best.items()
     ]
     caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
     head = ["State", "AUC [-]", "Indicator and channel"]
@@ -89,9 +90,11 @@ def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, floa
     for result in sorted(found, key=lambda r: (r.defined_share, r.column)):
         missing = 1.0 - result.defined_share - left_out.get(result.channel, 0.0)
         if missing > 1e-9:
-            known = BY_NAME.get(base_name(result.indicator))
-            reason = known.undefined if known else "its function returned nan"
-            rows.append([term_cell(result.column), Cell(f"{100.0 * missing:.1f}", value=missing), Cell(reason)])
+            known = known_column(result.column, result.gears)
+            reason = known.entry.undefined if known else "its function returned nan"
+            rows.append(
+                [term_cell(result.column, result.gears), Cell(f"{100.0 * missing:.1f}", value=missing), Cell(reason)]
+            )
     head = ["Indicator and channel", "Undefined [%]", "When"]
     caption = "Indicators that are undefined in some of the records."
     return table(head, rows, caption=caption, sortable=True, tall=True, text=True) if rows else ""

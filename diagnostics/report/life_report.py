@@ -19,7 +19,6 @@ from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.wording import capitalised, counted
-from diagnostics.records.named_set import words_of
 from diagnostics.report.life_detection import detection_table, life_block, shown_gearboxes
 from diagnostics.report.life_pictures import lives_of
 from diagnostics.report.unit_lives import PICTURES, Detection, detections, unit_lives, watches
@@ -109,7 +108,7 @@ def _left_out(found: Inspections, *, wanted: bool) -> str:
         return "No sequence network: --no-cnn."
     if missing_packages("torch"):
         return f"No sequence network: PyTorch is not installed: {how_to_install('cnn')}."
-    return "" if found.averages else "No sequence network: records hold fewer than two whole pinion revolutions."
+    return "" if found.averages else "No sequence network: records hold fewer than two whole turns of the first shaft."
 
 
 def _predicted_rows(name: str, found: Inspections, predicted_h: np.ndarray) -> pa.Table:
@@ -132,7 +131,6 @@ def _facts(found: Inspections) -> dict[str, object]:
 
 
 def _page(dataset: Dataset, seed: int, opening: str, parts: Sequence[str], look: Look) -> str:
-    words = words_of(dataset)
     title = f"Remaining life of {dataset.path.name}"
     whole = [
         html.heading(title, 1),
@@ -140,7 +138,7 @@ def _page(dataset: Dataset, seed: int, opening: str, parts: Sequence[str], look:
         *(opening, html.contents(parts), *parts),
         html.paragraph(provenance(dataset, seed), "caption"),
     ]
-    return html.page(words(title), [part if part is look.block else words(part) for part in whole], look.live)
+    return html.page(title, whole, look.live)
 
 
 def _answer(

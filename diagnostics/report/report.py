@@ -29,7 +29,6 @@ from diagnostics.prediction.model_facts import FACTS_FILE
 from diagnostics.prediction.released_model import written_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.channel_quantities import channel_quantities
-from diagnostics.records.named_set import words_of
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import SHAM, ordered_states
 from diagnostics.report.answer import answer_figure, answer_sentences
@@ -140,14 +139,14 @@ def write_report(
     with stage("detectors", 1) as advance:
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
         advance()
-    words, classes = words_of(dataset), ordered_states(matrix.labels)
+    classes = ordered_states(matrix.labels)
     with stage("figures", 1) as advance, styled():
         drawing = draw(dataset, matrix, classes, training)
         opening = _opening(dataset, matrix, classes, detectors)
         in_detail = figures(judged, channel_quantities(dataset))
         advance()
     drawing.notes += [*notes, *clipping_notes(dataset), *undefined_notes(table)]
-    write_table(words.table(table), folder / "features.parquet")
+    write_table(table, folder / "features.parquet")
     write_evaluation(dataset, judged, folder)
     audit = audit_sentence(dataset, audit_beside(dataset))
     answer = answer_sentences(detectors, error_free=is_error_free(dataset.config))
@@ -159,14 +158,14 @@ def write_report(
         for side in ("alone", "referenced")
     }
     yours = _scored(dataset, page, folder if training else None, network)
-    metrics = {**words.document(metrics), "yours": yours.numbers() if yours else None}
+    metrics["yours"] = yours.numbers() if yours else None
     write_file(folder / "metrics.json", json.dumps(metrics, indent=1, allow_nan=False) + "\n")
     look = _look(dataset, records, judged, folder / "models" if training else None, page, own, stage)
     reported = Reported(dataset, seed, matrix, training, found, detectors, audit, drawing, judged, look, yours)
     path = folder / "report.html"
     with stage("page", 1):
         drawn = {**opening, **drawing.figures(), **in_detail}
-        pictures = _write_pictures(folder, {name: (words.figure(one), text) for name, (one, text) in drawn.items()})
+        pictures = _write_pictures(folder, drawn)
         write_file(path, report_page(reported, pictures))
     return path
 

@@ -18,7 +18,6 @@ from diagnostics.page.html import Cell, table
 from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.tables import records_line, records_link, state_links
 from diagnostics.page.wording import capitalised, counted
-from diagnostics.records.named_set import words_of
 from diagnostics.records.state_classes import CLASS, ordered_states
 from diagnostics.report.answer import answer_sentences
 from diagnostics.report.comparison_tables import score_blocks
@@ -107,7 +106,7 @@ class Reported:
 
 
 def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
-    """Return the page, in the names of the set's user.
+    """Return the page.
 
     Parameters
     ----------
@@ -115,14 +114,12 @@ def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -
     pictures : mapping of str to (bytes, str)
         PNG and caption by name, of all figures.
     """
-    words, look = words_of(reported.dataset), reported.look
     title = f"Diagnostics of {reported.dataset.path.name}"
     sections = {name: blocks for name, blocks in _sections(reported, pictures).items() if any(blocks)}
     parts = [part for name, blocks in sections.items() for part in (html.heading(name), *blocks)]
-    as_they_are = {look.block, *your_scores(reported.yours)}
     origin = html.paragraph(origin_sentence(reported.dataset))
     whole = [html.heading(title, 1), origin, _answer(reported, pictures), html.contents(parts), *parts]
-    return html.page(words(title), [part if part in as_they_are else words(part) for part in whole], look.live)
+    return html.page(title, whole, reported.look.live)
 
 
 def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:

@@ -204,7 +204,8 @@ def indicator_sentences(found: list[Separability]) -> list[str]:
     states = {name for other in found for name in other.auc}
     which = f"The state {state} is the hardest to find" if len(states) > 1 else f"The damaged state is {state}"
     return [
-        f"{which}. The best of {counted(len(found), 'single indicator')} is {in_a_sentence(entry.feature)}, which "
+        f"{which}. The best of {counted(len(found), 'single indicator')} is "
+        f"{in_a_sentence(entry.feature, entry.gears)}, which "
         f"{'falls' if falls else 'rises'} with damage. It separates {state} from healthy with an AUC of "
         f"{turned.value:.2f} ({limits(turned)}). This value is optimistic: the indicator was chosen on the same "
         "specimens."
@@ -218,7 +219,7 @@ def area_sentence(found: list[Separability]) -> list[str]:
         return []
     best = max(followed, key=lambda entry: abs(entry.spearman.value))
     return [
-        f"The indicator {in_a_sentence(best.feature)} follows the damaged area best (rank correlation "
+        f"The indicator {in_a_sentence(best.feature, best.gears)} follows the damaged area best (rank correlation "
         f"{signed(best.spearman.value)}, {signed_limits(best.spearman)})."
     ]
 

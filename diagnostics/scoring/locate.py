@@ -10,8 +10,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from diagnostics.records.gear_train import GEARS, further_meshes
-from diagnostics.records.planetary_members import MEMBERS, is_planetary
 from diagnostics.scoring.task import Columns, Measure, Problem, Taken, Task, weighted_mean
 from diagnostics.scoring.truth import Truth
 from siggen.dataset.reading import Dataset
@@ -20,19 +18,6 @@ GEAR, TOOTH = "gear", "tooth"
 ALL_TEETH = -1
 DAMAGED_TEETH = "damaged_teeth"
 ON_TEETH = "damage on teeth"
-
-
-def gear_teeth(dataset: Dataset) -> dict[str, str]:
-    """Return the gears of a set, in the words of its table of damage, and the label column with the teeth of each."""
-    names, columns = dataset.names()[0], dataset.labels().column_names
-    if is_planetary(columns):
-        return {member: f"teeth_{member}" for member in MEMBERS}
-    if names.given:
-        known = {gear.word: (f"teeth_{gear.column}", f"teeth_{gear.inner_column}") for gear in names.gears}
-        # read in the user's words, or in those of the program
-        return {word: named if named in columns else inner for word, (named, inner) in known.items()}
-    further = {f"{mesh}.{gear}": f"teeth_{mesh}_{gear}" for mesh in further_meshes(columns) for gear in GEARS}
-    return {**{gear: f"teeth_{gear}" for gear in GEARS}, **further}
 
 
 def _facts(dataset: Dataset, truth: Truth) -> dict[str, np.ndarray]:

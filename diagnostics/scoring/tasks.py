@@ -10,7 +10,7 @@ from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.abstain import ABSTAIN
 from diagnostics.scoring.detect import DETECT
 from diagnostics.scoring.grade import GRADE
-from diagnostics.scoring.locate import LOCATE, gear_teeth
+from diagnostics.scoring.locate import LOCATE
 from diagnostics.scoring.remaining_life import REMAINING_LIFE, RUL
 from diagnostics.scoring.size import SIZE
 from diagnostics.scoring.task import Task
@@ -31,7 +31,7 @@ def truth_of(dataset: Dataset, split: str, kind: str = STATE) -> Truth:
         If the split has no records, or the kind is unknown.
     """
     found = judged_records(dataset, split, kind)
-    gears = gear_teeth(dataset)
+    gears = dataset.columns_of("teeth")
     table = dataset.labels(split, list(gears.values()))
     found = replace(found, gears={gear: np.asarray(table.column(name).to_pylist()) for gear, name in gears.items()})
     facts = {name: values for task in TASKS for name, values in task.facts(dataset, found).items()}

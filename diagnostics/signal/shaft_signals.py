@@ -1,7 +1,7 @@
 """What the indicators of one shaft are made of: its average, the parts of it, and its lines; computed once per channel.
 
-Lines of the pinion's sidebands come from the plain average; those of the gear from a Hann-weighted one, since over the
-few revolutions of a record the pinion's lines do not cancel. Source: derived; see `revolutions_needed`.
+Lines of the driver's sidebands come from the plain average; those of the driven gear from a Hann-weighted one, since
+over the few revolutions of a record the driver's lines do not cancel. Source: derived; see `revolutions_needed`.
 
 Regular, residual and difference signal of a synchronous average, by zeroing of whole orders.
 
@@ -104,7 +104,8 @@ class Shaft:
 
     `beside` are the teeth of another gear on it, which takes part in another mesh; 0: there is none. `meets` says what
     a tooth of a planetary set's member meets, see `member_average`; `period` are the mesh periods after which an event
-    comes back to a sensor at rest, where those are not its teeth.
+    comes back to a sensor at rest, where those are not its teeth. `weighted` says whether sidebands come from a
+    Hann-weighted average.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Shaft:
     beside: int = 0
     meets: str = ""
     period: float = 0.0
+    weighted: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +131,7 @@ class ShaftSignals:
     lines : (n // 2 + 1,) float64
         Its line amplitudes at whole shaft orders.
     sideband_average : (n,) float64
-        The average that sidebands are read from: the same for the pinion, Hann-weighted for the gear.
+        The average that sidebands are read from: the same for the driver, Hann-weighted for the driven gear.
     sideband_lines : (n // 2 + 1,) float64
         Its line amplitudes, NaN where a sideband is not resolved.
     parts : SeparatedAverage
@@ -145,35 +147,38 @@ class ShaftSignals:
 
 
 def record_shafts(
-    grid: AngleGrid | None, teeth: tuple[int, int], samples_per_tooth: int, sidebands: int
+    grid: AngleGrid | None, teeth: tuple[int, int], samples_per_tooth: int, sidebands: int, named: tuple[str, ...]
 ) -> tuple[Shaft, Shaft]:
-    """Return pinion and gear of a record.
+    """Return the shafts of driver and driven gear of a record.
 
     Parameters
     ----------
     grid : AngleGrid, optional
-        Steps of pinion angle; without them both shafts have no revolution.
+        Steps of the driver's angle; without them both shafts have no revolution.
     teeth : (int, int)
-        Teeth of pinion and gear.
+        Teeth of both gears.
     samples_per_tooth : int
         Angle steps per mesh period.
     sidebands : int
         Sidebands 1 ... of which it is told whether they are resolved.
+    named : tuple of str
+        What both gears are called.
     """
     steps = grid.time_s.size if grid else 0
-    pinion_turns, gear_turns = (steps // (z * samples_per_tooth) for z in teeth)
+    turns = tuple(steps // (z * samples_per_tooth) for z in teeth)
     needed = np.array([revolutions_needed(k, teeth[1], teeth[0]) for k in range(1, sidebands + 1)])
-    resolved = needed <= gear_turns
-    note = "" if pinion_turns else "no whole turn of the first shaft between two pulses"
-    pinion = Shaft("pinion", teeth[0], pinion_turns, np.ones(sidebands, dtype=bool), note)
-    return pinion, Shaft("gear", teeth[1], gear_turns, resolved, _resolution_note(resolved, needed, gear_turns))
+    resolved = needed <= turns[1]
+    note = "" if turns[0] else "no whole turn of the first shaft between two pulses"
+    driver = Shaft(named[0], teeth[0], turns[0], np.ones(sidebands, dtype=bool), note)
+    limits = _resolution_note(named[1], resolved, needed, turns[1])
+    return driver, Shaft(named[1], teeth[1], turns[1], resolved, limits, weighted=True)
 
 
-def _resolution_note(resolved: np.ndarray, needed: np.ndarray, turns: int) -> str:
+def _resolution_note(gear: str, resolved: np.ndarray, needed: np.ndarray, turns: int) -> str:
     if turns < 1:
-        return "no whole gear revolution: all gear averages undefined"
+        return f"no whole {gear} revolution: all {gear} averages undefined"
     missing = [f"{k + 1} (needs {needed[k]:.0f})" for k in np.flatnonzero(~resolved)]
-    return f"gear sidebands not resolved by {turns} gear revolutions: {', '.join(missing)}" if missing else ""
+    return f"{gear} sidebands not resolved by {turns} {gear} revolutions: {', '.join(missing)}" if missing else ""
 
 
 def shaft_signals(
@@ -193,7 +198,7 @@ def shaft_signals(
     average = synchronous_average(steps, shaft.teeth, samples_per_tooth).signal
     lines = line_amplitudes(average)
     parts = separated_average(average, shaft.teeth, shaft_orders, difference_sidebands, beside=shaft.beside)
-    if shaft.name != "gear":
+    if not shaft.weighted:
         return ShaftSignals(shaft, average, lines, own_band(average, shaft), own_lines(lines, shaft), parts)
     weighted = synchronous_average(steps, shaft.teeth, samples_per_tooth, hann=True).signal
     resolved = resolved_lines(line_amplitudes(weighted), shaft.resolved, shaft.teeth)

@@ -24,6 +24,7 @@ import pyarrow as pa
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.ranking_table import IndicatorTable
+from diagnostics.records.gear_train import GearNames
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.detectable_size import detection_curves, size_at
 from diagnostics.statistics.evaluation import LEVEL, RESAMPLES, Interval
@@ -147,7 +148,7 @@ def assessment(
     records = judged_records(table.matrix.labels, chosen.seed, chosen.resamples)
     found = []
     for column, name in enumerate(table.matrix.names):
-        found.append(_one(records, name, table.matrix.values[:, column], chosen))
+        found.append(_one(records, name, table.matrix.values[:, column], chosen, table.matrix.gears))
         if advance:
             advance()
     _test(records, table.matrix, found)
@@ -155,7 +156,9 @@ def assessment(
     return sorted(found, key=lambda result: (_last_if_nan(result.score_others.value), result.column))
 
 
-def _one(records: JudgedRecords, name: str, values: np.ndarray, settings: AssessmentSettings) -> IndicatorResult:
+def _one(
+    records: JudgedRecords, name: str, values: np.ndarray, settings: AssessmentSettings, gears: GearNames
+) -> IndicatorResult:
     indicator, channel = name.split("__", 1)
     ranks = records.centred_values(values)
     judged = separability_of(records, name, values, ranks)
@@ -172,7 +175,7 @@ def _one(records: JudgedRecords, name: str, values: np.ndarray, settings: Assess
         _other_specimens(records, values, judged), _same_specimen(records, values, judged),
         _score(records, list(judged.samples.values()), direction),
         _score(records, list(judged.same.values()), direction),
-        judged.spearman, stiffness, records.interval(steps, after[kept]), judged.defined_share,
+        judged.spearman, stiffness, records.interval(steps, after[kept]), judged.defined_share, gears,
     )  # fmt: skip
     result.sensitivity = _sensitivity(records.labels, values, channel)
     result.detectable, result.smallest_size = _detectable(records, values * direction, settings.false_alarms)

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.records.gear_train import PAIR, GearNames
 from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kinds, ordered_states
 from diagnostics.statistics.assessment import size_interval
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
@@ -85,6 +86,8 @@ class Detector:
         On how many records of how many gearboxes it was judged, and how many of them are healthy.
     basis : str
         The column that it took most often, or nothing.
+    gears : GearNames
+        What columns are called after.
     picks : tuple of (str, int)
         Which detectors it stands for, and in how many folds; empty for one that is always the same.
     sham : Interval, optional
@@ -105,6 +108,7 @@ class Detector:
     picks: tuple[tuple[str, int], ...] = ()
     sham: Interval | None = None
     share: Interval | None = None
+    gears: GearNames = PAIR
 
     def tells(self, state: str) -> bool:
         """Whether a state is told from healthy: its lower AUC limit beats chance, its AUC what a sham may reach."""

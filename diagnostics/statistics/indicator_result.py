@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from diagnostics.records.gear_train import GearNames
 from diagnostics.statistics.evaluation import Interval
 
 UNDEFINED = Interval(math.nan, math.nan, math.nan)
@@ -57,6 +58,8 @@ class IndicatorResult:
         Median size of the group of smallest damage, e.g. `others_area_mm2`; what is found there is an upper bound.
     defined_share : float
         Share of records where the indicator has a value.
+    gears : GearNames
+        What columns are called after.
     """
 
     column: str
@@ -71,6 +74,7 @@ class IndicatorResult:
     spearman_stiffness: Interval
     monotonicity: Interval
     defined_share: float
+    gears: GearNames
     sensitivity: dict[str, float] = field(default_factory=dict)
     detectable: dict[str, Interval] = field(default_factory=dict)
     smallest_size: dict[str, float] = field(default_factory=dict)

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.records.gear_train import PAIR, GearNames
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.evaluation import CentredRanks, Interval, centred_ranks, weighted_auc
 from diagnostics.statistics.judged_records import RESAMPLES, JudgedRecords, judged_records
@@ -38,6 +39,8 @@ class Separability:
         1 where it rises with damage, -1 where it falls: mean change of the same specimens, else of the AUC; 0 unknown.
     samples, same : dict of str to (resamples + 1,)
         Resamples of the AUC, and of the share of pairs of one specimen in which it is higher after, by state.
+    gears : GearNames
+        What columns are called after.
     """
 
     feature: str
@@ -47,6 +50,7 @@ class Separability:
     direction: int = 0
     samples: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
     same: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
+    gears: GearNames = PAIR
 
     @property
     def strength(self) -> float:
@@ -76,7 +80,10 @@ def separability(matrix: FeatureMatrix, seed: int, resamples: int = RESAMPLES) -
     """
     records = judged_records(matrix.labels, seed, resamples)
     columns = zip(matrix.names, matrix.values.T, strict=True)
-    found = [separability_of(records, name, values, records.centred_values(values)) for name, values in columns]
+    found = [
+        replace(separability_of(records, name, values, records.centred_values(values)), gears=matrix.gears)
+        for name, values in columns
+    ]
     return sorted(found, key=lambda entry: (-entry.strength, entry.feature))
 
 

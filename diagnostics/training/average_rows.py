@@ -1,4 +1,4 @@
-"""Synchronous averages of a set for a network: lines of one pinion revolution, written out as rows of equal length.
+"""Synchronous averages of a set for a network: lines of a turn of the first shaft, written out as rows of equal length.
 
 The lines are those that the one table of a set keeps, so no record is read again. A row has the same number of angle
 steps whatever the number of teeth. Source: residual as of `diagnostics.signal.shaft_signals`; the rest derived.
@@ -36,14 +36,14 @@ FLOOR = 0.03
 
 @dataclass(frozen=True, slots=True)
 class AveragedRecords:
-    """Averages of one pinion revolution, from its first pulse on.
+    """Averages of one turn of the first shaft, from its first pulse on.
 
     Attributes
     ----------
     lines : (records, channels, orders) complex64
         Amplitude and phase [m/s²] at shaft orders 0, 1, 2 ...; zero where a record holds less.
     teeth : (records,) int
-        Teeth of the pinion.
+        Teeth of the first driver.
     channels : tuple of str
         Channel names.
     healthy : (records, channels, orders) complex64, optional
@@ -67,22 +67,22 @@ class AveragedRecords:
 
 
 def averaged_records(table: RecordTable) -> AveragedRecords:
-    """Return the pinion averages of all records of a table.
+    """Return the averages of the first driver of all records of a table.
 
     Raises
     ------
     DatasetError
-        If a record holds fewer than two pinion revolutions.
+        If a record holds fewer than two turns of the first shaft.
     """
     found = table.complex_rows("waveform")
-    numbers = table.select(["record_id", "teeth_pinion"]).to_pydict()
+    numbers = table.select(["record_id", table.teeth[0]]).to_pydict()
     short = [int(k) for k, row in zip(numbers["record_id"], found, strict=True) if min(map(len, row)) == 0]
     if short:
         raise DatasetError(
-            f"records {short[:5]} hold fewer than two whole pinion revolutions; the network on the average needs them. "
-            "Use longer records (`duration_s`) or leave the networks out: siggen-diagnostics report --no-cnn."
+            f"records {short[:5]} hold fewer than two whole turns of the first shaft; the network on the average needs "
+            "them. Use longer records (`duration_s`) or leave the networks out: siggen-diagnostics report --no-cnn."
         )
-    return AveragedRecords(padded_lines(found), np.asarray(numbers["teeth_pinion"]), table.channels)
+    return AveragedRecords(padded_lines(found), np.asarray(numbers[table.teeth[0]]), table.channels)
 
 
 def padded_lines(waveforms: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
@@ -199,13 +199,13 @@ def averages(dataset: Dataset, split: str, *, classes: str = STATE) -> Windows:
     Returns
     -------
     Windows
-        `values` (records, 3 * channels, 1024) float32: the synchronous average of one pinion revolution of every
+        `values` (records, 3 * channels, 1024) float32: the synchronous average of one turn of the first shaft of every
         channel, then their residuals (without shaft orders 0 to 2 and mesh harmonics), then these whitened.
 
     Raises
     ------
     DatasetError
-        If records cannot be used, or hold fewer than two pinion revolutions.
+        If records cannot be used, or hold fewer than two turns of the first shaft.
     UsageError
         If the classes are of an unknown kind.
     """

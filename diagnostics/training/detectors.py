@@ -212,7 +212,8 @@ def _cross_fitted(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> dict
     judged = {}
     for family, scores in outer.items():
         basis = most_chosen(whole, ~healthy, fold) if family == INDICATOR else ""
-        judged[family] = judged_detector(family, scores, labels, seed, referenced=referenced, basis=basis)
+        detector = judged_detector(family, scores, labels, seed, referenced=referenced, basis=basis)
+        judged[family] = detector and replace(detector, gears=matrix.gears)
     chosen = judged[names[0]]
     if len(set(names)) > 1:
         mixed = judged_detector(CHOICE, score, labels, seed, referenced=referenced)

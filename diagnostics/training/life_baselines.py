@@ -55,7 +55,7 @@ class Inspections:
     outlook_h : (n, 3) float64
         Quantiles of the remaining life over continuations of the true state.
     averages : AveragedRecords, optional
-        Averages of one pinion revolution, means over an inspection's records; None where records are too short.
+        Averages of one turn of the first shaft, means over an inspection's records; None where records are too short.
     """
 
     record_id: np.ndarray

@@ -8,7 +8,6 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.base.progress import Stage
-from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.ranking_table import unusable_records, with_history
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.records.sample_bytes import BYTES
@@ -128,11 +127,10 @@ def _columns(table: RecordTable) -> dict[str, np.ndarray]:
         values
         for channel in table.channels
         for name, values in with_history(table, labels, rows, channel, unusable[channel]).items()
-        if name.startswith(("na4_", "nb4_")) and not name.startswith("na4_star")  # which asks what is healthy
+        if table.columns[name.partition("__")[0]].entry.name in ("na4", "nb4")  # na4_star asks what is healthy
     ]
-    five = {
-        name: table.values([column for column in table.names() if base_name(column) == name]) for name in INDICATORS
-    }
+    own = [(name, table.columns[name.partition("__")[0]].entry.name) for name in table.names() if name not in table.own]
+    five = {name: table.values([column for column, entry in own if entry == name]) for name in INDICATORS}
     samples = [f"{name}.{channel}" for channel in table.channels for name in ("samples", *BYTES)]
     return {**five, HISTORY: np.stack(with_own, axis=1), SAMPLES: table.values(samples)}
 

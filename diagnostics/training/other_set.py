@@ -10,7 +10,7 @@ import pyarrow as pa
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.record_classes import STATE, set_classes
-from diagnostics.records.recording import gear_names
+from diagnostics.records.recording import names_of
 from diagnostics.records.state_classes import CLASS, HEALTHY
 from diagnostics.statistics.evaluation import UNKNOWN, Predictions
 from diagnostics.statistics.judgement import NETWORK, Judged, judged
@@ -52,9 +52,9 @@ def check_other_set(dataset: Dataset, other: Dataset, kind: str = STATE) -> None
             f"{dataset.fs_hz:g} Hz, and indicators of another band are others. Generate it with `fs_hz: "
             f"{dataset.fs_hz:g}`."
         )
-    named = [gear_names(found) for found in (dataset, other)]
+    named = [names_of(found) for found in (dataset, other)]
     if named[0] != named[1]:
-        ours, theirs = (", ".join((*one.shafts, *one.meshes)) for one in named)
+        ours, theirs = (", ".join(dict.fromkeys(gear for mesh in one for gear in mesh.gears)) for one in named)
         raise UsageError(
             f"--test {other.path}: received indicators of {theirs}; the classifiers take those of {ours}. Generate it "
             "with the same names in `stages`, or the same kind of gearbox."

@@ -98,7 +98,7 @@ def healthy_referenced(matrix: FeatureMatrix) -> tuple[FeatureMatrix, np.ndarray
     found, kept = np.full_like(logs, np.nan), np.array([rows.size > 0 for rows in references], dtype=bool)
     for row in np.flatnonzero(kept):
         found[row] = logs[row] - log_mean(matrix.values[references[row]])
-    return FeatureMatrix(found, matrix.names, matrix.labels).rows(kept), kept
+    return replace(matrix, values=found).rows(kept), kept
 
 
 def reference_speed_ratio(labels: Mapping[str, np.ndarray]) -> float:

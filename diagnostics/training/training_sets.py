@@ -12,10 +12,10 @@ from diagnostics.base.progress import Stage
 from diagnostics.indicators.classifier_table import check_table, classifier_table
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
-from diagnostics.records.named_set import open_set
 from diagnostics.records.record_classes import STATE
 from diagnostics.records.usable_records import with_channels
 from diagnostics.training.other_set import OtherSet, check_other_set
+from siggen.dataset import reading
 from siggen.dataset.reading import Dataset
 
 
@@ -31,10 +31,10 @@ def open_sets(
     UsageError
         If a channel does not exist, or the second set cannot be judged by classifiers of the first.
     """
-    dataset = with_channels(open_set(directory), channels)
+    dataset = with_channels(reading.open(directory), channels)
     if test is None:
         return dataset, None
-    other = with_channels(open_set(test), channels)
+    other = with_channels(reading.open(test), channels)
     check_other_set(dataset, other, classes)
     return dataset, other
 

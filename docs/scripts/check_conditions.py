@@ -23,7 +23,7 @@ import siggen
 from diagnostics.machine.comparable import comparable, slip_loads
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.taken import RecordingFacts
-from diagnostics.records.gear_train import Mesh
+from diagnostics.records.gear_train import pair_train
 from diagnostics.signal.shaft_angle import shaft_angle
 from diagnostics.statistics.change_score import FEWEST, change_score
 from siggen.errors import UsageError
@@ -112,7 +112,7 @@ def as_machine(held: dict[str, np.ndarray], rows: np.ndarray, way: str) -> Machi
     facts = RecordingFacts(fs_hz=FS_HZ, unit="m/s2")
     called = tuple(str(row) for row in rows)
     return Machine(
-        (Mesh("", (18, 47)),), CHANNELS, facts, None, FS_HZ, 1.5, 0.05, names, held["rows"][rows], called,
+        pair_train((18, 47)), CHANNELS, facts, None, FS_HZ, 1.5, 0.05, names, held["rows"][rows], called,
         speed, load, way == "slip",
     )  # fmt: skip
 

@@ -27,7 +27,7 @@ from siggen.errors import DatasetError, UsageError, counted
 from siggen.keys.column import Column, Role
 
 if TYPE_CHECKING:
-    from siggen.names import Names
+    from siggen.config.gears import ToothForm, Wheel
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
@@ -119,12 +119,6 @@ class Dataset:
         """
         return Split(self, *self._splits(split))
 
-    def names(self) -> tuple[Names, dict[str, str]]:
-        """Return the names of gears, shafts and meshes, and what the simulation calls columns that bear one."""
-        from siggen.dataset.set_names import set_names
-
-        return set_names(self.config)
-
     def role(self, name: str) -> Role:
         """Return the role of a column of records; one that the set does not list is a condition."""
         return self._listed[name].role if name in self._listed else Role.CONDITION
@@ -136,6 +130,24 @@ class Dataset:
     def columns_of(self, quantity: str) -> dict[str, str]:
         """Return the columns of records that hold a quantity, by the gear, shaft or mesh that they are about."""
         return {column.of: name for name, column in self._listed.items() if column.quantity == quantity}
+
+    @cached_property
+    def gears(self) -> dict[str, tuple[ToothForm, Wheel]]:
+        """What both gears of its mesh share, and the gear itself, by its name; no ring.
+
+        Empty for a configuration of another version.
+        """
+        from siggen.config import parse
+
+        config = parse(self.config).config
+        if config is None:
+            return {}
+        forms = (config.gears, *(stage.gears for stage in config.stages))
+        return {
+            gear.word: (form, wheel)
+            for mesh, form in zip(config.names.meshes, forms, strict=False)
+            for gear, wheel in zip(mesh.gears, (form.pinion, form.gear), strict=True)
+        }
 
     @cached_property
     def _listed(self) -> dict[str, ListedColumn]:

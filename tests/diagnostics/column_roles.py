@@ -1,9 +1,12 @@
-"""Roles of the columns of sets that tests make in memory: those of siggen's own columns, others are conditions."""
+"""What sets that tests make in memory say of their columns: what siggen's own are, others are conditions."""
 
 from __future__ import annotations
 
+from typing import Any, ClassVar
+
 import pyarrow as pa
 
+from diagnostics.records.gear_train import pair_train
 from siggen.columns.common_columns import INTEGRATION_COLUMNS, operating_columns, target_columns, variation_columns
 from siggen.columns.record import ID_COLUMNS
 from siggen.columns.state_columns import SHAM_COLUMN
@@ -27,10 +30,16 @@ LISTED = {column.name: column for column in (*COLUMNS, *in_role(Role.TARGET, SHA
 
 
 class ListedRoles:
-    """What `siggen.open` says of the columns of a set."""
+    """What `siggen.open` says of the columns of a set, and of its pair of gears."""
+
+    drivetrain = pair_train((18, 47))
+    gears: ClassVar[dict[str, Any]] = {}
 
     def role(self, name: str) -> Role:
         return LISTED[name].role or Role.CONDITION if name in LISTED else Role.CONDITION
 
     def section(self, name: str) -> str:
         return LISTED[name].section if name in LISTED else ""
+
+    def columns_of(self, quantity: str) -> dict[str, str]:
+        return {column.of: column.name for column in COLUMNS if column.quantity == quantity}

@@ -15,7 +15,6 @@ import pytest
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS
 from siggen.dataset.reading import RowGroup
-from siggen.names import PAIR, Names
 from tests.diagnostics.column_roles import ListedRoles
 from tests.shared import shared
 
@@ -57,9 +56,6 @@ class MemoryDataset(ListedRoles):
     manifest: dict[str, Any] = field(default_factory=lambda: {"identity": "0" * 64, "name": "memory"})
     fs_hz: float = FS_HZ
     duration_s: float = 1.0
-
-    def names(self) -> tuple[Names, dict[str, str]]:
-        return PAIR, {}
 
     @property
     def channels(self) -> tuple[SimpleNamespace, ...]:

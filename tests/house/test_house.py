@@ -54,7 +54,6 @@ SHARED_NAMES = {
     "TorqueVariation",
     "Unbalance",
     "Wanted",
-    "Words",
 }
 """Names that several classes bear: the list may only shrink."""
 

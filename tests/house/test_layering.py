@@ -32,13 +32,9 @@ PHYSICS_MAY_IMPORT = {"numpy", "scipy", "numba", "siggen", "__future__", "collec
     "fractions", "functools", "itertools", "math", "typing",
 }  # fmt: skip
 DOOR = {
-    "siggen",
-    "siggen.errors",
-    "siggen.printable",
-    "siggen.columns.record",
-    "siggen.names",
-    "siggen.dataset.reading",
-} | {"siggen.keys.column"}
+    "siggen", "siggen.errors", "siggen.printable", "siggen.columns.record", "siggen.columns.drivetrain",
+    "siggen.dataset.reading", "siggen.keys.column",
+}  # fmt: skip
 SHARED = {"siggen.child_environment", "siggen.file_writing"} | {
     f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")
 }

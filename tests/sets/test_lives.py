@@ -12,7 +12,6 @@ import yaml
 from typer.testing import CliRunner
 
 import siggen
-from diagnostics.records.named_set import open_set
 from diagnostics.records.record_classes import set_classes
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
@@ -231,4 +230,4 @@ def test_published_classes_of_lives_hold_every_word_of_their_labels(fleet: Path)
 def test_classifiers_refuse_lives_and_name_what_shows_them(fleet: Path) -> None:
     for kind in ("state", "fault"):
         with pytest.raises(UsageError, match=r"has no classes: .* folder life/; siggen-diagnostics report"):
-            set_classes(open_set(fleet), kind)
+            set_classes(siggen.open(fleet), kind)

@@ -24,8 +24,8 @@ Explore.showAverages = (section, row, channel, healthy) => {
   Explore.clear(body);
   const label = Explore.element("label", "Shaft ");
   const select = Explore.element("select", "", { id: "look-shaft" });
-  if (!Explore.data.shafts.includes(Explore.shaft)) Explore.shaft = Explore.data.shafts[0];
-  for (const name of Explore.data.shafts) select.append(Explore.element("option", Explore.called(name), { value: name }));
+  if (!Explore.data.gears.includes(Explore.shaft)) Explore.shaft = Explore.data.gears[0];
+  for (const name of Explore.data.gears) select.append(Explore.element("option", name, { value: name }));
   select.value = Explore.shaft;
   select.addEventListener("change", () => {
     Explore.shaft = select.value;
@@ -34,7 +34,7 @@ Explore.showAverages = (section, row, channel, healthy) => {
   });
   label.append(select);
   controls.replaceChildren(label);
-  const place = Explore.data.shafts.indexOf(Explore.shaft);
+  const place = Explore.data.gears.indexOf(Explore.shaft);
   const view = Explore.view(row, channel);
   if (!view.averages) return void body.append(Explore.element("p", view.missing, { class: "note" }));
   const average = view.averages[place];

@@ -1,13 +1,16 @@
 // Brings the parts together: what is chosen, and what then is drawn.
 Explore.chosen = null;
 
-Explore.teeth = (record) => (record.teeth_planet ? `${record.teeth_sun}, ${record.teeth_planet} and ${record.teeth_ring}` : `${record.teeth_pinion} and ${record.teeth_gear}`);
+Explore.teeth = (record) => {
+  const teeth = Explore.data.teeth.map((name) => record[name]);
+  return `${teeth.slice(0, -1).join(", ")} and ${teeth.at(-1)}`;
+};
 
 Explore.facts = (row) => {
   const record = Explore.records[row];
   const area = record.damaged_area_mm2 ? `, ${Explore.number(record.damaged_area_mm2)} mm² damaged` : "";
   const load = record.torque_nm === null ? "" : `, load ${Explore.number(record.torque_nm)}`;
-  if (Explore.isRecording(row)) return `${record.name}, ${record.state}, ${Explore.data.shafts[0]} ${Explore.number(record.speed_hz)} Hz${load}, ${Explore.teeth(record)} teeth.`;
+  if (Explore.isRecording(row)) return `${record.name}, ${record.state}, ${Explore.data.gears[0]} ${Explore.number(record.speed_hz)} Hz${load}, ${Explore.teeth(record)} teeth.`;
   const age = record.age_h === undefined ? "" : `, ${Explore.number(record.age_h)} h old`;
   return `Gearbox ${record.specimen_id}${age}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${Explore.teeth(record)} teeth${area}, ${record.split}${record.predicted === undefined ? "" : `, ${record.named} named ${record.predicted}`}.`;
 };

@@ -13,7 +13,7 @@ Explore.flank = (gear, tooth, damages, size) => {
   const width = size.face_mm + 2 * margin;
   const height = size.tip_mm + 2 * margin;
   const depth = Math.max(...damages.map((damage) => damage.depth_mm));
-  const text = `${Explore.called(gear)} tooth ${tooth}: ${damages.length} ${damages.length === 1 ? damages[0].kind : "damages"}, up to ${Explore.number(depth)} mm deep`;
+  const text = `${gear} tooth ${tooth}: ${damages.length} ${damages.length === 1 ? damages[0].kind : "damages"}, up to ${Explore.number(depth)} mm deep`;
   const figure = Explore.element("figure");
   const drawing = Explore.svg("svg", { viewBox: `${-margin} ${-margin} ${width} ${height}`, width: Math.round(width * 16), height: Math.round(height * 16), role: "img", "aria-label": text });
   const up = (value) => size.tip_mm - value;
@@ -44,7 +44,7 @@ Explore.showFlank = (section, row) => {
   const flanks = Explore.element("div", "", { class: "flanks" });
   for (const [gear, tooth] of teeth.slice(0, Explore.MOST_FLANKS)) {
     const size = sizes[gear];
-    if (!size) return void body.append(Explore.element("p", "The set's configuration does not give the gears as plain numbers, so that flanks have no scale."));
+    if (!size) return void body.append(Explore.element("p", "The set's configuration draws the size of this gear, or cannot be read, so that its flanks have no scale."));
     flanks.append(Explore.flank(gear, tooth, damages.filter((damage) => damage.gear === gear && damage.tooth === tooth), size));
   }
   const size = sizes[teeth[0][0]];

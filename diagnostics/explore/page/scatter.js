@@ -59,7 +59,7 @@ Explore.drawScatter = () => {
 Explore.buildScatter = () => {
   const named = (name, fallback) => Explore.columns.find((column) => column.name === name || column.name.startsWith(`${name}__`)) ?? fallback;
   const first = Explore.columns[Explore.firstIndicator] ?? Explore.columns[0];
-  const best = Explore.data.ranked.map((name) => named(name)).find(Boolean) ?? named(`fm4_${Explore.data.shafts[0]}`, first);
+  const best = Explore.data.ranked.map((name) => named(name)).find(Boolean) ?? first;
   const across = Explore.columnOf.get(Explore.data.measured || Explore.beside ? "speed_hz" : "damaged_area_mm2") ?? first;
   Explore.pair = [across, best ?? first];
   Explore.byColumn = best ?? first;

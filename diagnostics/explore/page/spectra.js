@@ -1,7 +1,9 @@
 // What the orders of spectra count: of a planetary set turns of the sun against its carrier.
-Explore.planetary = () => Explore.data.shafts.length > 2;
-Explore.orderWords = () => (Explore.planetary() ? `order of the ${Explore.data.shafts[0]} against the carrier` : `${Explore.called("pinion")} order`);
-Explore.turnWords = () => (Explore.planetary() ? `turns of the ${Explore.data.shafts[0]} against the carrier` : `${Explore.called("pinion")} revolutions`);
+Explore.planetary = () => Explore.data.planetary;
+// Teeth of the first and the last gear of the first mesh.
+Explore.meshTeeth = (row) => [0, -1].map((place) => Explore.records[row][Explore.data.teeth.at(place)]);
+Explore.orderWords = () => (Explore.planetary() ? `order of the ${Explore.data.gears[0]} against the carrier` : `${Explore.data.gears[0]} order`);
+Explore.turnWords = () => (Explore.planetary() ? `turns of the ${Explore.data.gears[0]} against the carrier` : `${Explore.data.gears[0]} revolutions`);
 
 // Order spectrum with its difference from the healthy record, and the envelope spectrum.
 Explore.orders = (count, step) => Array.from({ length: count }, (_, k) => k * step);
@@ -9,15 +11,15 @@ Explore.orders = (count, step) => Array.from({ length: count }, (_, k) => k * st
 Explore.minus = (left, right) => left.map((value, k) => (value === null || right[k] === null ? null : value - right[k]));
 
 Explore.spectrumMarks = (row) => (first, last) => {
-  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.records[row];
+  const [driver, driven] = Explore.meshTeeth(row);
   const found = [];
-  for (let h = Math.max(1, Math.ceil(first / pinion)); h * pinion <= last; h++) found.push({ at: h * pinion, text: `mesh ${h}` });
-  if (last - first > 1.2 * pinion || Explore.planetary()) return found;
-  for (let h = Math.max(1, Math.floor(first / pinion)); h * pinion <= last + pinion; h++)
+  for (let h = Math.max(1, Math.ceil(first / driver)); h * driver <= last; h++) found.push({ at: h * driver, text: `mesh ${h}` });
+  if (last - first > 1.2 * driver || Explore.planetary()) return found;
+  for (let h = Math.max(1, Math.floor(first / driver)); h * driver <= last + driver; h++)
     for (let k = 1; k <= 6; k++)
       for (const side of [-1, 1]) {
-        found.push({ at: h * pinion + side * k, faint: true, text: k <= 3 ? `${side > 0 ? "+" : "−"}${k} ${Explore.called("pinion")}` : "" });
-        if (last - first < pinion / 3) found.push({ at: h * pinion + (side * k * pinion) / gear, faint: true, colour: "accent", text: "" });
+        found.push({ at: h * driver + side * k, faint: true, text: k <= 3 ? `${side > 0 ? "+" : "−"}${k} ${Explore.data.gears[0]}` : "" });
+        if (last - first < driver / 3) found.push({ at: h * driver + (side * k * driver) / driven, faint: true, colour: "accent", text: "" });
       }
   return found;
 };
@@ -39,7 +41,7 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
   Explore.chart(body, {
     ...shared, title: "Order spectrum", y: `dB over 1 ${Explore.quantityOf(channel).unit}`, series, data: base ? [x, own, base] : [x, own],
     summary: `Strongest line at order ${Explore.number(x[top])} with ${Explore.number(own[top])} dB.`,
-    caption: `Hann amplitude over whole ${Explore.turnWords()}; a point is the largest line near it.${Explore.planetary() ? " Planets that pass move lines off the mesh frequency." : ` Zoom to a mesh line for its sidebands: ${Explore.called("pinion")}, and nearer still ${Explore.data.called.gear || "the gear"}.`}`,
+    caption: `Hann amplitude over whole ${Explore.turnWords()}; a point is the largest line near it.${Explore.planetary() ? " Planets that pass move lines off the mesh frequency." : ` Zoom to a mesh line for its sidebands: ${Explore.data.gears[0]}, and nearer still ${Explore.data.gears[1]}.`}`,
   });
   if (!base) return;
   Explore.chart(body, {
@@ -49,11 +51,11 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
 };
 
 Explore.envelopeMarks = (row) => (first, last) => {
-  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.records[row];
+  const [driver, driven] = Explore.meshTeeth(row);
   const found = [];
-  const [fast, slow] = Explore.planetary() ? [Explore.data.shafts[0], "carrier"] : ["pinion", "gear"].map(Explore.called);
-  for (let k = 1; k <= 4; k++) found.push({ at: k, text: k < 3 ? `${k}× ${fast}` : "" }, { at: (k * pinion) / gear, faint: true, colour: "accent", text: last - first < 4 && k < 3 ? `${k}× ${slow}` : "" });
-  found.push({ at: pinion, text: "mesh" });
+  const [fast, slow] = Explore.planetary() ? [Explore.data.gears[0], "carrier"] : Explore.data.gears;
+  for (let k = 1; k <= 4; k++) found.push({ at: k, text: k < 3 ? `${k}× ${fast}` : "" }, { at: (k * driver) / driven, faint: true, colour: "accent", text: last - first < 4 && k < 3 ? `${k}× ${slow}` : "" });
+  found.push({ at: driver, text: "mesh" });
   return found;
 };
 

@@ -1,4 +1,4 @@
-// The signal over pinion revolutions: extremes of buckets, every sample of the first stretch.
+// The signal over turns of the first shaft: extremes of buckets, every sample of the first stretch.
 Explore.wave = (row, packed) => {
   const samples = Explore.samples(packed);
   const pulses = Explore.floats(Explore.detail(row).pulses);
@@ -21,28 +21,27 @@ Explore.angleLabel = (own) => (own.turning ? `${Explore.turnWords()} since the f
 // Angles (revolutions since the first pulse) at which a damaged tooth enters contact, within first ... last.
 Explore.entries = (row, first, last) => {
   const record = Explore.records[row];
+  const [driver, driven] = Explore.meshTeeth(row);
   const found = [];
   if (Explore.planetary()) return found; // which tooth meets which planet follows from the carrier, which has no pulse
-  const pairs = Explore.unknown(record.start_angle_rad) ? 0 : Math.ceil(record.start_angle_rad / (2 * Math.PI)) * record.teeth_pinion;
+  const pairs = Explore.unknown(record.start_angle_rad) ? 0 : Math.ceil(record.start_angle_rad / (2 * Math.PI)) * driver;
   for (const [gear, tooth] of Explore.damagedTeeth(row)) {
-    if (gear.includes(".")) continue; // of a further mesh, whose shafts turn otherwise
-    if (gear === "gear" && Explore.unknown(record.start_angle_rad)) continue;
-    const teeth = gear === "pinion" ? record.teeth_pinion : record.teeth_gear;
-    const start = gear === "pinion" ? tooth : (((tooth - pairs) % teeth) + teeth) % teeth;
-    const period = teeth / record.teeth_pinion;
+    const place = Explore.data.gears.indexOf(gear);
+    if (place < 0) continue; // of a further mesh, whose shafts turn otherwise
+    if (place && Explore.unknown(record.start_angle_rad)) continue;
+    const teeth = place ? driven : driver;
+    const start = place === 0 ? tooth : (((tooth - pairs) % teeth) + teeth) % teeth;
+    const period = teeth / driver;
     for (let n = Math.floor(first / period) - 1; ; n++) {
-      const at = start / record.teeth_pinion + n * period;
+      const at = start / driver + n * period;
       if (at > last) break;
-      if (at >= first - 1) found.push({ at, to: at + 1 / record.teeth_pinion, colour: "damage", text: `${Explore.called(gear)} tooth ${tooth}` });
+      if (at >= first - 1) found.push({ at, to: at + 1 / driver, colour: "damage", text: `${gear} tooth ${tooth}` });
     }
   }
   return found;
 };
 
 Explore.unknown = (value) => value === undefined || value === null;
-
-// What the user calls a gear.
-Explore.called = (gear) => Explore.data.called[gear] || gear;
 
 Explore.damagedTeeth = (row) => {
   const found = new Map((Explore.detail(row)?.damage ?? []).map((damage) => [`${damage.gear} ${damage.tooth}`, [damage.gear, damage.tooth]]));
@@ -51,7 +50,7 @@ Explore.damagedTeeth = (row) => {
 
 Explore.waveMarks = (row, turning) => (first, last) => {
   if (!turning) return [];
-  const teeth = Explore.records[row].teeth_pinion;
+  const [teeth] = Explore.meshTeeth(row);
   const found = [];
   if (last - first <= 60) for (let n = Math.ceil(first); n <= last; n++) found.push({ at: n, text: last - first <= 12 ? `rev ${n}` : "" });
   if ((last - first) * teeth <= 130)
@@ -84,7 +83,7 @@ Explore.showWaveform = (section, row, channel, healthy) => {
   const plot = Explore.chart(body, {
     title: "Signal", start, x: Explore.angleLabel(own), y: `${Explore.quantityOf(channel).word} [${Explore.quantityOf(channel).unit}]`, ...Explore.overlaid(own, other), group: "turns",
     range: [own.x[0], own.x[own.x.length - 1]], marks: Explore.waveMarks(row, own.turning), summary: `Largest magnitude ${Explore.number(peak)} ${Explore.quantityOf(channel).unit}.`,
-    caption: `${kept} Dashed: revolutions; thin, numbered: teeth of the ${Explore.planetary() ? Explore.data.shafts[0] : Explore.called("pinion")} (when near enough); shaded: a damaged tooth enters contact.`,
+    caption: `${kept} Dashed: revolutions; thin, numbered: teeth of the ${Explore.data.gears[0]} (when near enough); shaded: a damaged tooth enters contact.`,
   });
   const near = Explore.element("button", own.turning ? "first revolutions" : "first stretch", { type: "button" });
   near.addEventListener("click", () => plot.setScale("x", start));

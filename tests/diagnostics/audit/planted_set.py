@@ -13,7 +13,6 @@ import pyarrow as pa
 import pytest
 
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
-from siggen.names import PAIR, Names
 from tests.diagnostics.column_roles import ListedRoles
 from tests.shared import shared
 
@@ -35,9 +34,6 @@ class PlantedSet(ListedRoles):
     fs_hz: float = FS_HZ
     duration_s: float = DURATION_S
     splits: tuple[str, ...] = ("all",)
-
-    def names(self) -> tuple[Names, dict[str, str]]:
-        return PAIR, {}
 
     @property
     def channels(self) -> tuple[SimpleNamespace, ...]:

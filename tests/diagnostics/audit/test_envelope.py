@@ -30,7 +30,7 @@ def test_thirteen_quantities_count_healthy_channel_records_only(found: MeasuredS
     assert result is not None
     assert len(result.shares) == 13
     assert result.channel_records == 3 * 2 * 3
-    share = next(share for share in result.shares if share.quantity.name == "fm4_pinion")
+    share = next(share for share in result.shares if share.quantity.name == "fm4")
     assert share.inside == pytest.approx(16 / 18)
     assert share.undefined == pytest.approx(1 / 18)
     assert share.quantiles[1] == 3.0

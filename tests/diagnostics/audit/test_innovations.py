@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import cast
+from typing import Any
 
 import numpy as np
 from scipy.signal import freqz, zpk2tf
@@ -66,7 +65,12 @@ def measured(rng: np.random.Generator) -> tuple[MeasuredSet, np.ndarray]:
         for gearbox, ill in zip(SPECIMEN, DAMAGED, strict=True)
     ]
     labels = {"teeth_pinion": np.full(SPECIMEN.size, TEETH), "faulty_teeth_pinion": faulty}
-    return cast(MeasuredSet, SimpleNamespace(labels=labels)), innovations(lines, labels["teeth_pinion"])
+    return of_labels(labels), innovations(lines, labels["teeth_pinion"])
+
+
+def of_labels(labels: dict[str, Any]) -> MeasuredSet:
+    about = {quantity: {"pinion": f"{quantity}_pinion"} for quantity in ("teeth", "faulty_teeth")}
+    return MeasuredSet(labels, (), {}, (), [], [], np.empty((0, 0)), {}, [], about=about)
 
 
 def test_an_event_at_a_named_tooth_is_found_on_other_gearboxes_and_nothing_without_one() -> None:
@@ -77,5 +81,5 @@ def test_an_event_at_a_named_tooth_is_found_on_other_gearboxes_and_nothing_witho
     score = attacker.attack(Trial(np.arange(SPECIMEN.size), DAMAGED[None], SPECIMEN, train, 0, 0)).score[0]
     held = DAMAGED[~train]
     assert np.mean(score[held][:, None] > score[~held]) > 0.9
-    nothing = tooth_attacker("teeth", cast(MeasuredSet, SimpleNamespace(labels={"teeth_pinion": [18]})), lines)
+    nothing = tooth_attacker("teeth", of_labels({"teeth_pinion": np.array([18])}), lines)
     assert nothing is None

@@ -23,8 +23,10 @@ def bursts() -> MeasuredSet:
     for row in np.flatnonzero(DAMAGED):
         waves[row, rng.integers(STEPS - 24) + np.arange(24)] += 5.0 * np.sin(0.8 * np.arange(24))
     lines = np.fft.rfft(waves)[:, : STEPS // 2].astype(np.complex64) / STEPS
-    labels = {"specimen_id": SPECIMEN, "teeth_pinion": np.full(SPECIMEN.size, 18)}
-    found = SimpleNamespace(waveforms=[[row] for row in lines], labels=labels, channels=("a",), healthy=~DAMAGED)
+    found = SimpleNamespace(
+        waveforms=[[row] for row in lines], labels={"specimen_id": SPECIMEN}, channels=("a",), healthy=~DAMAGED,
+        teeth=np.full(SPECIMEN.size, 18),
+    )  # fmt: skip
     return cast(MeasuredSet, found)
 
 

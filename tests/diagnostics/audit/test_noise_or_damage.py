@@ -35,7 +35,9 @@ def measured(line_db: np.ndarray, noise_db: np.ndarray, levels: dict[str, np.nda
     values = {"pulses_per_s": np.full((SPECIMEN.size, 1), 20.0), BAND: noise_db[:, None]}
     waves = [[np.full(ORDERS, 10.0 ** (db / 20.0), np.complex64)] for db in line_db]
     raw = RawColumns(levels=levels, fs_hz=12_800.0)
-    return MeasuredSet(labels, ("a",), values, (), waves, [], np.zeros((SPECIMEN.size, 1)), {}, [], raw=raw)
+    about = {"teeth": {"pinion": "teeth_pinion"}}
+    snr = np.zeros((SPECIMEN.size, 1))
+    return MeasuredSet(labels, ("a",), values, (), waves, [], snr, {}, [], raw=raw, about=about)
 
 
 @pytest.mark.parametrize(

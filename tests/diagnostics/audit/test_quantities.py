@@ -9,6 +9,7 @@ import pytest
 
 from diagnostics.indicators.line_levels import line_levels, synchronous_ratio_db
 from diagnostics.indicators.record import record_result
+from diagnostics.records.gear_train import pair_train
 from diagnostics.records.recording import Recording
 from diagnostics.signal.order_domain import speed_variation_percent
 from diagnostics.signal.spectrum import noise_density, order_lines
@@ -108,8 +109,8 @@ def test_quantities_of_a_record_in_time_agree_with_its_lines() -> None:
     turn = speed_hz * time_s + 0.37
     signal = np.cos(2 * np.pi * 18 * turn) * (1 + 0.2 * np.cos(2 * np.pi * turn))
     tacho_s = (np.arange(1, int(turn[-1]) + 1) - 0.37) / speed_hz
-    labels = {"record_id": 0, "teeth_pinion": TEETH[0], "teeth_gear": TEETH[1]}
-    found = record_result(Recording(labels, {"a": signal}, tacho_s, fs_hz)).channels["a"].values
+    record = Recording({"record_id": 0}, {"a": signal}, tacho_s, fs_hz, pair_train(TEETH))
+    found = record_result(record).channels["a"].values
     # amplitude modulation of index m has sidebands m/2; the ratio of six sidebands is m
     assert found["sideband1_db"] == pytest.approx(-20.0, abs=0.01)
     assert found["asymmetry_db"] == pytest.approx(0.0, abs=0.01)

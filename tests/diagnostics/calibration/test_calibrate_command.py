@@ -80,7 +80,7 @@ def test_what_was_fitted_and_what_was_not_is_written_down(calibrated: tuple[Path
     assert facts["second_stage"] == {"shaft": "gear", "teeth": 27, "order": pytest.approx(27 * 18 / 47)}
     stage = facts["channels"]["sensor_1_vertical"]["second_stage_level_db"]
     assert all(low <= value <= high for value, low, high in stage.values())
-    assert "27 teeth on the gear's shaft" in said
+    assert "27 teeth on the gear shaft" in said
     assert any("path and source" in text for text in facts["not_identified"])
     assert "path and source" in said
     assert "intervals of 90 % hold their mean" in said

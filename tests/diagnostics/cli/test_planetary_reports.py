@@ -76,7 +76,7 @@ def test_a_spall_moves_the_indicators_of_its_member_and_not_of_the_other(
 
 
 def test_pages_and_tables_name_members_and_never_a_pair(made: Path, features: pa.Table) -> None:
-    assert {"teeth_sun", "teeth_ring", "turns_sun", "turns_carrier"} <= set(features.column_names)
+    assert {"teeth_sun", "teeth_ring", "revolutions_sun", "revolutions_ring"} <= set(features.column_names)
     assert not [name for name in features.column_names if "pinion" in name or "gear" in name]
     assert np.isnan(features["sideband_h1_upper1_sun__ring_horizontal"].to_numpy()).all()  # 11 turns of 17
     assert "1 (needs 17)" in features["notes"][0].as_py()

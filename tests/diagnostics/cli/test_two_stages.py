@@ -6,7 +6,6 @@ Slow: eight gearboxes are simulated.
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -72,7 +71,7 @@ def test_damage_of_the_second_mesh_shows_in_the_sidebands_of_that_mesh(ranked: p
 
     Perfect gears without noise: what a healthy record has in sidebands is below a hundredth of the line.
     """
-    healthy, damaged = medians(ranked, "sideband_ratio_pinion_h1_k3_slow__lid_vertical")
+    healthy, damaged = medians(ranked, "sideband_ratio_slow_pinion_h1_k3__lid_vertical")
     assert healthy < 0.01
     assert damaged > 5.0 * healthy
     first = medians(ranked, "sideband_ratio_pinion_h1_k3__lid_vertical")
@@ -80,12 +79,12 @@ def test_damage_of_the_second_mesh_shows_in_the_sidebands_of_that_mesh(ranked: p
 
 
 def test_a_slow_gear_of_four_turns_is_undefined_and_the_notes_say_so_once(made: Path, ranked: pa.Table) -> None:
-    gear = [name for name in ranked.column_names if re.search(r"_gear.*_slow__", name)]
+    gear = [name for name in ranked.column_names if "_slow_gear" in name]
     assert len(gear) > 100
     assert not np.isfinite(np.concatenate([ranked.column(name).to_numpy() for name in gear])).any()
     numbers = json.loads((made / "ranked/indicators.json").read_text(encoding="utf-8"))
     said = " ".join(numbers["notes"])
-    assert said.count("mesh slow: all gear averages undefined, since they need 8 gear revolutions") == 1
+    assert said.count("all slow.gear averages undefined, since they need 8 slow.gear revolutions") == 1
 
 
 def test_classifiers_take_features_of_both_meshes_and_predict_refuses_them(made: Path) -> None:
@@ -93,10 +92,10 @@ def test_classifiers_take_features_of_both_meshes_and_predict_refuses_them(made:
     done = run("diagnostics", "report", str(made / "set"), "--out", str(folder))
     assert done.returncode == 0, done.stdout + done.stderr
     names = json.loads((folder / "models/feature_names.json").read_text(encoding="utf-8"))
-    assert "sideband_ratio_pinion_h1_k3_slow__lid_vertical" in json.dumps(names)
+    assert "sideband_ratio_slow_pinion_h1_k3__lid_vertical" in json.dumps(names)
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "around mesh harmonic 1 of mesh slow" in page
-    assert "pinion, mesh harmonic 1, sidebands 1 to 3, mesh slow" in page
+    assert "slow.pinion, mesh harmonic 1, sidebands 1 to 3" in page
     record = made / "record.csv"
     record.write_text("lid_vertical\n" + "\n".join(str(k % 7) for k in range(20_000)), encoding="utf-8")
     told = run("diagnostics", "predict", str(folder), str(record), "--fs", "12800", "--teeth", "18,47")

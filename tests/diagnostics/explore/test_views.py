@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,15 +11,11 @@ import pytest
 from diagnostics.explore.detail import Detail
 from diagnostics.explore.flanks import flank_size, outlines
 from diagnostics.explore.record_views import OrderAxis, PageAxes, record_views
-from diagnostics.records.named_set import Words
-from diagnostics.records.own_words import own_words
+from diagnostics.records.gear_train import pair_train
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectrum import envelope_spectrum
-from siggen.config import parse
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.geometry.spur_gear import SpurGear
-from tests.config.mill import mill
-from tests.config.staged import staged
 from tests.diagnostics.explore.unpacked import steps
 
 TEETH = (10, 14)
@@ -35,8 +32,7 @@ def meshing(start_turns: float, gear_tooth: int, bump: float = 5.0) -> Recording
     since = (pairs - gear_tooth) % TEETH[1]
     signal = 2.0 * np.cos(2 * np.pi * 3 * pairs) + bump * np.exp(-0.5 * ((since - 0.5) / 0.1) ** 2)
     pulses = (np.arange(math.ceil(start_turns), math.floor(turns[-1]) + 1) - start_turns) / SPEED_HZ
-    labels = {"teeth_pinion": TEETH[0], "teeth_gear": TEETH[1]}
-    return Recording(labels, {"a": signal.astype(np.float32)}, pulses, FS_HZ)
+    return Recording({}, {"a": signal.astype(np.float32)}, pulses, FS_HZ, pair_train(TEETH))
 
 
 @pytest.mark.parametrize("start_turns", [0.0, 0.3, 2.0, 4.71, 6.99])
@@ -64,7 +60,7 @@ def test_amplitude_modulation_is_the_first_line_of_the_envelope() -> None:
 
 def test_a_record_without_pulses_shows_its_signal_and_says_what_is_missing() -> None:
     record = meshing(0.0, 0)
-    found = record_views(Recording(record.labels, record.channels, np.array([]), FS_HZ), AXES, 0.0)
+    found = record_views(replace(record, tacho_s=np.array([])), AXES, 0.0)
     assert "at least 2" in found["missing"]
     assert set(found["channels"]["a"]) == {"wave", "undefined"}
 
@@ -79,16 +75,14 @@ def test_the_largest_line_about_a_point_is_kept_and_gaps_take_the_nearest() -> N
 
 @pytest.mark.parametrize(("teeth", "shift"), [(25, 0.0), (19, 0.4), (56, -0.2)])
 def test_flank_heights_are_those_of_the_simulated_gear(teeth: int, shift: float) -> None:
-    gears = {"module_mm": 2.0, "pressure_angle_deg": 20.0, "face_width_mm": 20.0, "pinion": {"profile_shift": shift}}
     gear = SpurGear(teeth, 2e-3, math.radians(20.0), shift, 1.0, 0.25, 5e-3)
-    found = flank_size({"gears": gears}, "pinion", teeth)
+    found = flank_size(2.0, 20.0, 20.0, shift, teeth)
     assert found is not None
     assert found["tip_mm"] == pytest.approx(1e3 * flank_heights(gear)[1], abs=1e-3)
 
 
-def test_gears_that_are_drawn_at_random_have_no_scale() -> None:
-    assert flank_size({"gears": {"module_mm": [1, 2]}}, "pinion", 20) is None
-    assert flank_size({"name": "memory"}, "gear", 20) is None
+def test_a_flank_that_is_drawn_at_random_has_no_scale() -> None:
+    assert flank_size([1, 2], 20.0, 20.0, 0.0, 20) is None
 
 
 def test_an_elliptic_pit_keeps_its_axes() -> None:
@@ -97,27 +91,3 @@ def test_an_elliptic_pit_keeps_its_axes() -> None:
     corners = np.array(outlines([row])[0]["corners"])
     assert np.ptp(corners, axis=0).tolist() == [3.0, 1.0]
     assert corners.mean(axis=0).tolist() == pytest.approx([8.0, 2.0], abs=1e-3)
-
-
-def test_indicators_of_a_machine_are_called_after_the_gears_of_their_mesh() -> None:
-    parsed = parse(mill()).config
-    assert parsed is not None
-    words = Words(own_words(parsed.names))
-    title = "Sideband power, pinion, mesh harmonics 1 to 5"
-    assert words.about("sideband_power_pinion", title) == title.replace("pinion", "ida")
-    assert (
-        words.about("sideband_power_pinion_slow", f"{title}, mesh slow")
-        == f"{title.replace('pinion', 'eva')}, mesh slow"
-    )
-    assert words.column("sideband_power_gear_slow__end_vertical") == "sideband_power_karl_slow__end_vertical"
-
-
-def test_flanks_of_a_machine_are_those_of_the_short_form() -> None:
-    own, short = mill(), staged()
-    parsed = parse(own).config
-    assert parsed is not None
-    for gear, teeth in (("pinion", 18), ("gear", 47), ("slow.pinion", 17), ("slow.gear", 52)):
-        found = flank_size(own, gear, teeth, own_words(parsed.names))
-        assert found is not None
-        assert found == flank_size(short, gear, teeth)
-        assert found["face_mm"] == (30.0 if "slow" in gear else 20.0)

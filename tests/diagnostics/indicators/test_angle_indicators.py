@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from diagnostics.indicators.record import record_values
-from diagnostics.indicators.registry import check_quantity, columns
+from diagnostics.indicators.registry import check_quantity, columns, indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import ANGULAR_SPEED, RECORDED, TRANSMISSION_ERROR
 from siggen.errors import UsageError
@@ -20,6 +20,7 @@ from siggen.errors import UsageError
 FS_HZ, TEETH, SPEED_HZ = 25_600.0, (18, 47), 33.0
 GEAR = TEETH[0] / TEETH[1]
 MEAN = 2.0 * math.pi * SPEED_HZ
+KNOWN = indicator_columns(IndicatorSettings())
 HELD = {"encoder": ANGULAR_SPEED, "error": TRANSMISSION_ERROR}
 
 
@@ -120,8 +121,8 @@ def test_accelerations_keep_their_columns_and_every_quantity_has_its_own() -> No
 def test_an_indicator_of_another_quantity_is_refused_with_channel_quantity_and_what_to_take() -> None:
     held = {**HELD, "lid": RECORDED.word}
     with pytest.raises(UsageError, match=r"received channel 'encoder', which holds angular speed.*acceleration.*lid"):
-        check_quantity("crest_factor__encoder", held)
+        check_quantity("crest_factor__encoder", KNOWN, held)
     with pytest.raises(UsageError, match=r"received channel 'lid', which holds acceleration.*encoder, error"):
-        check_quantity("shaft_amplitude_gear_k2__lid", held)
+        check_quantity("shaft_amplitude_gear_k2__lid", KNOWN, held)
     for column in ("crest_factor__lid", "speed_ripple__encoder", "rms__error", "peak__lid", "record_id"):
-        check_quantity(column, held)
+        check_quantity(column, KNOWN, held)

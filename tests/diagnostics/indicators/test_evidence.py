@@ -13,10 +13,10 @@ from scipy.special import jv
 from diagnostics.indicators.cepstrum import BAND_SHARE
 from diagnostics.indicators.channel_signals import ChannelSignals
 from diagnostics.indicators.history import history_indicators
-from diagnostics.indicators.indicator import base_name
-from diagnostics.indicators.registry import taken_of
+from diagnostics.indicators.registry import indicator_columns, taken_of
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
+from diagnostics.records.gear_train import PAIR
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
 
@@ -28,7 +28,7 @@ SETTINGS = IndicatorSettings()
 PINION = Shaft("pinion", Z, 1, np.ones(6, dtype=bool), "")
 TAKEN = taken_of(RECORDED.word)
 """Indicators of accelerations; those of angles: test_angle_indicators.py."""
-NO_GEAR = Shaft("gear", TEETH[1], 0, np.zeros(6, dtype=bool), "")
+NO_GEAR = Shaft("gear", TEETH[1], 0, np.zeros(6, dtype=bool), "", weighted=True)
 
 
 def tone(order: int, amplitude: float = 1.0) -> np.ndarray:
@@ -121,7 +121,7 @@ def test_closed_form_of_the_noise_share() -> None:
 
 
 def raw(name: str, signal: np.ndarray) -> float:
-    shafts = record_shafts(None, TEETH, PER_TOOTH, 6)
+    shafts = record_shafts(None, TEETH, PER_TOOTH, 6, PAIR[0].gears)
     return ChannelSignals(signal, FS_HZ, None, shafts, SETTINGS).values(TAKEN)[name]
 
 
@@ -150,7 +150,7 @@ def test_closed_form_of_the_spectral_kurtosis() -> None:
 
 def whole_record(signal: np.ndarray, pulses: np.ndarray) -> ChannelSignals:
     grid = angle_grid(pulses, PER_TURN)
-    return ChannelSignals(signal, FS_HZ, grid, record_shafts(grid, TEETH, PER_TOOTH, 6), SETTINGS)
+    return ChannelSignals(signal, FS_HZ, grid, record_shafts(grid, TEETH, PER_TOOTH, 6, PAIR[0].gears), SETTINGS)
 
 
 def test_closed_form_of_the_cepstral_peaks() -> None:
@@ -313,8 +313,9 @@ SEPARATE = {"spectral_kurtosis_maximum", "cepstral_peak", "noise_share"}
 
 def test_every_definition_has_a_closed_form_and_a_second_computation() -> None:
     tables = (CLOSED_ON_AVERAGES, CLOSED_ON_RECORDS, CLOSED_OF_HISTORIES)
-    assert {base_name(name) for table in tables for name in table} | SEPARATE == {entry.name for entry in TAKEN}
+    known = {entry.name for entry in TAKEN}
+    of_column = {name: one.entry.name for name, one in indicator_columns(SETTINGS).items()}
+    assert {of_column.get(name, name) for table in tables for name in table} | SEPARATE == known
     record, pulses, _ = record_and_truth(3)
-    by_column = {base_name(name) for name in whole_record(record, pulses).values(TAKEN)}
-    assert base_name("band_kurtosis_gear_o75_150__lid") == "band_kurtosis"
-    assert by_column | set(CLOSED_OF_HISTORIES) == {entry.name for entry in TAKEN}
+    by_column = {of_column[name] for name in whole_record(record, pulses).values(TAKEN)}
+    assert by_column | set(CLOSED_OF_HISTORIES) == known

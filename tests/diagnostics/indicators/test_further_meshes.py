@@ -7,14 +7,19 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from diagnostics.indicators.indicator import base_name, without_mesh
 from diagnostics.indicators.record import RecordValues, record_values
-from diagnostics.indicators.registry import columns, indicator_titles
+from diagnostics.indicators.registry import columns, indicator_columns, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import GearNames, Mesh, further_meshes, gear_train
+from diagnostics.records.gear_train import PAIR, Mesh, MeshNames, gear_names, meshes_of, with_teeth
 from diagnostics.signal.order_domain import angle_grid, shaft_grid
+from siggen import load_config
+from siggen.columns.drivetrain import GearTrain, gear_train
+from siggen.errors import UsageError
+from tests.config.idler import idler
+from tests.config.mill import mill
+from tests.config.staged import SLOW, staged
 
-LABELS = {"teeth_pinion": 18, "teeth_gear": 47, "teeth_slow_pinion": 17, "teeth_slow_gear": 52}
+TRAIN = gear_train(load_config(staged()))
 FS_HZ, SPEED_HZ = 12_800.0, 30.0
 DEPTH = 0.2
 
@@ -40,16 +45,34 @@ def taken(modulation: str, front: float = 0.7, duration_s: float = 4.0) -> Recor
     pinion, gear = first * 18 / 47, first * 18 / 47 * 17 / 52
     wave = 1.0 + DEPTH * np.cos({"pinion": pinion, "gear": gear}[modulation] + 0.3)
     signal = wave * np.cos(17 * pinion) + front * np.cos(18 * first)
-    return record_values({"a": signal}, pulses(duration_s), FS_HZ, (18, 47), train=gear_train(LABELS))
+    return record_values({"a": signal}, pulses(duration_s), FS_HZ, TRAIN)
+
+
+def three() -> GearTrain:
+    return gear_train(load_config(staged(stages=[SLOW, {**SLOW, "name": "last_one"}])))
 
 
 def test_a_gear_train_has_exact_turns_and_the_gears_that_share_a_shaft() -> None:
-    three = {**LABELS, "teeth_last_one_pinion": 19, "teeth_last_one_gear": 61}
-    first, slow, last = gear_train(three)
-    assert first == Mesh("", (18, 47), Fraction(1), 0, 17)
-    assert slow == Mesh("slow", (17, 52), Fraction(18, 47), 47, 19)
-    assert last == Mesh("last_one", (19, 61), Fraction(18 * 17, 47 * 52), 52, 0)
-    assert further_meshes(["teeth_pinion", "teeth_gear", "teeth_alone_pinion"]) == ()
+    first, slow, last = meshes_of(three())
+    assert first == Mesh(PAIR[0], (18, 47), Fraction(1), 0, 17)
+    assert slow == Mesh(MeshNames("slow", ("slow.pinion", "slow.gear")), (17, 52), Fraction(18, 47), 47, 17)
+    assert last.names == MeshNames("last_one", ("last_one.pinion", "last_one.gear"))
+    assert (last.turns, last.before, last.behind) == (Fraction(18 * 17, 47 * 52), 52, 0)
+
+
+def test_orders_and_turns_of_every_mesh_are_those_that_the_set_stores() -> None:
+    """Whatever made them: stages, a machine with names of its user, or one with an idler."""
+    for train in (three(), gear_train(load_config(mill())), gear_train(load_config(idler()))):
+        turns = {shaft.name: shaft.turns for shaft in train.shafts}
+        for mesh, stored in zip(meshes_of(train), train.meshes, strict=True):
+            assert (mesh.turns * mesh.teeth[0]).as_integer_ratio() == stored.order
+            assert mesh.turns.as_integer_ratio() == turns[train.gear(stored.driver).shaft]
+
+
+def test_teeth_of_a_record_take_the_place_of_those_that_differ_within_a_set() -> None:
+    drawn = gear_train(load_config("families"))
+    (mesh,) = meshes_of(with_teeth(drawn, {"pinion": 23, "gear": 61}))
+    assert (mesh.names, mesh.teeth) == (PAIR[0], (23, 61))
 
 
 def test_steps_of_a_geared_shaft_lie_on_the_steps_of_the_first_one() -> None:
@@ -74,10 +97,10 @@ def test_sidebands_stand_at_the_shaft_and_the_mesh_that_have_them() -> None:
     found = taken("pinion").values
     assert found["mesh_amplitude_h1_slow__a"] == pytest.approx(1.0, abs=1e-6)
     assert found["mesh_amplitude_h1__a"] == pytest.approx(0.7, rel=0.01)
-    assert found["sideband_ratio_pinion_h1_k3_slow__a"] == pytest.approx(DEPTH, abs=1e-6)
-    assert found["sideband_pinion_h1_upper1_slow__a"] == pytest.approx(0.5 * DEPTH, abs=1e-6)
-    assert found["amplitude_modulation_pinion_h1_slow__a"] == pytest.approx(DEPTH, abs=1e-6)
-    assert found["sideband_gear_h1_upper1_slow__a"] < 1e-3
+    assert found["sideband_ratio_slow_pinion_h1_k3__a"] == pytest.approx(DEPTH, abs=1e-6)
+    assert found["sideband_slow_pinion_h1_upper1__a"] == pytest.approx(0.5 * DEPTH, abs=1e-6)
+    assert found["amplitude_modulation_slow_pinion_h1__a"] == pytest.approx(DEPTH, abs=1e-6)
+    assert found["sideband_slow_gear_h1_upper1__a"] < 1e-3
     assert found["sideband_ratio_gear_h1_k3__a"] < 1e-6
     assert found["sideband_ratio_pinion_h1_k3__a"] < 0.01
 
@@ -88,43 +111,44 @@ def test_sidebands_of_the_last_shaft_are_read_beside_a_stronger_mesh_in_front() 
     What leaks of the own mesh is below -31 dB of a sideband, as of a Hann window from two bins on.
     """
     found = taken("gear", front=20.0).values
-    assert found["sideband_gear_h1_upper1_slow__a"] == pytest.approx(0.5 * DEPTH, rel=0.03)
-    assert found["sideband_gear_h1_lower1_slow__a"] == pytest.approx(0.5 * DEPTH, rel=0.03)
-    assert found["average_rms_gear_slow__a"] == pytest.approx(np.sqrt(0.5 * (1.0 + 0.5 * DEPTH**2)), rel=0.01)
+    assert found["sideband_slow_gear_h1_upper1__a"] == pytest.approx(0.5 * DEPTH, rel=0.03)
+    assert found["sideband_slow_gear_h1_lower1__a"] == pytest.approx(0.5 * DEPTH, rel=0.03)
+    assert found["average_rms_slow_gear__a"] == pytest.approx(np.sqrt(0.5 * (1.0 + 0.5 * DEPTH**2)), rel=0.01)
     assert found["sideband_ratio_pinion_h1_k3__a"] < 0.01
 
 
 def test_lines_of_the_mesh_in_front_are_no_difference_signal_of_the_shaft() -> None:
     """On one shaft stand 47 and 17 teeth: neither mesh's lines, nor first sidebands, are what damage leaves."""
     found = taken("pinion").values
-    assert found["average_rms_pinion_slow__a"] == pytest.approx(np.sqrt(0.5 * (1.02 + 0.49)), rel=1e-4)
-    assert found["difference_rms_pinion_slow__a"] < 1e-6
+    assert found["average_rms_slow_pinion__a"] == pytest.approx(np.sqrt(0.5 * (1.02 + 0.49)), rel=1e-4)
+    assert found["difference_rms_slow_pinion__a"] < 1e-6
     assert found["difference_rms_gear__a"] < 1e-6
     # order 47 lies four below the third mesh harmonic, 51: it is no sideband of it
-    assert np.isnan(found["sideband_pinion_h3_lower4_slow__a"])
+    assert np.isnan(found["sideband_slow_pinion_h3_lower4__a"])
 
 
 def test_a_shaft_of_fewer_than_eight_turns_has_no_averages_and_says_so_once() -> None:
     found = taken("pinion", duration_s=2.0)
-    assert found.notes.count("mesh slow: all gear averages undefined") == 1
-    assert "8 gear revolutions" in found.notes
-    gear = {name: value for name, value in found.values.items() if "_gear" in name and "_slow__" in name}
+    assert found.notes.count("all slow.gear averages undefined") == 1
+    assert "8 slow.gear revolutions" in found.notes
+    gear = {name: value for name, value in found.values.items() if "_slow_gear" in name}
     assert gear
     assert all(np.isnan(list(gear.values())))
-    assert np.isfinite(found.values["fm4_pinion_slow__a"])
+    assert np.isfinite(found.values["fm4_slow_pinion__a"])
 
 
-def test_columns_of_a_further_mesh_end_in_its_name_and_titles_name_it() -> None:
-    settings = IndicatorSettings()
-    alone, both = columns(settings), columns(settings, named=GearNames(meshes=("last_one",)))
-    assert both[: len(alone)] == alone
-    behind = both[len(alone) :]
-    assert len(behind) > 0.9 * len(alone)
-    titles = indicator_titles(settings, named=GearNames(meshes=("last_one",)))
-    for name in alone:
-        assert without_mesh(name) == (name, "")
-    for name in behind:
-        first, mesh = without_mesh(f"{name}__lid_vertical")
-        assert (f"{first}_last_one", mesh) == (name, "last_one")
-        assert base_name(name) == base_name(first)
-        assert "mesh last_one" in titles[name]
+def test_columns_are_called_after_the_gears_of_their_mesh_and_say_what_they_hold() -> None:
+    settings, named = IndicatorSettings(), gear_names(gear_train(load_config(mill())))
+    alone, both, known = columns(settings), columns(settings, named=named), indicator_columns(settings, named)
+    first = [name for name in both if known[name].of_first]
+    assert len(first) == len(alone)
+    assert 0.9 * len(alone) < len(both) - len(first) < len(alone)
+    titles = indicator_titles(settings, named=named)
+    assert titles["fm0_eva_h5"] == "FM0, eva, mesh harmonics 1 to 5"
+    assert "mesh slow" in titles["mesh_amplitude_h1_slow"]
+    assert known["fm4_karl"].fields == {"shaft": "karl"}
+
+
+def test_names_of_gears_that_make_two_columns_one_are_refused() -> None:
+    with pytest.raises(UsageError, match="two of them are called cepstral_peak_a_b"):
+        indicator_columns(IndicatorSettings(), (MeshNames("", ("a.b", "c")), MeshNames("x", ("a_b", "d"))))

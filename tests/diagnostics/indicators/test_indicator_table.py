@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from diagnostics.indicators.history import central_moments, dominant_harmonic, moment_over_history
-from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.own_indicator import Gears, OwnIndicator, own_values, register, unregister
 from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
 from diagnostics.indicators.record import record_result, record_values
-from diagnostics.indicators.registry import ALL, BY_NAME, taken_of
+from diagnostics.indicators.registry import ALL, BY_NAME, indicator_columns, taken_of
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
 from diagnostics.records.channel_quantities import RECORDED
+from diagnostics.records.gear_train import PAIR, pair_train, with_teeth
 from diagnostics.records.record_problems import clipped_channels, clipped_share, record_problems
 from diagnostics.records.recording import Recording, recordings
 from diagnostics.signal.mesh_band import mesh_basebands
@@ -50,7 +50,10 @@ def column(table: IndicatorTable, name: str) -> np.ndarray:
 
 
 def test_every_definition_has_columns_and_every_column_a_definition(table: IndicatorTable) -> None:
-    assert {base_name(name) for name in table.matrix.names} == {entry.name for entry in taken_of(RECORDED.word)}
+    known = indicator_columns(table.settings)
+    assert {known[name.split("__")[0]].entry.name for name in table.matrix.names} == {
+        entry.name for entry in taken_of(RECORDED.word)
+    }
     assert len(BY_NAME) == len(ALL)
     channels = {name.split("__")[1] for name in table.matrix.names}
     assert channels == set(table.channels)
@@ -69,7 +72,7 @@ def test_indicators_with_a_history_are_those_of_the_signals_themselves(small: An
     for record in list(recordings(small))[:3]:  # the healthy, slight and severe record of the first specimen
         grid = angle_grid(record.tacho_s, 18 * 128)
         steps = resample_to_angle(record.channels["bearing_vertical"], record.fs_hz, grid)
-        shaft = record_shafts(grid, (18, 47), 128, 6)[0]
+        shaft = record_shafts(grid, (18, 47), 128, 6, PAIR[0].gears)[0]
         found = shaft_signals(steps, shaft, 128, 2, 1)
         averages.append(found.average)
         residuals.append(central_moments(found.parts.residual))
@@ -184,8 +187,6 @@ def changed(record: Recording, channel: str = "bearing_vertical", **changes: Any
     if "clip" in changes:
         limit = changes.pop("clip")
         signal = np.clip(signal, -limit, limit)
-    if "labels" in changes:
-        changes["labels"] = {**record.labels, **changes["labels"]}
     return replace(record, channels={**record.channels, channel: signal}, **changes)
 
 
@@ -193,7 +194,10 @@ def changed(record: Recording, channel: str = "bearing_vertical", **changes: Any
     ("changes", "text"),
     [
         ({"samples": [np.nan, np.inf]}, "2 of 12800 samples are not finite"),
-        ({"labels": {"teeth_gear": None}}, "teeth_pinion, teeth_gear: received 18, nan"),
+        (
+            {"train": with_teeth(pair_train((18, 47)), {"pinion": 18, "gear": None})},
+            "teeth of pinion and gear: received 18, nan",
+        ),
     ],
 )
 def test_record_that_cannot_be_used_is_left_out_with_its_reason(
@@ -201,7 +205,7 @@ def test_record_that_cannot_be_used_is_left_out_with_its_reason(
 ) -> None:
     good = list(recordings(small))
     monkeypatch.setattr(READ, lambda dataset: iter([changed(good[0], **changes), *good[1:]]))
-    whole = "labels" in changes
+    whole = "train" in changes
     found = indicator_table(small, leave_out=True)
     assert [problem for problem in found.problems if text in str(problem) and "record 0" in str(problem)]
     assert text in found.notes[0]

@@ -48,7 +48,8 @@ MODULES = {
     "statistics": "def level(signal, tacho, gears):\n    return 1.0\n",
     "shapes": "number = 3\ndef two(signal, tacho): return 1.0\ndef four(signal, tacho, gears, more): return 1.0\n"
     "def by_name(*, signal, tacho, gears): return 1.0\ndef many(*anything): return 1.0\ndef rms(s, t, g): return 1.0\n"
-    "def peak_h1(s, t, g): return 1.0\nclass Meter:\n    def __call__(self, s, t, g): return 1.0\nmeter = Meter()\n",
+    "def fm0_pinion_h5(s, t, g): return 1.0\n"
+    "class Meter:\n    def __call__(self, s, t, g): return 1.0\nmeter = Meter()\n",
 }
 
 
@@ -89,7 +90,7 @@ def test_indicator_is_loaded_from_a_module_in_the_current_folder(reference: str)
         ("shapes:four", "missing a required argument: 'more'"),
         ("shapes:by_name", "too many positional arguments"),
         ("shapes:rms", "one of the package's own"),
-        ("shapes:peak_h1", "without an ending"),
+        ("shapes:fm0_pinion_h5", "one of the package's own"),
     ],
 )
 def test_reference_that_names_no_indicator_says_why(reference: str, text: str) -> None:
@@ -98,7 +99,7 @@ def test_reference_that_names_no_indicator_says_why(reference: str, text: str) -
     assert text in str(caught.value)
 
 
-@pytest.mark.parametrize("name", ["Peak", "peak_h1", "peak_pinion", "a__b", "fm4", ""])
+@pytest.mark.parametrize("name", ["Peak", "fm0_pinion_h5", "fm4_gear", "a__b", "fm4", ""])
 def test_names_that_a_column_cannot_start_with_are_refused(name: str) -> None:
     with pytest.raises(UsageError, match="indicator name"):
         register(name)

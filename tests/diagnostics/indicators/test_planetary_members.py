@@ -12,17 +12,18 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from diagnostics.indicators.indicator import base_name, without_mesh
 from diagnostics.indicators.record import RecordValues, record_values
-from diagnostics.indicators.registry import columns, indicator_titles
+from diagnostics.indicators.registry import columns, indicator_columns, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import GearNames, gear_train
-from diagnostics.records.planetary_members import MEMBERS, Planets
-from diagnostics.records.recording import turned
-from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resample_to_angle
+from diagnostics.records.gear_train import Planets, gear_names, meshes_of, with_teeth
+from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, geared_pulses, resample_to_angle
 from diagnostics.signal.synchronous_average import synchronous_average
+from siggen import load_config
+from siggen.columns.drivetrain import GearTrain, gear_train
+from tests.config.planets import planets
 
 FS_HZ, CARRIER_HZ, DURATION_S = 12_800.0, 6.0, 4.0
+MEMBERS = ("sun", "planet", "ring")
 IN_STEP, BETWEEN = (24, 27, 78), (25, 26, 77)
 """All planets mesh at once; the next one a third of a pitch later: the line moves to order 78 of the carrier."""
 DEPTH, PHASE = 0.2, 0.3
@@ -76,15 +77,19 @@ def taken(
 ) -> RecordValues:
     """Return the indicators of such a record, as those of a set's record are taken."""
     signal, pulses = heard(path, teeth, waves, start, duration_s)
-    sun, planet, ring = teeth
-    labels = {"teeth_sun": sun, "teeth_planet": planet, "teeth_ring": ring, "planet_positions_deg": [0.0, 120.0, 240.0]}
-    found, own = turned(labels, pulses)
-    train = gear_train(found)
-    return record_values({"a": signal}, own, FS_HZ, train[0].teeth, train=train)
+    return record_values({"a": signal}, against_carrier(pulses, teeth), FS_HZ, train_of_set(teeth))
+
+
+def train_of_set(teeth: tuple[int, int, int]) -> GearTrain:
+    return with_teeth(gear_train(load_config(planets())), dict(zip(MEMBERS, teeth, strict=True)))
+
+
+def against_carrier(pulses: np.ndarray, teeth: tuple[int, int, int]) -> np.ndarray:
+    return geared_pulses(pulses, Fraction(teeth[2], teeth[0] + teeth[2]))
 
 
 def sidebands(found: RecordValues, member: str) -> tuple[float, float]:
-    lower, upper = (found.values[f"sideband_h1_{side}1_{member}__a"] for side in ("lower", "upper"))
+    lower, upper = (found.values[f"sideband_{member}_h1_{side}1__a"] for side in ("lower", "upper"))
     return lower, upper
 
 
@@ -108,9 +113,7 @@ def test_a_wave_on_the_sun_comes_through_the_orders_of_the_path_that_equal_plane
 
 def test_a_plain_average_over_turns_of_the_sun_loses_what_a_window_over_the_carrier_keeps() -> None:
     signal, pulses = heard(force, BETWEEN, {"sun": wave}, 0.0, DURATION_S)
-    _, own = turned(
-        {"teeth_sun": 25, "teeth_planet": 26, "teeth_ring": 77, "planet_positions_deg": [0, 120, 240]}, pulses
-    )
+    own = against_carrier(pulses, BETWEEN)
     steps = resample_to_angle(signal, FS_HZ, angle_grid(own, 25 * SAMPLES_PER_TOOTH))
     plain = synchronous_average(steps, 25, SAMPLES_PER_TOOTH).signal
     kept = taken(force, BETWEEN, sun=wave).values["average_rms_sun__a"]
@@ -150,14 +153,17 @@ def test_members_that_turn_too_seldom_have_no_averages_and_the_note_says_what_th
     assert np.isnan(sidebands(close, "sun")).all()
 
 
-def test_columns_end_in_the_member_and_titles_name_it() -> None:
-    settings, named = IndicatorSettings(), GearNames(shafts=MEMBERS)
+def test_columns_and_titles_name_the_member() -> None:
+    settings, train = IndicatorSettings(), train_of_set(IN_STEP)
+    named = gear_names(train)
     titles = indicator_titles(settings, named=named)
     every = columns(settings, named=named)
-    assert {"rms", "fm4_sun", "sideband_ratio_h1_k3_planet", "band_kurtosis_o75_150_ring"} <= set(every)
+    assert {"rms", "fm4_sun", "sideband_ratio_planet_h1_k3", "band_kurtosis_ring_o75_150"} <= set(every)
     assert not [name for name in every if "pinion" in name or "gear" in name]
-    assert "sun, mesh harmonic 1" in titles["sideband_ratio_h1_k3_sun"]
-    assert without_mesh("sideband_ratio_h1_k3_planet__ring_vertical") == ("sideband_ratio_h1_k3", "planet")
-    assert (base_name("fm4_sun"), base_name("na4_star_ring")) == ("fm4", "na4_star")
-    assert Planets((24, 27, 78), (0.0, 1 / 3, 2 / 3)).sun_turns == Fraction(78, 102)
+    assert "sun, mesh harmonic 1" in titles["sideband_ratio_sun_h1_k3"]
+    assert indicator_columns(settings, named)["na4_star_ring"].entry.name == "na4_star"
+    (mesh,) = meshes_of(train)
+    assert (mesh.teeth, mesh.names.gears) == ((24, 78), MEMBERS)
+    assert mesh.planets is not None
+    assert mesh.planets.sun_turns == Fraction(78, 102)
     assert [Planets((24, 27, 78), places).passing for places in ((0.0, 1 / 3, 2 / 3), (0.0, 0.3, 2 / 3))] == [3, 1]

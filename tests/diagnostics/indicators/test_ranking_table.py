@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pyarrow as pa
 import pytest
 
 from diagnostics.indicators.ranking_table import duration_advice, needed_duration
 from diagnostics.records.record_problems import FEWEST_REVOLUTIONS
+from tests.diagnostics.column_roles import ListedRoles
 
 
-def some_set(speeds_hz: list[float], duration_s: float = 1.0, fs_hz: float = 25600.0) -> SimpleNamespace:
+def some_set(speeds_hz: list[float], duration_s: float = 1.0, fs_hz: float = 25600.0) -> ListedRoles:
     table = pa.table(
         {"speed_hz": speeds_hz, "teeth_pinion": [18] * len(speeds_hz), "teeth_gear": [47] * len(speeds_hz)}
     )
     labels = lambda columns=None: table.select(columns or table.column_names)  # noqa: E731 - as a set's labels
-    return SimpleNamespace(labels=labels, fs_hz=fs_hz, duration_s=duration_s)
+    found = ListedRoles()
+    vars(found).update(labels=labels, fs_hz=fs_hz, duration_s=duration_s)
+    return found
 
 
 @pytest.mark.parametrize("start", np.linspace(0.0, 0.999, 7))

@@ -10,6 +10,7 @@ import pytest
 from diagnostics.indicators.average import fm4
 from diagnostics.indicators.record import RecordValues, record_values
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.gear_train import PAIR
 from diagnostics.signal.order_domain import angle_grid
 from diagnostics.signal.shaft_signals import record_shafts
 
@@ -101,6 +102,6 @@ def test_fm4_of_a_perfect_record_is_undefined_when_the_angle_is_exact() -> None:
 def test_sideband_is_resolved_from_exactly_the_revolutions_it_needs(turns: int, resolved: bool) -> None:
     # 18/47 teeth: two gear revolutions, 5.2 of the pinion, resolve the gear's first sideband, one order off the line
     grid = angle_grid(np.arange(turns + 1) / 30.0, 18 * 128)
-    _, gear = record_shafts(grid, (18, 47), 128, 1)
+    _, gear = record_shafts(grid, (18, 47), 128, 1, PAIR[0].gears)
     assert gear.revolutions == (2 if resolved else 1)
     assert gear.resolved.tolist() == [resolved]

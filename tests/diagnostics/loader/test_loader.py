@@ -194,5 +194,7 @@ def test_fewer_than_eight_revolutions_are_refused() -> None:
 
 
 def test_records_without_a_whole_window_are_an_error_with_a_way_out(make_dataset: Callable[..., Any]) -> None:
-    with pytest.raises(DatasetError, match=r"no record of split 'train' holds 8 whole pinion revolutions.*duration_s"):
+    with pytest.raises(
+        DatasetError, match=r"no record of split 'train' holds 8 whole turns of the first shaft.*duration_s"
+    ):
         WindowStream(make_dataset(("train",), duration_s=0.2), "train")

@@ -10,8 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 from diagnostics.cli.app import app
-from diagnostics.machine.recording_indicators import indicator_title, recording_indicators
+from diagnostics.indicators.registry import column_title
+from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.taken import RecordingFacts
+from diagnostics.records.gear_train import PAIR
 from siggen.errors import SiggenError
 
 FS_HZ = 8000.0
@@ -37,7 +39,7 @@ def test_closed_forms_of_a_modulated_line(recording: Path) -> None:
     # Half the squares of the amplitudes, sidebands and noise: (9 + 1 + 1)/2 (1 + 0.2²/2) + 0.01.
     assert values["rms"] == pytest.approx(np.sqrt(5.5 * 1.02 + 0.01), rel=2e-3)
     assert values["mesh_amplitude_h1"] == pytest.approx(3.0, rel=0.01)
-    assert indicator_title("mesh_amplitude_h1").endswith("h1")
+    assert column_title("mesh_amplitude_h1", PAIR).endswith("mesh harmonic 1")
 
 
 def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_path: Path) -> None:

@@ -50,4 +50,5 @@ def test_the_card_says_whose_ranges_they_are(dataset: Any, features: pa.Table) -
     training: Any = SimpleNamespace(split=specimen_split(feature_matrix(features).labels), referenced=None)
     found = release(training, features, dataset)
     found = replace(found, facts=replace(found.facts, speed_range_hz=(20.0, 30.0)))
-    assert "20 to 30 Hz pinion speed, 60 to 60 N m in training and validation. Outside these" in release_card(found)
+    card = release_card(found)
+    assert "20 to 30 Hz speed of the first shaft, 60 to 60 N m in training and validation. Outside these" in card

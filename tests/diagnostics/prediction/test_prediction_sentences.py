@@ -11,6 +11,7 @@ import siggen
 from diagnostics.prediction.prediction import Nearness, Vote
 from diagnostics.prediction.prediction_page import model_provenance, prediction_summary
 from diagnostics.recordings.shaft_pulses import ShaftPulses
+from diagnostics.records.gear_train import pair_train
 from diagnostics.statistics.evaluation import Interval
 
 
@@ -30,6 +31,7 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
         state="abstains" if reasons else "severe",
         pieces=SimpleNamespace(values=np.zeros((pieces, 3)), revolutions=53),
         pulses=ShaftPulses(np.arange(4) / 36.325),
+        train=pair_train((18, 47)),
     )
 
 

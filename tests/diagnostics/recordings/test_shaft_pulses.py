@@ -10,11 +10,13 @@ import pytest
 from diagnostics.cli.recording_options import known_speed_range_hz
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import shaft_pulses
+from diagnostics.records.gear_train import pair_train
 from siggen.errors import UsageError
 from tests.diagnostics.calibration.hidden_machine import hidden_record
 from tests.diagnostics.signal.made_gears import made_gears
 
 TEETH = (18, 47)
+TRAIN = pair_train(TEETH)
 
 
 def recording(seconds: float = 4.0, tacho_s: np.ndarray | None = None, **made: float) -> MeasuredRecording:
@@ -23,7 +25,7 @@ def recording(seconds: float = 4.0, tacho_s: np.ndarray | None = None, **made: f
 
 
 def test_pulses_come_from_the_mesh_lines_and_say_how_far_their_halves_agree() -> None:
-    found = shaft_pulses(recording(), TEETH, (25.0, 36.0))
+    found = shaft_pulses(recording(), TRAIN, (25.0, 36.0))
     assert found.outcome == "angle"
     assert found.times_s.size - 1 == pytest.approx(4.0 * 30.0, abs=2)
     assert found.agreement_pitches is not None
@@ -33,7 +35,7 @@ def test_pulses_come_from_the_mesh_lines_and_say_how_far_their_halves_agree() ->
 
 
 def test_a_tacho_is_taken_where_there_is_one() -> None:
-    found = shaft_pulses(recording(tacho_s=np.arange(80) / 30.0), TEETH, (25.0, 36.0))
+    found = shaft_pulses(recording(tacho_s=np.arange(80) / 30.0), TRAIN, (25.0, 36.0))
     assert found.origin == "tacho"
     assert found.agreement_pitches is None
 
@@ -45,21 +47,21 @@ def test_a_speed_without_an_angle_is_an_answer_only_where_it_is_wanted() -> None
     broken = MeasuredRecording(
         made.path, {name: np.where(gone, noise, signal) for name, signal in made.channels.items()}, made.fs_hz, None
     )
-    found = shaft_pulses(broken, TEETH, (25.0, 36.0), speed_alone=True)
+    found = shaft_pulses(broken, TRAIN, (25.0, 36.0), speed_alone=True)
     assert found.outcome == "speed only"
     assert found.times_s.size == 0
     assert found.speed_hz == pytest.approx(30.0, rel=0.01)
     with pytest.raises(UsageError, match=r"run.npz: .* speed only: .*Averages need the angle"):
-        shaft_pulses(broken, TEETH, (25.0, 36.0))
+        shaft_pulses(broken, TRAIN, (25.0, 36.0))
 
 
 def test_without_tacho_and_range_and_with_too_few_turns_the_file_is_named() -> None:
     with pytest.raises(UsageError, match=r"run.npz: neither tacho nor speed"):
-        shaft_pulses(recording(), TEETH, None)
+        shaft_pulses(recording(), TRAIN, None)
     with pytest.raises(UsageError, match=r"run.npz: 4 whole turns of the first shaft; averages of both shafts need 6"):
-        shaft_pulses(recording(tacho_s=np.arange(5) / 30.0), TEETH, None)
+        shaft_pulses(recording(tacho_s=np.arange(5) / 30.0), TRAIN, None)
     with pytest.raises(UsageError, match=r"run.npz: speed range"):
-        shaft_pulses(recording(), TEETH, (40.0, 30.0))
+        shaft_pulses(recording(), TRAIN, (40.0, 30.0))
 
 
 @pytest.mark.parametrize("said", ["30", "30 Hz", "1800rpm", "1800 1/min"])
@@ -79,6 +81,6 @@ def test_a_second_stage_louder_than_the_mesh_lines_does_not_pass_for_them() -> N
     channels, pulses = hidden_record()
     made = MeasuredRecording(Path("run.csv"), channels, 25_600.0, None, False)
     true_hz = (pulses.size - 1) / (pulses[-1] - pulses[0])
-    assert shaft_pulses(made, (18, 47), (30.0, 40.0)).speed_hz == pytest.approx(true_hz, rel=1e-4)
+    assert shaft_pulses(made, TRAIN, (30.0, 40.0)).speed_hz == pytest.approx(true_hz, rel=1e-4)
     with pytest.raises(UsageError):
-        shaft_pulses(made, (18, 47), (36.0, 41.0))
+        shaft_pulses(made, TRAIN, (36.0, 41.0))

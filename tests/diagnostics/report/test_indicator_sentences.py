@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from diagnostics.records.gear_train import PAIR
 from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
 from diagnostics.report.indicator_tables import undefined_html
 from diagnostics.statistics.evaluation import Interval
@@ -25,7 +26,7 @@ def result(
     values = [r.separation.value for r in others.values()]
     score = Interval(0.5 + direction * (sum(values) / len(values) - 0.5), 0.6, 0.9) if values else UNDEFINED
     found = IndicatorResult(
-        f"{name}__x", name, "x", direction, others, others, score, score, UNDEFINED, UNDEFINED, UNDEFINED, 0.9
+        f"{name}__x", name, "x", direction, others, others, score, score, UNDEFINED, UNDEFINED, UNDEFINED, 0.9, PAIR
     )
     found.detectable, found.smallest_size = {"others_area_mm2_a90": size}, {"others_area_mm2": 2.0}
     return found
