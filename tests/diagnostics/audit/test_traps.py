@@ -29,7 +29,7 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
 @pytest.fixture(scope="module")
 def twice(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
     """Return a clean set with two records of every state of a gearbox at one operating point."""
-    return measured(Plant(points=1, repeats=2), tmp_path_factory)
+    return measured(Plant(specimens=6, points=1, repeats=2), tmp_path_factory)
 
 
 @pytest.fixture(autouse=True)
