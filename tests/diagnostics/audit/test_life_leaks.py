@@ -47,9 +47,6 @@ def test_a_schedule_in_hours_tells_no_more_than_age() -> None:
     assert found(fleet()) == set()
 
 
-def test_inspections_at_fractions_of_life_are_found() -> None:
-    assert {"hours since the inspections before", "number of the inspection"} <= found(fleet(of_life=True))
-
-
-def test_gearboxes_that_are_numbered_by_their_life_are_found() -> None:
-    assert "identity of gearbox and record" in found(fleet(in_order=True))
+def test_inspections_at_fractions_of_life_and_numbers_in_the_order_of_lives_are_found() -> None:
+    told = {"hours since the inspections before", "number of the inspection", "identity of gearbox and record"}
+    assert found(fleet(of_life=True, in_order=True)) == told
