@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -18,11 +18,12 @@ import numpy as np
 from benchmarks.random_gearbox import TEETH, drawn_numbers, random_config
 from benchmarks.row import Row, duration_text
 from siggen.config import Config
+from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.errors import SolverFailure
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.motion import specimen_motion
@@ -148,9 +149,10 @@ def drawn_case(config: Config, state_id: int) -> Case:
     state = specimen_state(specimen, state_id)
     records = (planned_record(config, i) for i in range(config.records_per_specimen))
     record = next(one for one in records if one.state_id == state_id)
-    point = draw_operating_point(config, 0, record.operating_point_id)
+    point = specimen.points[record.operating_point_id]
     angle = 2.0 * pi * (1.0 - BEFORE) / TEETH
-    driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
+    driven = record_drive(specimen, state.mesh.structure, record)
+    driven = replace(driven, rotation=Drive(point.speed_hz, angle))
     return Case(config, specimen, state, point, driven)
 
 

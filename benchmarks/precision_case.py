@@ -15,8 +15,7 @@ from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.record.simulation import start_angle_rad
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid
@@ -115,7 +114,6 @@ def _case(config: Config, gearbox: int, state: int) -> Case:
     )
     specimen = draw_specimen(config, gearbox)
     made = specimen_state(specimen, state_id)
-    point = draw_operating_point(config, gearbox, record.operating_point_id)
-    angle = start_angle_rad(config, specimen, record)
-    driven = record_drive(config, specimen, made.mesh.structure, point, record, angle)
+    point = specimen.points[record.operating_point_id]
+    driven = record_drive(specimen, made.mesh.structure, record)
     return Case(config, specimen, made, point, driven)

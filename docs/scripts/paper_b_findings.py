@@ -102,7 +102,7 @@ def runs(states, speeds_hz, duration_s, *overrides, fs_hz=54000.0):
         built = specimen_state(specimen, index)
         for place, speed in enumerate(speeds_hz):
             record = planned_record(config, index * len(speeds_hz) + place)
-            response, _ = record_response(config, specimen, built, record, internals=True)
+            response, _ = record_response(specimen, built, record, internals=True)
             quantities = internal_quantities(specimen, response)
             quantities["angle_rad"], quantities["lost"] = response.angle_rad, response.contact_loss_share
             yield state["name"], speed, quantities

@@ -7,7 +7,7 @@ from math import degrees
 
 from siggen.checks.bearing_problems import STIFFNESSES
 from siggen.config import Config
-from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.specimen.loaded_bearings import BEARINGS
 from siggen.specimen.structure import specimen_bearings
@@ -39,8 +39,7 @@ def _unused(config: Config) -> Iterator[str]:
 
 def _of(config: Config) -> Iterator[tuple[str, str]]:
     specimen = draw_specimen(config, 0)
-    for number in range(len(config.operating_points)):
-        point = draw_operating_point(config, 0, number)
+    for point in specimen.points:
         for which, one in specimen_bearings(specimen.under(point)).items():
             balls = f"{one.bearing.balls} balls of {1e3 * one.bearing.ball_diameter_m:.3g} mm"
             clearance_um = 1e6 * one.bearing.clearance_m

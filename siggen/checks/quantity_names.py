@@ -15,7 +15,7 @@ from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
 from siggen.keys.drawing import corners
 from siggen.names import Names
 from siggen.planning.gearbox import pair_configs
-from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.structure import structure
 from siggen.specimen.wavy_teeth import WavyTeeth
@@ -52,7 +52,7 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     own, pair = max(possible, key=lambda one: _contact_ratio(one[1]))
     reaches = (one.reach_pitches(pair) for state in own.states for one in state.damages)
     reach = max(reaches, default=CORNER_REACH_PITCHES)
-    specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
+    specimen = draw_specimen(own, 0)
     assembled = structure(specimen)
     behind = tuple(
         MeshBehind(_tabulated(one.pair, specimen, assembled), float(turning))
@@ -63,7 +63,7 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     law = specimen.law
     if law.across_the_face:  # every integrator has the same quantities; this one starts no motion
         law = law.by_reference()
-    motion = specimen_motion(law, mesh, point, step_s)
+    motion = specimen_motion(law, mesh, specimen.points[0], step_s)
     return quantity_names(config.names, motion.structure, motion.internal_names)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from siggen.config import Config
-from siggen.config.variation import RARE, SLOW_CORNER_HZ
+from siggen.config.variation import RARE
+from siggen.dynamics.drive.slow_variation import SLOW_CORNER_HZ
 from siggen.keys.number import Number, bounds
 from siggen.specimen.shaft_forces import RATED_SPEED_HZ
 

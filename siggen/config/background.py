@@ -1,6 +1,6 @@
 """Section `background`: what a healthy machine adds to its gears; every part is off unless it is given.
 
-Keys say how large a part is; its other numbers stand in `siggen.specimen.background_numbers`.
+Keys say how large a part is; its other numbers stand in `siggen.gearbox.background_numbers`.
 
 Defaults are wide: few machines were measured. In descriptions, "measured" is the range found on real machines, "source"
 a published number, "assumed" an engineering judgement.

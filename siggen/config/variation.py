@@ -17,8 +17,6 @@ RARE = 4.0
 RAMP = "speed at the first sample, and at the last, over that of the operating point; linear between (run-up, run-down)"
 RANDOM = "slow random part, relative; usual are 0.001 to 0.005 of speeds, 0.01 to 0.05 of torques"
 RIPPLE = "amplitude once per revolution, and twice, relative; 0.0002 to 0.001 is usual"
-SLOW_CORNER_HZ = 0.5
-"""Above which the random part falls off."""
 
 
 class SpeedVariation(Section):

@@ -14,7 +14,7 @@ from siggen.keys.number import Number, constant
 from siggen.noise.source import Source
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.frequency_response import FrequencyResponse
-from siggen.sensing.inputs import Input
+from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.response_text import decoded_response
 from siggen.sensors.sensor import AxisDraws, SensorBase
@@ -72,6 +72,11 @@ class DrawnChannel:
     response: Callable[[FloatArray], ComplexArray | None] = field(compare=False)
     transducer: Transducer | None = field(compare=False)
     path: MeasuredWay | None = field(compare=False)
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Kinds of `Input` that it needs: those that it shows, and forces where they come through a path."""
+        return frozenset({one.kind for one in self.shown} | (set() if self.path is None else {FORCE}))
 
 
 def drawn_channels(config: Config, specimen_id: int, sensors: Sequence[SensorBase]) -> Iterator[DrawnChannel]:

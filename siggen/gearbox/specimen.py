@@ -12,8 +12,10 @@ from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
 from siggen.dynamics.time.sampling import Sampling
+from siggen.gearbox.background import DrawnBackground
 from siggen.gearbox.channels import DrawnChannel
-from siggen.gearbox.housing import Housing
+from siggen.gearbox.drive import PointVariation, UnbalanceLevels
+from siggen.gearbox.housing import Block, Housing
 from siggen.gearbox.teeth import Teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair
@@ -23,10 +25,11 @@ from siggen.names import Names
 
 @dataclass(frozen=True, slots=True)
 class OperatingPoint:
-    """Speed and torque of the first shaft."""
+    """Speed and torque of the first shaft, and how they vary within a record; None: not at all."""
 
     speed_hz: float
     torque_nm: float
+    variation: PointVariation | None = None
 
     def turned(self, turning: float) -> OperatingPoint:
         """Return the point as a shaft has it that turns `turning` times per turn of the first one."""
@@ -113,6 +116,8 @@ class Specimen:
     law : how all teeth push and rub
     train, planets : its shafts; one of both
     housing : what carries its bearings; None for the ground
+    unbalance : of its shafts; None: balanced
+    background : what its machine does beside its meshing teeth
     channels : of its sensors
     points : at which it is measured
     sensor_places_mm : sensor -> where it stands, as columns give it; of those that were put somewhere
@@ -130,6 +135,8 @@ class Specimen:
     planets: PlanetaryGears | None
     dynamics: Dynamics
     housing: Housing | None
+    unbalance: UnbalanceLevels | None
+    background: DrawnBackground | None
     channels: tuple[DrawnChannel, ...]
     points: tuple[OperatingPoint, ...]
     sensor_places_mm: Mapping[str, tuple[float, ...]]
@@ -139,6 +146,11 @@ class Specimen:
     def housed(self) -> bool:
         """Whether a housing carries its bearings, not the ground."""
         return self.housing is not None
+
+    @property
+    def passes_forces(self) -> bool:
+        """Whether sensors hear forces of bearings through its housing, beside its motion with the gears."""
+        return self.housed and (self.planets is not None or not isinstance(self.housing, Block))
 
     @property
     def pair(self) -> GearPair:
@@ -169,6 +181,10 @@ class Specimen:
     def all_teeth(self) -> tuple[Teeth, ...]:
         """Teeth of all meshes, in the order of power; of a planetary set as `PlanetaryGears.meshes`."""
         return tuple(mesh.teeth for mesh in self.meshes) if self.planets is None else self.planets.meshes
+
+    def reads(self, kind: str) -> bool:
+        """Return whether a sensor reads a kind of `Input`, such as bearing forces."""
+        return any(kind in channel.reads for channel in self.channels)
 
     def under(self, point: OperatingPoint) -> Specimen:
         """Return the gearbox at an operating point; itself where its bearings have one stiffness."""

@@ -1,16 +1,18 @@
-"""Replacing the distributions of a section: by drawn values, or by their bounds."""
+"""Replacing the distributions of a section: by drawn values, or by their bounds; and drawn values in SI."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from siggen.keys.distributions import DRAWN
-from siggen.keys.number import Within, at, bounds
+from siggen.keys.number import Within, at, bounds, constant
 from siggen.keys.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
+IN_SI = {"mm": ("m", 1e-3), "um": ("m", 1e-6), "ms": ("s", 1e-3)}
+"""Unit at the end of a key -> that of SI, and what to multiply by; compound units such as `um_s` stay."""
 
 
 def draw(section: SomeSection, uniform: Callable[[str], float], path: str) -> SomeSection:
@@ -45,6 +47,27 @@ def corners(section: SomeSection) -> Iterator[SomeSection]:
     for combination in itertools.product(*pairs):
         values = iter(combination)
         yield _replaced(section, lambda *_, values=values: next(values), "")
+
+
+def in_si(section: Section) -> dict[str, Any]:
+    """Return the numbers of a drawn section by their keys, in SI: `roll_off_mm` as `roll_off_m`.
+
+    Raises
+    ------
+    TypeError
+        If a number is still a distribution.
+    """
+    found: dict[str, Any] = {}
+    for key, field in type(section).model_fields.items():
+        if not any(isinstance(marker, Within) for marker in field.metadata):
+            continue
+        number, (head, _, unit) = getattr(section, key), key.rpartition("_")
+        if unit in IN_SI and not head.endswith("_per"):
+            unit, factor = IN_SI[unit]
+            found[f"{head}_{unit}"] = factor * constant(number)
+        else:
+            found[key] = number if number is None else constant(number)
+    return found
 
 
 def _replaced(section: SomeSection, replacement: Callable[[object, str], object], path: str) -> SomeSection:

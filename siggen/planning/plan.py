@@ -57,6 +57,11 @@ class PlannedRecord:
     repeat: int
     split: str
 
+    @property
+    def owner(self) -> tuple[int, int, int, int]:
+        """Keys of what is drawn per record."""
+        return self.specimen_id, self.state_id, self.operating_point_id, self.repeat
+
 
 @dataclass(frozen=True, slots=True)
 class ShardPlan:

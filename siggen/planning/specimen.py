@@ -11,7 +11,9 @@ from siggen.config.planetary import RING
 from siggen.config.planetary_problems import set_of
 from siggen.config.stages import Stage, turned, with_idlers
 from siggen.dynamics.time.sampling import Sampling
+from siggen.gearbox.background import drawn_background
 from siggen.gearbox.channels import drawn_channels
+from siggen.gearbox.drive import drawn_unbalance, drawn_variation
 from siggen.gearbox.housing import drawn_housing
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gearbox.planetary import planetary_stage, planetary_teeth
@@ -71,6 +73,8 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         planets=planets,
         dynamics=dynamics,
         housing=drawn_housing(own, specimen_id, dynamics, meshes[0].pair, sensors),
+        unbalance=drawn_unbalance(dynamics, own.names, supports),
+        background=drawn_background(own, specimen_id),
         channels=tuple(drawn_channels(own, specimen_id, sensors)),
         points=points,
         sensor_places_mm={one.name: tuple(map(constant, one.place_on_casing_mm)) for one in sensors},
@@ -117,7 +121,10 @@ def _planets(
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:
     """Return an operating point of a specimen; the same for all of its states."""
     uniform = named_uniforms(config.seed, Consumer.OPERATING_POINT, specimen_id, operating_point_id)
-    ranges = gearbox_config(config, specimen_id).operating_points[operating_point_id]
+    own = gearbox_config(config, specimen_id)
+    ranges = own.operating_points[operating_point_id]
     return OperatingPoint(
-        speed_hz=at(ranges.speed_hz, uniform("speed_hz")), torque_nm=at(ranges.torque_nm, uniform("torque_nm"))
+        speed_hz=at(ranges.speed_hz, uniform("speed_hz")),
+        torque_nm=at(ranges.torque_nm, uniform("torque_nm")),
+        variation=drawn_variation(own.variation, uniform),
     )

@@ -6,17 +6,18 @@ their phase against the pinion's angle, so that all states of a gearbox share th
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import partial
 from math import pi
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.dynamics.drive.comb import Comb, turns_of
-from siggen.keys.number import constant
+from siggen.dynamics.drive.drive import Rotation
+from siggen.gearbox.background import MACHINES, DrawnBackground, ForeignLevels, MachineLevels, ShaftLevels
+from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import PlannedRecord
-from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course, course_at
 from siggen.record.bearing_noise import BearingVelocities
 from siggen.record.rubbing import RubbingForce
@@ -24,37 +25,33 @@ from siggen.record.set_rubbing import SetRubbing
 from siggen.sensing.force_density import contact_filter, rising_floor
 from siggen.sensing.inputs import BACKGROUND, Input
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-from siggen.specimen.background import AXES, MACHINES, SpecimenBackground
-from siggen.specimen.background_numbers import (
-    FOREIGN_LINES,
-    BackgroundNumbers,
-    ForeignNumbers,
-    MachineNumbers,
-    ShaftNumbers,
-)
+from siggen.specimen.background import AXES
 
+FOREIGN_LINES = 15
+"""Lines of another mesh (measured)."""
 MACHINE_TAPS = 8192
 """Of the filter of their noise, whose corner lies below 120 Hz."""
 
 
 class BackgroundBlocks:
-    """All parts of a record's background from sample `first` on, over `length` samples.
+    """All parts of a record's background from sample `first` on, over `length` samples, of its `inputs`.
 
     `labels` are there from the first block on. Nothing is drawn from the state.
     """
 
     def __init__(
         self,
-        config: Config,
         specimen: Specimen,
         record: PlannedRecord,
-        background: SpecimenBackground,
+        rotation: Rotation,
+        inputs: Collection[str],
         first: int,
         length: int,
     ) -> None:
-        self._of_record = (config, specimen, record)
+        assert specimen.background is not None
+        self._of_record = (specimen, record, rotation)
+        self._drawn, self._inputs = specimen.background, inputs
         self._next, self._length = first, length
-        self._background = background
         self._rubbing: RubbingForce | SetRubbing | None = None
         self._bearings: BearingVelocities | None = None
         self._machines: dict[str, ShapedNoise] = {}
@@ -63,7 +60,7 @@ class BackgroundBlocks:
     def take(self, count: int) -> dict[Input, FloatArray]:
         """Return the next values (count,) of every input."""
         course = self._course(count)
-        forces, labels = line_forces(self._background.section, course, self._background)
+        forces, labels = line_forces(self._drawn, course, self._inputs)
         if not self.labels:
             self._begin(course)
         if self._rubbing is not None:
@@ -74,82 +71,72 @@ class BackgroundBlocks:
             forces |= self._bearings.take(course)
             labels |= self._bearings.labels
         forces |= {name: noise.take(course.length) for name, noise in self._machines.items()}
-        if (machines := self._background.section.machines) is not None:
-            labels["machine_force_n_per_sqrt_hz"] = constant(machines.density_n_per_sqrt_hz)
+        if self._drawn.machines is not None:
+            labels["machine_force_n_per_sqrt_hz"] = self._drawn.machines.density_n_per_sqrt_hz
         self.labels = self.labels or labels
         self._next += count
         return {Input(BACKGROUND, name): force for name, force in forces.items()}
 
     def _begin(self, course: Course) -> None:
-        section = self._background.section
-        if section.rubbing is not None:
-            specimen = self._of_record[1]
+        drawn, specimen = self._drawn, self._of_record[0]
+        if drawn.rubbing is not None:
             of_set = partial(SetRubbing, specimen=specimen)
-            self._rubbing = (RubbingForce if specimen.planets is None else of_set)(
-                section.rubbing, course, self._length
-            )
-        if self._background.bearings:
-            self._bearings = BearingVelocities(self._background.bearings, course, self._of_record[1])
-        if section.machines is not None:
-            self._machines = machine_noise(section.machines, course)
+            self._rubbing = (RubbingForce if specimen.planets is None else of_set)(drawn.rubbing, course, self._length)
+        if drawn.bearings:
+            self._bearings = BearingVelocities(drawn.bearings, course, specimen)
+        if drawn.machines is not None:
+            self._machines = machine_noise(drawn.machines, course)
 
     def _course(self, count: int) -> Course:
         return course_at(*self._of_record, self._next, count)
 
 
-def machine_noise(machines: MachineNumbers, course: Course) -> dict[str, ShapedNoise]:
+def machine_noise(machines: MachineLevels, course: Course) -> dict[str, ShapedNoise]:
     """Return the noise of both machines beside the gearbox, independent of each other."""
-    corner, exponent = constant(machines.low_corner_hz), constant(machines.low_exponent)
-    density, high = constant(machines.density_n_per_sqrt_hz), constant(machines.high_corner_hz)
 
     def shape(frequency_hz: FloatArray) -> FloatArray:
-        return density * rising_floor(frequency_hz, corner, exponent) * contact_filter(frequency_hz, high, 1.0) + 1e-30
+        rising = rising_floor(frequency_hz, machines.low_corner_hz, machines.low_exponent)
+        falling = contact_filter(frequency_hz, machines.high_corner_hz, 1.0)
+        return machines.density_n_per_sqrt_hz * rising * falling + 1e-30
 
     taps = shape_taps(shape, MACHINE_TAPS, course.fs_hz)
     return {name: ShapedNoise(taps, course.fs_hz, course.of_record(f"background.machines.{name}")) for name in MACHINES}
 
 
 def line_forces(
-    section: BackgroundNumbers, course: Course, background: SpecimenBackground
+    drawn: DrawnBackground, course: Course, inputs: Collection[str]
 ) -> tuple[dict[str, FloatArray], dict[str, object]]:
     """Return input -> force (length,) of what follows the angle alone, and labels."""
     forces: dict[str, FloatArray] = {}
     labels: dict[str, object] = {}
 
     def add(name: str, force: FloatArray) -> None:
-        if name in background.inputs:
+        if name in inputs:
             forces[name] = forces[name] + force if name in forces else force
 
-    for shaft, drawn in background.shafts.items():
-        for name, force in _shaft(drawn, course, shaft):
+    for shaft, levels in drawn.shafts.items():
+        for name, force in _shaft(levels, course, shaft):
             add(name, force)
-        labels[f"coupling_force_{shaft}_n"] = _coupling_force_n(drawn)
-    for name, mesh in (("second_stage", section.second_stage), ("auxiliary_drive", section.auxiliary_drive)):
-        if mesh is not None:
-            comb = _foreign(mesh, course, name)
-            own = mesh.shaft_order is not None
-            beside = turns_of(course.angle_rad, comb.sideband_order) if own else course.turns["gear"]
-            add(name, comb.force_n(turns_of(course.angle_rad, comb.order), beside, course.top_order))
-            labels |= {f"{name}_order": comb.order, f"{name}_force_n": float(comb.amplitude_n[0])}
+        labels[f"coupling_force_{shaft}_n"] = levels.coupling_n
+    for name, mesh in drawn.foreign.items():
+        comb = _foreign(mesh, course, name)
+        own = mesh.shaft_order is not None
+        beside = turns_of(course.angle_rad, comb.sideband_order) if own else course.turns["gear"]
+        add(name, comb.force_n(turns_of(course.angle_rad, comb.order), beside, course.top_order))
+        labels |= {f"{name}_order": comb.order, f"{name}_force_n": float(comb.amplitude_n[0])}
     return forces, labels
 
 
-def _coupling_force_n(drawn: ShaftNumbers) -> float:
-    return constant(drawn.coupling_stiffness_n_per_um) * constant(drawn.offset_um)
-
-
-def _shaft(drawn: ShaftNumbers, course: Course, shaft: str) -> list[tuple[str, FloatArray]]:
+def _shaft(levels: ShaftLevels, course: Course, shaft: str) -> list[tuple[str, FloatArray]]:
     """Return the forces of one coupling along both axes, and of the rotor on its shaft on the base."""
     order = course.orders[shaft]
-    decibels = [0.0, *(constant(level) for level in (drawn.second_db, drawn.third_db, drawn.fourth_db))]
-    amplitude = _coupling_force_n(drawn) * 10.0 ** (np.array(decibels) / 20.0)
+    amplitude = levels.coupling_n * 10.0 ** (np.array([0.0, *levels.higher_db]) / 20.0)
     found = []
     for axis in AXES:
         phase = course.phases(f"shafts.{shaft}.{axis}", amplitude.size)
         found.append((f"{shaft}_shaft/{axis}", Comb(order, amplitude, phase).force_n(course.turns[shaft])))
-    rated_rad_s = 2.0 * pi * constant(drawn.rated_speed_hz) * order
+    moment = levels.rotor_kg_m_s / (2.0 * pi * levels.rated_speed_hz * order)
     speed_rad_s = 2.0 * pi * course.point.speed_hz * order
-    moment = constant(drawn.rotor_mass_kg) * 1e-3 * constant(drawn.rotor_grade_mm_s) / rated_rad_s
     outward, start = np.array([moment * speed_rad_s**2]), course.phases(f"shafts.{shaft}.rotor", 1)
     # it turns: a quarter of a turn between the axes
     for axis, lag in zip(AXES, (0.0, 0.5 * pi), strict=True):
@@ -157,15 +144,13 @@ def _shaft(drawn: ShaftNumbers, course: Course, shaft: str) -> list[tuple[str, F
     return found
 
 
-def _foreign(mesh: ForeignNumbers, course: Course, name: str) -> Comb:
+def _foreign(mesh: ForeignLevels, course: Course, name: str) -> Comb:
     number = np.arange(1.0, FOREIGN_LINES + 1.0)
-    amplitude = constant(mesh.force_share) * course.mesh_force_n * number ** -constant(mesh.decay_exponent)
-    shaft = course.orders["gear"] if mesh.shaft_order is None else constant(mesh.shaft_order)
     return Comb(
-        constant(mesh.order),
-        amplitude,
+        mesh.order,
+        mesh.force_share * course.mesh_force_n * number**-mesh.decay_exponent,
         course.phases(name, FOREIGN_LINES),
-        10.0 ** (constant(mesh.sideband_db) / 20.0),
-        shaft,
+        10.0 ** (mesh.sideband_db / 20.0),
+        course.orders["gear"] if mesh.shaft_order is None else mesh.shaft_order,
         2.0 * pi * course.uniform(f"background.{name}.sideband.phase"),
     )

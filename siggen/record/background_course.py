@@ -9,16 +9,15 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import PlannedRecord
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
 from siggen.specimen.asperities import asperity_share
-from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,13 +67,11 @@ class Course:
         return harmonic_sum(self.turns[shaft], shaft_phasors(depth, phase_rad))
 
 
-def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: int, count: int) -> Course:
+def course_at(specimen: Specimen, record: PlannedRecord, rotation: Rotation, first: int, count: int) -> Course:
     """Return the course of one record over `count` samples from sample `first`, below 0 in the history."""
-    pair, point = specimen.pair, draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    rotation = record_rotation(config, point, record, start_angle_rad(config, specimen, record))
-    owner = record_owner(record)
+    pair, point, fs_hz = specimen.pair, specimen.points[record.operating_point_id], specimen.sampling.fs_hz
     # a fast length may reach further back than any force is followed; there the shaft stands still
-    time_s = np.maximum((np.arange(count) + first) / config.fs_hz, -TRANSIENT_CAP_S)
+    time_s = np.maximum((np.arange(count) + first) / fs_hz, -TRANSIENT_CAP_S)
     angle_rad = rotation.angle_rad(time_s)
     orders = {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
     of_mesh = point
@@ -85,12 +82,12 @@ def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: 
         angle_rad,
         orders,
         {shaft: turns_of(angle_rad, order) for shaft, order in orders.items()},
-        config.fs_hz,
+        fs_hz,
         -first,
         pair,
         point,
         asperity_share(specimen.law.friction, pair, of_mesh),
-        named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id),
-        lambda name: named_generator(config.seed, Stage.BACKGROUND, record.specimen_id, name=name),
-        lambda name: named_generator(config.seed, Stage.BACKGROUND_NOISE, *owner, name=name),
+        named_uniforms(specimen.seed, Stage.BACKGROUND, record.specimen_id),
+        lambda name: named_generator(specimen.seed, Stage.BACKGROUND, record.specimen_id, name=name),
+        lambda name: named_generator(specimen.seed, Stage.BACKGROUND_NOISE, *record.owner, name=name),
     )

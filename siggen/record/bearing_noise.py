@@ -20,14 +20,13 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
-from siggen.keys.number import constant
+from siggen.gearbox.background import BearingLevels
+from siggen.gearbox.specimen import Specimen
 from siggen.names import ShaftName
-from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import LevelCourse, shaft_course
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-from siggen.specimen.background_numbers import BANDS, BearingNumbers
 from siggen.specimen.loaded_bearings import BEARINGS, cage_sense
 from siggen.specimen.structure import specimen_bearings
 
@@ -49,11 +48,12 @@ WEAKEST = 0.2
 """Displacements of passing balls lie between this share of the drawn one and all of it, by axis (assumed)."""
 
 
-def velocity_density(numbers: BearingNumbers, shaft_hz: float, frequency_hz: FloatArray) -> FloatArray:
+def velocity_density(levels: BearingLevels, shaft_hz: float, frequency_hz: FloatArray) -> FloatArray:
     """Return the one-sided density (k,) of a bearing's velocity at a speed of its shaft [m/s/√Hz]."""
     edges = np.array(BAND_EDGES_HZ)
     middles = np.sqrt(edges[:-1] * edges[1:])
-    velocity = np.array([1e-6 * constant(getattr(numbers, band)) for band in BANDS]) / np.sqrt(np.diff(edges))
+    bands = np.array([levels.low_um_s, levels.middle_um_s, levels.high_um_s])
+    velocity = 1e-6 * bands / np.sqrt(np.diff(edges))
     far = 1e3 * middles[-1]
     knots, values = np.append(middles, far), np.append(velocity, velocity[-1] * sqrt(middles[-1] / far))
     ratio = shaft_hz / CLASS_SPEED_HZ
@@ -82,21 +82,19 @@ class _Seat:
 class BearingVelocities:
     """Velocities [m/s] of each bearing's waves, from the first sample of a course on; by input of the background."""
 
-    def __init__(self, bearings: Mapping[str, BearingNumbers], course: Course, specimen: Specimen) -> None:
+    def __init__(self, bearings: Mapping[str, BearingLevels], course: Course, specimen: Specimen) -> None:
         self._bearings = bearings
         self._loaded = specimen_bearings(specimen)
         self._sense = {shaft: cage_sense(shaft, housed=specimen.housed) for shaft in bearings}
         shafts = specimen.names.shafts[: len(bearings)]
         self._seats = {f"{shaft.bearing}/{axis}": _Seat(shaft, axis) for shaft in shafts for axis in AXES[::-1]}
-        taps = {shaft: _taps(numbers, course, shaft) for shaft, numbers in bearings.items()}
+        taps = {shaft: _taps(levels, course, shaft) for shaft, levels in bearings.items()}
         self._noise = {
             name: ShapedNoise(taps[seat.shaft], course.fs_hz, course.of_record(f"background.bearings.{seat.stream}"))
             for name, seat in self._seats.items()
         }
-        self._levels = {shaft: _level(shaft, numbers, course) for shaft, numbers in bearings.items()}
-        self.labels = {
-            f"bearing_velocity_{shaft}_um_s": constant(numbers.high_um_s) for shaft, numbers in bearings.items()
-        }
+        self._levels = {shaft: _level(shaft, levels, course) for shaft, levels in bearings.items()}
+        self.labels = {f"bearing_velocity_{shaft}_um_s": levels.high_um_s for shaft, levels in bearings.items()}
 
     def take(self, course: Course) -> dict[str, FloatArray]:
         """Return the next velocities (k,) by input."""
@@ -113,10 +111,10 @@ class BearingVelocities:
         shaft = seat.shaft
         if shaft in self._loaded:
             return self._varying(seat, self._loaded[shaft], course, turned)
-        numbers, path = self._bearings[shaft], f"background.bearings.{seat.stream}.passing"
+        levels, path = self._bearings[shaft], f"background.bearings.{seat.stream}.passing"
         slip = SLIP[0] + (SLIP[1] - SLIP[0]) * course.of_record(f"background.bearings.{shaft}.slip").random()
-        order = course.orders[shaft] * constant(numbers.ball_pass_order) * (1.0 - slip)
-        size_m = 1e-6 * constant(numbers.compliance_um) * (WEAKEST + (1.0 - WEAKEST) * course.uniform(path))
+        order = course.orders[shaft] * levels.ball_pass_order * (1.0 - slip)
+        size_m = levels.compliance_m * (WEAKEST + (1.0 - WEAKEST) * course.uniform(path))
         count = min(PASSING_LINES, int(course.top_order / order))
         if count == 0:
             return np.zeros(course.length)
@@ -144,18 +142,18 @@ class BearingVelocities:
         return found
 
 
-def _taps(numbers: BearingNumbers, course: Course, shaft: str) -> FloatArray:
+def _taps(levels: BearingLevels, course: Course, shaft: str) -> FloatArray:
     shaft_hz = course.point.speed_hz * course.orders[shaft]
-    return shape_taps(lambda f: velocity_density(numbers, shaft_hz, f), TAPS, course.fs_hz)
+    return shape_taps(lambda f: velocity_density(levels, shaft_hz, f), TAPS, course.fs_hz)
 
 
-def _level(shaft: str, numbers: BearingNumbers, course: Course) -> LevelCourse:
-    memory = 1e-3 * constant(numbers.level_time_ms) * course.fs_hz
+def _level(shaft: str, levels: BearingLevels, course: Course) -> LevelCourse:
+    memory = levels.level_time_s * course.fs_hz
     rng = course.of_record(f"background.bearings.{shaft}.level")
-    return LevelCourse(constant(numbers.level_std), memory, rng)
+    return LevelCourse(levels.level_std, memory, rng)
 
 
-def _strength(numbers: BearingNumbers, course: Course, seat: _Seat) -> FloatArray:
+def _strength(levels: BearingLevels, course: Course, seat: _Seat) -> FloatArray:
     """Return the power (k,) of a bearing's noise, of mean 1, as its shaft turns."""
     turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.bearings.{seat.stream}.turn") - 1.0)
-    return shaft_course([course.shaft_lines(seat.shaft, constant(numbers.shaft_depth), turn)])
+    return shaft_course([course.shaft_lines(seat.shaft, levels.shaft_depth, turn)])

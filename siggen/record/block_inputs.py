@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config
+from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
+from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import PlannedRecord
-from siggen.planning.specimen import Specimen
 from siggen.record.background import BackgroundBlocks
 from siggen.record.motion_blocks import MotionBlocks, delivered
 from siggen.sensing.block_filter import AHEAD, TOGETHER
@@ -22,17 +22,17 @@ class BlockInputs:
     """Inputs of one record, and what its channels see of them."""
 
     def __init__(
-        self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument
+        self, specimen: Specimen, record: PlannedRecord, rotation: Rotation, response: Pieces, instrument: Instrument
     ) -> None:
         self._samples, self._grid = specimen.sampling.samples, instrument.blocks.grid
-        back, background = self._grid.back, instrument.background
+        back = self._grid.back
         _refuse_undelivered(instrument, delivered(response))
         self._motions = MotionBlocks(response, back)
         self._background: BackgroundBlocks | None = None
         self._filters = instrument.blocks.filters
-        if background is not None:
+        if specimen.background is not None:
             length = back + self._samples + AHEAD
-            self._background = BackgroundBlocks(config, specimen, record, background, -back, length)
+            self._background = BackgroundBlocks(specimen, record, rotation, instrument.acting, -back, length)
         self._plain = {c.name: next(iter(c.seen)) for c in instrument.channels if c.is_plain}
         felt = dict.fromkeys(one for filters in self._filters.values() for one in filters)
         seen = tuple(dict.fromkeys([*felt, *self._plain.values()]))

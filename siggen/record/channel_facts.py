@@ -13,13 +13,12 @@ from siggen.noise.source import Draws
 from siggen.planning.plan import PlannedRecord
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.measurement import Measurement
-from siggen.specimen.drive import record_owner
 from siggen.specimen.instrument import ChannelInstrument
 
 
 def channel_draws(seed: int, record: PlannedRecord, channel: str, *, levelled: bool) -> Draws:
     """Return where the numbers of a channel come from; noise that is `levelled` has that of the gearbox."""
-    owner, levels = record_owner(record), named_uniforms(seed, Stage.BACKGROUND, record.specimen_id)
+    owner, levels = record.owner, named_uniforms(seed, Stage.BACKGROUND, record.specimen_id)
     return Draws(
         named_uniforms(seed, Stage.PATH, record.specimen_id),
         named_uniforms(seed, Stage.NOISE, *owner),
@@ -32,7 +31,7 @@ def white_noise(
     seed: int, record: PlannedRecord, channel: DrawnChannel, draws: Draws
 ) -> tuple[np.random.Generator, float | None]:
     """Return the generator of a channel's white noise, and its floor; None without one."""
-    rng = named_generator(seed, Stage.NOISE, *record_owner(record), name=channel.name)
+    rng = named_generator(seed, Stage.NOISE, *record.owner, name=channel.name)
     floor, u = channel.noise_floor, draws.level("noise", rng)
     return rng, None if floor is None else at(floor, u)
 

@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
 from siggen.gearbox.channels import DrawnChannel
@@ -24,8 +23,7 @@ from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.transducer import Running
-from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
-from siggen.specimen.instrument import Instrument, specimen_instrument
+from siggen.specimen.instrument import Instrument
 
 
 class ChannelDisturbance:
@@ -54,23 +52,21 @@ class ChannelDisturbance:
 
 
 def measured_channels(
-    config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument | None = None
+    specimen: Specimen, record: PlannedRecord, rotation: Rotation, response: Pieces, instrument: Instrument
 ) -> tuple[dict[str, np.ndarray], dict[str, object]]:
     """Return channel name -> float32 signal (n,) in its unit, and the labels of all channels.
 
-    Every channel has its own generators, so that adding a sensor leaves the others as they were. `instrument` is that
-    of the specimen, if it is there already. A stream is stepped here, piece after piece.
+    Every channel has its own generators, so that adding a sensor leaves the others as they were. A stream is stepped
+    here, piece after piece.
 
     Raises
     ------
     SolverFailure, ValueError
         As the response, where it is stepped as it is taken; a SolverFailure too where a sensor cannot read it.
     """
-    instrument = instrument or specimen_instrument(config, specimen)
-    inputs = BlockInputs(config, specimen, record, response, instrument)
+    inputs = BlockInputs(specimen, record, rotation, response, instrument)
     fs_hz, samples = specimen.sampling.fs_hz, specimen.sampling.samples
     recorders = {channel.name: Recorder(samples, channel.drawn.gain) for channel in instrument.channels}
-    rotation = _rotation(config, specimen, record)
     whole: dict[str, list[FloatArray]] = {c.name: [] for c in instrument.channels if c.drawn.transducer is not None}
     for seen in inputs.seen():
         for name, values in seen.items():
@@ -115,7 +111,7 @@ def _running(specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> R
         specimen.points[record.operating_point_id].torque_nm,
         _base_radii_m(specimen),
         {channel.name: channel.place for channel in specimen.channels},
-        2.0 * np.pi * named_uniforms(specimen.seed, Stage.NOISE, *record_owner(record))("line.phase"),
+        2.0 * np.pi * named_uniforms(specimen.seed, Stage.NOISE, *record.owner)("line.phase"),
     )
 
 
@@ -137,7 +133,7 @@ def _disturbances(
 ) -> dict[str, ChannelDisturbance]:
     """Return channel -> what is added to it; its recorder learns its noise and its converter."""
     largest, fs_hz = _largest_step_rad(specimen, rotation), specimen.sampling.fs_hz
-    levelled = instrument.background is not None
+    levelled = specimen.background is not None
     gear_order = specimen.pair.pinion.teeth / specimen.pair.gear.teeth
     found = {}
     for channel in instrument.channels:
@@ -160,11 +156,6 @@ def _disturbances(
             noise_floor=floor,
         )
     return found
-
-
-def _rotation(config: Config, specimen: Specimen, record: PlannedRecord) -> Rotation:
-    point = specimen.points[record.operating_point_id]
-    return record_rotation(config, point, record, start_angle_rad(config, specimen, record))
 
 
 def _angle_rad(rotation: Rotation, fs_hz: float, first: int, count: int) -> FloatArray:

@@ -21,7 +21,7 @@ def damage_rows(config: Config, record_id: int, mesh: int | None = None) -> list
     placed, shared = _damage(config, record.specimen_id, record.state_id)
     empty = {column.name: nothing_of(column) for column in (*DAMAGE_COLUMNS, *kind_columns(config))}
     return [
-        {**empty, "record_id": record_id, **shared, **_row(config, one, name), **drawn_labels(config, record, one)}
+        {**empty, "record_id": record_id, **shared, **_row(config, one, name), **drawn_labels(config.seed, record, one)}
         for number, (name, parts) in enumerate(placed.items())
         if mesh in (None, number)
         for one in parts

@@ -19,6 +19,8 @@ from siggen.record.channels import measured_channels
 from siggen.record.quantities import internal_quantities, quantity_column
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import SpecimenState, specimen_state
+from siggen.specimen.drive import record_rotation
+from siggen.specimen.instrument import specimen_instrument
 
 
 def internals_table(config: Config, record_id: int, *, internals: bool = True) -> pa.Table:
@@ -39,7 +41,8 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
     record = planned_record(config, record_id)
     own = state_config(config, record.specimen_id, record.state_id)
     specimen, _, response, point = _simulated(own, record, internals=internals)
-    stored, _ = measured_channels(own, specimen, record, response)
+    rotation = record_rotation(specimen, record)
+    stored, _ = measured_channels(specimen, record, rotation, response, specimen_instrument(specimen))
     columns: dict[str, np.ndarray] = {
         "time_s": np.arange(config.samples) / config.fs_hz,
         "angle_rad": response.angle_rad,
@@ -77,9 +80,10 @@ def record_internals(
 def _simulated(
     config: Config, record: PlannedRecord, *, internals: bool
 ) -> tuple[Specimen, SpecimenState, Response, OperatingPoint]:
-    specimen = draw_specimen(config, record.specimen_id)
+    drawn = draw_specimen(config, record.specimen_id)
+    specimen = drawn.under(drawn.points[record.operating_point_id])
     state = specimen_state(specimen, record.state_id)
-    return specimen, state, *record_response(config, specimen, state, record, internals=internals)
+    return specimen, state, *record_response(specimen, state, record, internals=internals)
 
 
 def stored_quantities(config: Config) -> tuple[Column, ...]:

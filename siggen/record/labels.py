@@ -13,6 +13,7 @@ from siggen.columns.state_columns import (
     shown_words,
 )
 from siggen.config import Config
+from siggen.dynamics.time.sampling import Sampling
 from siggen.gearbox.specimen import DrawnState, OperatingPoint, Specimen
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.part import Parts, teeth_of
@@ -108,14 +109,14 @@ def _pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
 
 
 def operating_labels(
-    pair: GearPair, point: OperatingPoint, ends_rad: FloatArray, config: Config, static: StaticMesh
+    pair: GearPair, point: OperatingPoint, ends_rad: FloatArray, sampling: Sampling, static: StaticMesh
 ) -> dict[str, object]:
     """Return teeth, commanded speed and torque, the frequencies that the record really has, and the loss at its torque.
 
     `ends_rad` (2,) are the pinion's angles at the first and the last sample; `static` is the mesh of the
     state at rest.
     """
-    shaft_hz = float((ends_rad[1] - ends_rad[0]) / (6.283185307179586 * (config.samples - 1) / config.fs_hz))
+    shaft_hz = float((ends_rad[1] - ends_rad[0]) / (6.283185307179586 * (sampling.samples - 1) / sampling.fs_hz))
     return {
         "teeth_pinion": pair.pinion.teeth,
         "teeth_gear": pair.gear.teeth,

@@ -13,7 +13,7 @@ from functools import lru_cache
 from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.labels import gearbox_labels
 from siggen.record.specimen_state import refused_as
@@ -36,12 +36,11 @@ class Machine:
 
     def at_point(self, operating_point_id: int) -> Machine:
         """Return the machine under the load of an operating point; itself where its bearings have one stiffness."""
-        point = draw_operating_point(self.config, self.specimen.specimen_id, operating_point_id)
-        specimen = self.specimen.under(point)
+        specimen = self.specimen.under(self.specimen.points[operating_point_id])
         if specimen is self.specimen:
             return self
         with stage("sensing"):
-            return replace(self, specimen=specimen, instrument=specimen_instrument(self.config, specimen))
+            return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
 
 
 def machines(whole: Config, specimen_id: int) -> Callable[[int], Machine]:
@@ -56,5 +55,5 @@ def _machine(whole: Config, config: Config, specimen_id: int) -> Machine:
         specimen = draw_specimen(config, specimen_id)
         labels, assembled = gearbox_labels(whole, specimen), structure(specimen)
     with stage("sensing"):
-        instrument = specimen_instrument(config, specimen)
+        instrument = specimen_instrument(specimen)
     return Machine(config, specimen, all_teeth(specimen), assembled, instrument, labels)

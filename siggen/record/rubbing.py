@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.compiled import entry
 from siggen.dynamics.friction.rubbing_course import rubbing_course
-from siggen.keys.number import at, constant
+from siggen.gearbox.background import BurstLevels, RubbingLevels
 from siggen.record.background_course import Course
 from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter
 from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course
@@ -25,7 +25,7 @@ from siggen.sensing.noise_spectrum import noise_spectrum
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.asperities import contact_half_width_m
-from siggen.specimen.background_numbers import MESH_STIFFNESS_N_PER_UM_MM, BurstNumbers, RubbingNumbers
+from siggen.specimen.background import MESH_STIFFNESS_PA
 
 CONTACT_TAPS = 2048
 """Of the filter of both corners: at 51.2 kHz 25 Hz apart."""
@@ -34,12 +34,12 @@ CONTACT_TAPS = 2048
 class RubbingForce:
     """The force of one record from the first sample of `course` on, over `length` samples, and its labels."""
 
-    def __init__(self, rubbing: RubbingNumbers, course: Course, length: int) -> None:
+    def __init__(self, rubbing: RubbingLevels, course: Course, length: int) -> None:
         self._rubbing, spectrum = rubbing, force_spectrum(rubbing, course)
         taps = shape_taps(spectrum.density, CONTACT_TAPS, course.fs_hz)
         self._noise = ShapedNoise(taps, course.fs_hz, course.of_record("background.rubbing"))
         self._level = level_process(rubbing, course)
-        self._share = constant(rubbing.replayed_share)
+        self._share = rubbing.replayed_share
         self._patterns = {
             shaft: shaft_pattern(spectrum, course, shaft, order)
             for shaft, order in (course.orders.items() if self._share > 0.0 else ())
@@ -68,14 +68,14 @@ class RubbingForce:
         return np.asarray(noise * strength)
 
 
-def rubbing_labels(rubbing: RubbingNumbers, rms_n: float, asperity_share: float) -> dict[str, object]:
+def rubbing_labels(rubbing: RubbingLevels, rms_n: float, asperity_share: float) -> dict[str, object]:
     """Return the labels but for bursts."""
     return {
         "rubbing_force_n": rms_n,
         "rubbing_asperity_share": asperity_share,
-        "rubbing_level_std": constant(rubbing.level_std),
-        "rubbing_pinion_depth": constant(rubbing.pinion_depth),
-        "rubbing_gear_depth": constant(rubbing.gear_depth),
+        "rubbing_level_std": rubbing.level_std,
+        "rubbing_pinion_depth": rubbing.pinion_depth,
+        "rubbing_gear_depth": rubbing.gear_depth,
     }
 
 
@@ -101,18 +101,18 @@ class ForceSpectrum(NamedTuple):
         return float(np.sqrt(np.trapezoid(self.density(frequency) ** 2, frequency)))
 
 
-def force_spectrum(rubbing: RubbingNumbers, course: Course) -> ForceSpectrum:
+def force_spectrum(rubbing: RubbingLevels, course: Course) -> ForceSpectrum:
     """Return the spectrum at the nominal speed and torque."""
     pair = course.pair
-    stiffness = 1e9 * MESH_STIFFNESS_N_PER_UM_MM * pair.face_width_m
-    averaged = max(pair.face_width_m / (1e-3 * constant(rubbing.correlation_mm)), 1.0)
-    roughness_m = 1e-6 * constant(rubbing.roughness_um) / sqrt(averaged)
+    stiffness = MESH_STIFFNESS_PA * pair.face_width_m
+    averaged = max(pair.face_width_m / rubbing.correlation_m, 1.0)
+    roughness_m = rubbing.roughness_m / sqrt(averaged)
     # both flanks roll over the pitch point at R_b1 tan(α_w) Ω_1
     rolling_m_s = 2.0 * pi * course.point.speed_hz * pair.pinion.base_radius_m * tan(pair.working_pressure_angle_rad)
     return ForceSpectrum(
-        rough_n=stiffness * roughness_m * course.asperity_share ** constant(rubbing.asperity_exponent),
-        roll_off_hz=rolling_m_s / (1e-3 * constant(rubbing.roll_off_mm)),
-        hurst_exponent=constant(rubbing.hurst_exponent),
+        rough_n=stiffness * roughness_m * course.asperity_share**rubbing.asperity_exponent,
+        roll_off_hz=rolling_m_s / rubbing.roll_off_m,
+        hurst_exponent=rubbing.hurst_exponent,
         contact_hz=rolling_m_s / (2.0 * pi * contact_half_width_m(pair, course.point)),
     )
 
@@ -133,45 +133,43 @@ def shaft_pattern(spectrum: ForceSpectrum, course: Course, shaft: str, order: fl
     return np.asarray(np.fft.irfft(waves * spectrum.density(frequencies(points, rate_hz)), points))
 
 
-def level_process(rubbing: RubbingNumbers, course: Course) -> LevelCourse:
+def level_process(rubbing: RubbingLevels, course: Course) -> LevelCourse:
     """Return the random level, from the first sample on."""
-    memory = 1e-3 * constant(rubbing.level_time_ms) * course.fs_hz
-    return LevelCourse(constant(rubbing.level_std), memory, course.of_record("background.rubbing.level"))
+    memory = rubbing.level_time_s * course.fs_hz
+    return LevelCourse(rubbing.level_std, memory, course.of_record("background.rubbing.level"))
 
 
-def modulation(rubbing: RubbingNumbers, course: Course, level: FloatArray) -> FloatArray:
+def modulation(rubbing: RubbingLevels, course: Course, level: FloatArray) -> FloatArray:
     """Return M (length,) of a random level (length,)."""
-    table = rubbing_course(course.pair, constant(rubbing.sliding_exponent))
+    table = rubbing_course(course.pair, rubbing.sliding_exponent)
     mesh = periodic_course(course.angle_rad, course.pair.pinion.teeth, table)
-    depths = {"pinion": constant(rubbing.pinion_depth), "gear": constant(rubbing.gear_depth)}
+    depths = {"pinion": rubbing.pinion_depth, "gear": rubbing.gear_depth}
     shafts = [course.shaft_lines(shaft, depth) for shaft, depth in depths.items()]
     return np.asarray(mesh * shaft_course(shafts) * level)
 
 
 class DrawnBursts(NamedTuple):
-    """First samples, peaks and decays in samples (bursts,), and how many begin within the record."""
+    """First samples (bursts,), their peak and decay in samples, and how many begin within the record."""
 
     begin: NDArray[np.int64]
-    peak: FloatArray
-    decay: FloatArray
+    peak: float
+    decay: float
     recorded: int
 
 
-def drawn_bursts(bursts: BurstNumbers, course: Course, length: int) -> DrawnBursts:
+def drawn_bursts(bursts: BurstLevels, course: Course, length: int) -> DrawnBursts:
     """Return the bursts of `length` samples from the first one of the course on."""
     rng = course.of_record("background.rubbing.bursts")
-    count = int(rng.poisson(constant(bursts.rate_hz) * length / course.fs_hz))
+    count = int(rng.poisson(bursts.rate_hz * length / course.fs_hz))
     begin = np.floor(rng.random(count) * length).astype(np.int64)
-    peak = np.array([at(bursts.peak, float(u)) for u in rng.random(count)])
-    decay = np.array([1e-3 * at(bursts.decay_ms, float(u)) * course.fs_hz for u in rng.random(count)])
-    return DrawnBursts(begin, peak, decay, int((begin >= course.history).sum()))
+    return DrawnBursts(begin, bursts.peak, bursts.decay_s * course.fs_hz, int((begin >= course.history).sum()))
 
 
 def burst_rise(drawn: DrawnBursts, first: int, count: int) -> FloatArray:
     """Return the rise (count,) by all bursts from sample `first` on."""
     rise = np.zeros(count)
-    for begin, high, memory in zip(drawn.begin, drawn.peak, drawn.decay, strict=True):
-        _add_burst(rise, begin - first, high, memory)
+    for begin in drawn.begin:
+        _add_burst(rise, begin - first, drawn.peak, drawn.decay)
     return rise
 
 

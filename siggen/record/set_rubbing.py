@@ -14,18 +14,18 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.comb import turns_of
+from siggen.gearbox.background import RubbingLevels
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.record.background_course import Course
 from siggen.record.rubbing import RubbingForce
 from siggen.specimen.background import AXES, EVEN, SET_MESHES
-from siggen.specimen.background_numbers import RubbingNumbers
 
 
 class SetRubbing:
     """The forces of one record from the first sample of `course` on, over `length` samples, and their labels."""
 
-    def __init__(self, rubbing: RubbingNumbers, course: Course, length: int, specimen: Specimen) -> None:
+    def __init__(self, rubbing: RubbingLevels, course: Course, length: int, specimen: Specimen) -> None:
         planets = specimen.planets
         assert planets is not None
         teeth = planets.teeth

@@ -16,8 +16,8 @@ from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collecte
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.dynamics.time.transient import both_settled_s
 from siggen.errors import SolverFailure
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.planning.plan import PlannedRecord, planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import operating_labels, state_labels
@@ -30,17 +30,15 @@ from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import FORCE, SHAFT
-from siggen.sensors.sensor import needs
-from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
+from siggen.specimen.drive import RecordDrive, record_drive, variation_labels
 from siggen.specimen.instrument import Instrument, history_s
 from siggen.specimen.step_choice import stepped_motion
 from siggen.specimen.structure import structure
 
-__all__ = ["damage_rows", "record_response", "simulate_specimen", "simulated", "start_angle_rad"]
+__all__ = ["damage_rows", "record_response", "simulate_specimen", "simulated"]
 
 
 def record_response(
-    config: Config,
     specimen: Specimen,
     state: SpecimenState,
     record: PlannedRecord,
@@ -59,69 +57,69 @@ def record_response(
         If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
     with refused_as("outside_model"):
-        specimen, state = at_point(config, specimen, state, record)
-        stream, point, _ = _stream(config, specimen, state, record, internals=internals, driven=driven, motions=motions)
+        specimen, state = at_point(specimen, state, record)
+        driven = driven or state_drive(specimen, state, record)
+        stream, _ = _stream(specimen, state, record, driven, internals=internals, motions=motions)
         with stage("loop"):
             response = collected_response(stream)
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
-    return response, point
+    return response, specimen.points[record.operating_point_id]
 
 
-def at_point(
-    config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord
-) -> tuple[Specimen, SpecimenState]:
+def at_point(specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> tuple[Specimen, SpecimenState]:
     """Return a specimen and its state under the load of a record; as they are where bearings have one stiffness."""
     if specimen.bearing_point is None:
         return specimen, state
-    specimen = specimen.under(draw_operating_point(config, record.specimen_id, record.operating_point_id))
+    specimen = specimen.under(specimen.points[record.operating_point_id])
     return specimen, replace(state, mesh=state.mesh.on(structure(specimen)))
 
 
+def state_drive(specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
+    """Return how a record is driven in a state, whose damage pushes too.
+
+    Raises
+    ------
+    ValueError
+        As `record_drive`.
+    """
+    return record_drive(specimen, state.mesh.structure, record, state.parts, state.parts_behind)
+
+
 def _stream(
-    config: Config,
     specimen: Specimen,
     state: SpecimenState,
     record: PlannedRecord,
+    driven: RecordDrive,
     *,
     internals: bool = False,
-    driven: RecordDrive | None = None,
     motions: Collection[str] | None = None,
-) -> tuple[ResponseStream, OperatingPoint, dict[str, object]]:
-    """Return the response of one record before it is stepped, its operating point, and labels of how it is stepped."""
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    driven = _driven(config, specimen, state, record) if driven is None else driven
+) -> tuple[ResponseStream, dict[str, object]]:
+    """Return the response of one record before it is stepped, and labels of how it is stepped."""
+    point, sampling = specimen.points[record.operating_point_id], specimen.sampling
     with stage("loop"):
-        grid, motion, error, error_of = stepped_motion(specimen.sampling, specimen.law, state.mesh, point, driven)
+        grid, motion, error, error_of = stepped_motion(sampling, specimen.law, state.mesh, point, driven)
         stream = response_stream(
             motion,
             driven.rotation,
-            SampleGrid(config.fs_hz, config.samples, grid.per_sample),
+            SampleGrid(sampling.fs_hz, sampling.samples, grid.per_sample),
             wanted=Wanted(
                 internals,
-                internals or config.gives_way or config.turns_in_housing or needs(config.sensors, FORCE),
+                internals or specimen.passes_forces or specimen.reads(FORCE),
                 motions,
-                needs(config.sensors, SHAFT),
+                specimen.reads(SHAFT),
             ),
             excitation=driven.excitation,
             settle_s=_settle_s(specimen, motion),
             history_s=history_s(specimen),
             ahead=AHEAD,
         )
-    stepped = {} if error is None else {"integration_error": error, "integration_error_of": error_of}
-    return stream, point, stepped
+    return stream, {} if error is None else {"integration_error": error, "integration_error_of": error_of}
 
 
 def _settle_s(specimen: Specimen, motion: Motion) -> float:
     """Return the least time before the record, in which motion and filters forget the start."""
     return both_settled_s(motion.transient_s, history_s(specimen))
-
-
-def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    angle_rad = start_angle_rad(config, specimen, record)
-    structure = state.mesh.structure
-    return record_drive(config, specimen, structure, point, record, angle_rad, state.parts, state.parts_behind)
 
 
 def simulated(
@@ -136,29 +134,28 @@ def simulated(
     """
     with_internals = config.internals is not None
     with refused_as("outside_model"), stage("inputs"):
-        specimen, state = at_point(config, specimen, state, planned)
-        driven = _driven(config, specimen, state, planned)
+        specimen, state = at_point(specimen, state, planned)
+        driven = state_drive(specimen, state, planned)
     seen = {motion for channel in instrument.channels for motion in channel.motions}
     if with_internals:
         seen |= {motion for motion in state.mesh.structure.motions if is_asked_for(config, acceleration_name(motion))}
     with refused_as("outside_model"):
-        stream, point, stepped = _stream(
-            config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
-        )
+        stream, stepped = _stream(specimen, state, planned, driven, internals=with_internals, motions=seen)
     response: _RefusedPieces | StreamedInternals = _RefusedPieces(stream)
     if with_internals:
         response = StreamedInternals(config, specimen, stream, response)
     with stage("sensing"):
-        channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
-    ends_rad = driven.rotation.angle_rad(np.array([0, config.samples - 1]) / config.fs_hz)
+        channels, channel_labels = measured_channels(specimen, planned, driven.rotation, response, instrument)
+    sampling, point = specimen.sampling, specimen.points[planned.operating_point_id]
+    ends_rad = driven.rotation.angle_rad(np.array([0, sampling.samples - 1]) / sampling.fs_hz)
     with refused_as("outside_model"):
-        operating = operating_labels(state.pair, point, ends_rad, config, state.static)
+        operating = operating_labels(state.pair, point, ends_rad, sampling, state.static)
     labels = planetary_labels(specimen, {
         **state.labels,
         **operating,
         **stage_operating_labels(specimen, operating, [one.static for one in state.behind]),
         **stepped,
-        **variation_labels(config, driven),
+        **variation_labels(sampling, driven),
         "start_angle_rad": float(ends_rad[0]),
         "contact_loss_share": response.contact_loss_share,
         "status": "ok",
@@ -167,7 +164,7 @@ def simulated(
     internals = None
     if isinstance(response, StreamedInternals):
         internals = response.quantities()
-    tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
+    tacho_s = driven.rotation.tacho_s(sampling.samples / sampling.fs_hz)
     return SimulatedRecord(planned, labels, channels, tacho_s, internals)
 
 

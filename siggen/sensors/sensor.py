@@ -254,8 +254,3 @@ def _is_drawn(value: object) -> bool:
     if isinstance(value, Section) and not isinstance(value, DRAWN):
         return any(_is_drawn(getattr(value, key)) for key in type(value).model_fields)
     return any(map(_is_drawn, value)) if isinstance(value, tuple) else isinstance(value, DRAWN)
-
-
-def needs(sensors: tuple[SensorBase, ...], kind: str) -> bool:
-    """Return whether a sensor reads a kind of `Input`, such as bearing forces."""
-    return any(kind in sensor.reads for sensor in sensors)

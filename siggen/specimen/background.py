@@ -6,14 +6,13 @@ seats, on shafts, base and housing. What they do to bearing forces passes the fl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config
 from siggen.dynamics.drive.external_forces import (
     bearing_direction,
     bearing_places,
@@ -27,128 +26,65 @@ from siggen.dynamics.structure.gear_stage import Base
 from siggen.dynamics.structure.makers import on_base
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gearbox.background import MACHINES, DrawnBackground
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.drawing import draw
-from siggen.keys.number import constant
-from siggen.planning.specimen import Specimen
-from siggen.seeding import Stage, named_uniforms
+from siggen.names import ROLES
 from siggen.sensing.sensor_response import resonance_response
-from siggen.specimen.background_numbers import (
-    MESH_STIFFNESS_N_PER_UM_MM,
-    BackgroundNumbers,
-    BaseNumbers,
-    BearingNumbers,
-    ForeignNumbers,
-    ShaftNumbers,
-    background_numbers,
-)
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.structure import linear_structure, linear_train
 
 DECAYS = 7.0
 """Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
 AXES = ("horizontal", "vertical")
-SHAFTS = ("pinion", "gear")
-"""Shafts that machines stand beside: of the first pinion and its gear, of sun and carrier."""
 SET_MESHES, EVEN = ("sun_meshes", "ring_meshes"), "even"
 """Of a planetary set, and the part of their push that has no direction."""
-MACHINES = {"motor": "pinion", "load": "gear"}
-"""What stands beside the gearbox, and the shaft that leads there."""
+MESH_STIFFNESS_PA = 20e9
+"""Mean stiffness of a mesh per face width that the forces meet (source: ISO 6336-1, steel)."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpecimenBackground:
-    """A drawn section, `shafts` and `bearings` once for each shaft, and channel -> response (inputs, k) in m/s² per N.
+    """What acts on a gearbox besides its teeth, and channel -> response (inputs, k) to it in m/s² per N.
 
     Responses end before the sensor; those from bearings are per m/s of what moves in series with their springs.
     """
 
-    section: BackgroundNumbers
-    shafts: Mapping[str, ShaftNumbers]
-    bearings: Mapping[str, BearingNumbers]
     inputs: tuple[str, ...]
     responses: Mapping[str, ComplexArray]
 
 
-def drawn_background(config: Config, specimen_id: int) -> BackgroundNumbers | None:
-    """Return the section with what belongs to the gearbox; None without one."""
-    if config.background is None:
-        return None
-    uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen_id)
-    return draw(background_numbers(config.background), uniform, "background")
-
-
-def background_history_s(section: BackgroundNumbers | None) -> float:
+def background_history_s(base: Base | None) -> float:
     """Return the time before the first sample over which forces on the base must be followed [s]."""
-    if section is None or section.base is None:
-        return 0.0
-    base = section.base
-    slowest = 2.0 * pi * min(constant(f) for f in (base.horizontal_hz, base.vertical_hz, base.rocking_hz))
-    return min(TRANSIENT_CAP_S, DECAYS / (slowest * constant(base.damping_ratio)))
+    return 0.0 if base is None else min(TRANSIENT_CAP_S, DECAYS / base.slowest_decay_per_s)
 
 
 def specimen_background(
-    config: Config,
-    specimen: Specimen,
-    section: BackgroundNumbers,
-    channels: Mapping[str, ChannelWay],
-    frequency_hz: FloatArray,
+    specimen: Specimen, drawn: DrawnBackground, channels: Mapping[str, ChannelWay], frequency_hz: FloatArray
 ) -> SpecimenBackground:
-    """Return the background of a specimen; the same for all of its states, operating points and repeats.
-
-    Parameters
-    ----------
-    section : drawn
-    channels : by name
-    frequency_hz : (k,)
-    """
+    """Return how the background of a specimen reaches its channels, at frequencies (k,); the same for all records."""
     machine = linear_train(specimen)
-    if section.base is not None and BASE in machine.body:
-        machine = on_base(machine, _base(section.base))
+    if drawn.base is not None and BASE in machine.body:
+        machine = on_base(machine, drawn.base)
     assembled = linear_structure(machine)
-    uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
-    directions = _directions(assembled, section, uniform)
-    assert config.background is not None
-    numbers = background_numbers(config.background)
-    shafts, bearings = _shafts(numbers, uniform), bearings_of_shafts(numbers, uniform)
+    directions = _directions(assembled, drawn)
     if not directions:
-        return SpecimenBackground(section, shafts, bearings, (), {})
+        return SpecimenBackground((), {})
     names = tuple(directions)
-    forcing = Forcing(directions, _pressed(assembled, _angle(uniform, "auxiliary_drive")))
+    forcing = Forcing(directions, _pressed(assembled, drawn.angles_rad["auxiliary_drive"]))
     responses = forced_ways((assembled, mean_meshes(specimen, assembled)), forcing, channels, frequency_hz)
-    for name, factor in _factors(assembled, section, names, frequency_hz).items():
+    for name, factor in _factors(assembled, drawn, frequency_hz).items():
         for response in responses.values():
             response[names.index(name)] *= factor
-    return SpecimenBackground(section, shafts, bearings, names, responses)
+    return SpecimenBackground(names, responses)
 
 
-def _shafts(section: BackgroundNumbers, uniform: Callable[[str], float]) -> dict[str, ShaftNumbers]:
-    """Return the section of each shaft, each with its own draws."""
-    shafts = section.shafts
-    if shafts is None:
-        return {}
-    return {shaft: draw(shafts, uniform, f"background.shafts.{shaft}") for shaft in SHAFTS}
-
-
-def bearings_of_shafts(section: BackgroundNumbers, uniform: Callable[[str], float]) -> dict[str, BearingNumbers]:
-    """Return the bearings of each shaft, each with their own draws."""
-    bearings = section.bearings
-    if bearings is None:
-        return {}
-    return {shaft: draw(bearings, uniform, f"background.bearings.{shaft}") for shaft in SHAFTS}
-
-
-def _factors(
-    assembled: Structure, section: BackgroundNumbers, names: tuple[str, ...], frequency_hz: FloatArray
-) -> dict[str, ComplexArray]:
+def _factors(assembled: Structure, drawn: DrawnBackground, frequency_hz: FloatArray) -> dict[str, ComplexArray]:
     """Return input -> what lies between it and the force that acts on the model (k,)."""
-    bearings = bearing_inputs(assembled) if section.bearings is not None else ()
+    bearings = bearing_inputs(assembled) if drawn.bearings else ()
     found = {name: _per_velocity(assembled, name, frequency_hz) for name in bearings}
-    for name in ("second_stage", "auxiliary_drive"):
-        mesh: ForeignNumbers | None = getattr(section, name)
-        if mesh is not None and name in names:
-            support = constant(mesh.support_hz), constant(mesh.support_damping)
-            found[name] = resonance_response(frequency_hz, *support)
+    for name, mesh in drawn.foreign.items():
+        found[name] = resonance_response(frequency_hz, mesh.support_hz, mesh.support_damping)
     return found
 
 
@@ -168,42 +104,30 @@ def mean_meshes(specimen: Specimen, assembled: Structure) -> list[MeanMesh]:
 
 def mean_mesh(law: ToothLaw, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:
     """Return the mesh as a constant spring and damper; no state may show in it, so it knows no damage."""
-    stiffness = 1e9 * MESH_STIFFNESS_N_PER_UM_MM * pair.face_width_m
+    stiffness = MESH_STIFFNESS_PA * pair.face_width_m
     return MeanMesh(stiffness, 2.0 * law.damping_ratio * sqrt(stiffness * equivalent_mass_kg))
 
 
-def _base(section: BaseNumbers) -> Base:
-    mass = constant(section.mass_kg)
-    return Base(
-        mass,
-        mass * constant(section.gyration_m) ** 2,
-        (constant(section.horizontal_hz), constant(section.vertical_hz), constant(section.rocking_hz)),
-        constant(section.damping_ratio),
-    )
-
-
-def _directions(
-    assembled: Structure, section: BackgroundNumbers, uniform: Callable[[str], float]
-) -> dict[str, FloatArray]:
-    """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
+def _directions(assembled: Structure, drawn: DrawnBackground) -> dict[str, FloatArray]:
+    """Return input -> generalised force (n,) per newton, for the inputs that the background needs."""
     found: dict[str, FloatArray] = {}
-    if section.rubbing is not None:
+    if drawn.rubbing is not None:
         found |= mesh_directions(assembled)
-    if section.bearings is not None:
+    if drawn.bearings:
         found |= {name: bearing_direction(assembled, *name.split("/")) for name in bearing_inputs(assembled)}
-    if section.machines is not None:
+    if drawn.machines is not None:
         for name, shaft in MACHINES.items():
-            found[name] = _turned(_stand(assembled, shaft), _angle(uniform, f"machines.{name}"))
-    if section.shafts is not None:
-        for shaft in SHAFTS:
-            rows = _on_rotor(assembled, shaft) - _on_base(assembled)
-            found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
+            found[name] = _turned(_stand(assembled, shaft), drawn.angles_rad[name])
+    for shaft in drawn.shafts:
+        rows = _on_rotor(assembled, shaft) - _on_base(assembled)
+        found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
+    if drawn.shafts:
         found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
-    if section.second_stage is not None:
+    if "second_stage" in drawn.foreign:
         found["second_stage"] = _entry(assembled, "second_stage")
-    if section.auxiliary_drive is not None:
+    if "auxiliary_drive" in drawn.foreign:
         rows = np.array([_entry(assembled, f"auxiliary_drive/{axis}") for axis in AXES])
-        found["auxiliary_drive"] = _turned(rows, _angle(uniform, "auxiliary_drive"))
+        found["auxiliary_drive"] = _turned(rows, drawn.angles_rad["auxiliary_drive"])
     return found
 
 
@@ -228,7 +152,7 @@ def mesh_directions(assembled: Structure) -> dict[str, FloatArray]:
 
 def bearing_inputs(assembled: Structure) -> tuple[str, ...]:
     """Return the bearings of both shafts that machines stand beside, with their axes."""
-    return tuple(f"{place}/{axis}" for place in bearing_places(assembled)[: len(SHAFTS)] for axis in AXES[::-1])
+    return tuple(f"{place}/{axis}" for place in bearing_places(assembled)[: len(ROLES)] for axis in AXES[::-1])
 
 
 def _pressed(assembled: Structure, turn_rad: float) -> dict[str, dict[str, float]]:
@@ -244,16 +168,12 @@ def _entry(assembled: Structure, name: str) -> FloatArray:
     return machine.way(machine.entries[name]) if name in machine.entries else np.zeros(len(assembled.coordinates))
 
 
-def _angle(uniform: Callable[[str], float], name: str) -> float:
-    return 2.0 * pi * uniform(f"background.{name}.angle")
-
-
 def _turned(rows: FloatArray, angle: float) -> FloatArray:
     return np.asarray(cos(angle) * rows[0] + sin(angle) * rows[1])
 
 
 def _on_rotor(assembled: Structure, shaft: str) -> FloatArray:
-    return shaft_directions(assembled, bearing_places(assembled)[SHAFTS.index(shaft)])
+    return shaft_directions(assembled, bearing_places(assembled)[ROLES.index(shaft)])
 
 
 def _on_base(assembled: Structure) -> FloatArray:

@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.dynamics.bearings.bearing_spall import RollingSpall, in_bearings
 from siggen.dynamics.bearings.cage_course import CageCourse, cage_course
 from siggen.dynamics.bearings.spalled_bearing import SpalledBearing, mean_zone
@@ -20,9 +19,9 @@ from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.external_forces import bearing_direction, shaft_direction, shaft_directions, turning_sense
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.damage.part import Part, Parts
 from siggen.planning.plan import PlannedRecord
-from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, named_generator
 from siggen.specimen.loaded_bearings import BEARINGS
 from siggen.specimen.structure import specimen_bearings, supported_stage
@@ -37,13 +36,7 @@ MARGIN_S = 1.0
 
 
 def spall_sources(
-    config: Config,
-    specimen: Specimen,
-    structure: Structure,
-    point: OperatingPoint,
-    record: PlannedRecord,
-    rotation: Rotation,
-    parts: Parts,
+    specimen: Specimen, structure: Structure, record: PlannedRecord, rotation: Rotation, parts: Parts
 ) -> tuple[SpalledBearing, ...]:
     """Return what the spalls among the parts of a damage push, but for those that no loaded ball passes.
 
@@ -53,7 +46,7 @@ def spall_sources(
         If the structure has no bearings.
     """
     found = []
-    bearings = specimen_bearings(specimen)
+    bearings, point = specimen_bearings(specimen), specimen.points[record.operating_point_id]
     for drawn in in_bearings(parts):
         own = bearings.get(drawn.shaft)
         spall = drawn if own is None else replace(drawn, bearing=own.bearing)
@@ -65,7 +58,7 @@ def spall_sources(
         source = SpalledBearing(
             spall=spall,
             zone=mean_zone(spall, force_n),
-            cage=_cage(config, record, rotation, spall, order),
+            cage=_cage(specimen, record, rotation, spall, order),
             order=order * turning_sense(structure, place),
             directions=shares.T @ rows,
             on_seat={f"{place}/{axis}": row for axis, row in zip(AXES, -shares, strict=True)},
@@ -98,22 +91,22 @@ def _transmitted(specimen: Specimen, structure: Structure, shaft: str, place: st
     return np.asarray(np.array(crossed) @ np.array([[y, -xy], [-xy, x]]) / (x * y - xy * xy))
 
 
-def drawn_labels(config: Config, record: PlannedRecord, part: Part) -> dict[str, object]:
+def drawn_labels(seed: int, record: PlannedRecord, part: Part) -> dict[str, object]:
     """Return what a row of the table of damage tells of a part in this record alone: the slip of a spalled bearing."""
-    return {"slip_share": _slip_and_walk(config, record, part)[0]} if isinstance(part, RollingSpall) else {}
+    return {"slip_share": _slip_and_walk(seed, record, part)[0]} if isinstance(part, RollingSpall) else {}
 
 
-def _slip_and_walk(
-    config: Config, record: PlannedRecord, spall: RollingSpall
-) -> tuple[float, float, np.random.Generator]:
+def _slip_and_walk(seed: int, record: PlannedRecord, spall: RollingSpall) -> tuple[float, float, np.random.Generator]:
     """Return slip and walk of a bearing's cage in a record, and the generator of its steps."""
-    owner = record.specimen_id, record.state_id, record.operating_point_id, record.repeat
-    rng = named_generator(config.seed, Stage.DRIVE, *owner, name=f"bearing_spall.{spall.shaft}.cage")
+    rng = named_generator(seed, Stage.DRIVE, *record.owner, name=f"bearing_spall.{spall.shaft}.cage")
     slip, walk = (low + (high - low) * rng.random() for low, high in (SLIP, WALK))
     return slip, walk, rng
 
 
-def _cage(config: Config, record: PlannedRecord, rotation: Rotation, spall: RollingSpall, order: float) -> CageCourse:
-    slip, walk, rng = _slip_and_walk(config, record, spall)
-    ends = rotation.angle_rad(np.array([-TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S]))
+def _cage(
+    specimen: Specimen, record: PlannedRecord, rotation: Rotation, spall: RollingSpall, order: float
+) -> CageCourse:
+    slip, walk, rng = _slip_and_walk(specimen.seed, record, spall)
+    end_s = specimen.sampling.duration_s + MARGIN_S
+    ends = rotation.angle_rad(np.array([-TRANSIENT_CAP_S - MARGIN_S, end_s]))
     return cage_course(spall.bearing, rng, slip, walk, (order * float(ends[0]), order * float(ends[1])))

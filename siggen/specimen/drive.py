@@ -8,23 +8,20 @@ from math import pi
 
 import numpy as np
 
-from siggen.config import Config, SpeedVariation, Variation
-from siggen.config import TorqueVariation as TorqueSection
-from siggen.config.variation import SLOW_CORNER_HZ
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation
-from siggen.dynamics.drive.slow_variation import slow_variation
+from siggen.dynamics.drive.slow_variation import SLOW_CORNER_HZ, SlowVariation, slow_variation
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation
 from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.sampling import Sampling
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gearbox.drive import TorqueLevels
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.drawing import draw
-from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
-from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread
@@ -50,12 +47,9 @@ class RecordDrive:
 
 
 def record_drive(
-    config: Config,
     specimen: Specimen,
     structure: Structure,
-    point: OperatingPoint,
     record: PlannedRecord,
-    start_angle_rad: float,
     parts: Parts = (),
     behind: Sequence[tuple[GearPair, Parts, MeshPlace]] = (),
 ) -> RecordDrive:
@@ -68,27 +62,27 @@ def record_drive(
     ValueError
         If the speed might reach zero, or a force has no bearing to act at.
     """
-    rotation = record_rotation(config, point, record, start_angle_rad)
+    point, rotation = specimen.points[record.operating_point_id], record_rotation(specimen, record)
     forces = (
-        *force_sources(config, specimen, structure),
+        *force_sources(specimen, structure),
         *lost_mass_sources(specimen.pair, structure, parts),
         *(source for pair, own, place in behind for source in lost_mass_sources(pair, structure, own, place)),
-        *spall_sources(config, specimen, structure, point, record, rotation, parts),
+        *spall_sources(specimen, structure, record, rotation, parts),
     )
-    if not config.variation.active:
+    if point.variation is None:
         return RecordDrive(rotation, Excitation(forces) if forces else None, None, -1)
-    variation = drawn_variation(config, record)
-    torque = TorqueVariation(structure, point.torque_nm, _torque_settings(config, variation.torque, record))
+    settings = _torque_settings(specimen, point.variation.torque, record)
+    torque = TorqueVariation(structure, point.torque_nm, settings)
     sources: tuple[Source, ...] = (SpeedDeviation(structure.coordinates, 2.0 * pi * point.speed_hz), torque, *forces)
     return RecordDrive(rotation, Excitation(sources), torque, 0)
 
 
-def start_angle_rad(config: Config, specimen: Specimen, record: PlannedRecord) -> float:
+def start_angle_rad(specimen: Specimen, record: PlannedRecord) -> float:
     """Return the pinion angle at the first sample [rad], uniform over the hunting period of all gears."""
-    return float(generator(config.seed, Stage.START, *record_owner(record)).random() * 2 * pi * specimen.hunting_turns)
+    return float(generator(specimen.seed, Stage.START, *record.owner).random() * 2 * pi * specimen.hunting_turns)
 
 
-def record_rotation(config: Config, point: OperatingPoint, record: PlannedRecord, start_angle_rad: float) -> Rotation:
+def record_rotation(specimen: Specimen, record: PlannedRecord) -> Rotation:
     """Return the prescribed rotation of a record's pinion.
 
     Raises
@@ -96,30 +90,29 @@ def record_rotation(config: Config, point: OperatingPoint, record: PlannedRecord
     ValueError
         If the speed might reach zero.
     """
-    if not config.variation.active:
-        return Drive(point.speed_hz, start_angle_rad)
-    return _rotation(config, drawn_variation(config, record).speed, point, record, start_angle_rad)
+    point, angle_rad = specimen.points[record.operating_point_id], start_angle_rad(specimen, record)
+    if point.variation is None:
+        return Drive(point.speed_hz, angle_rad)
+    speed, uniform = point.variation.speed, named_uniforms(specimen.seed, Stage.DRIVE, *record.owner)
+    carrying_hz = point.speed_hz * (1.0 - speed.slip * point.torque_nm / speed.rated_torque_nm)
+    ramp = SpeedRamp(speed.start_ratio * carrying_hz, speed.end_ratio * carrying_hz, specimen.sampling.duration_s)
+    ripple = Ripple(
+        speed.ripple_once,
+        speed.ripple_twice,
+        2.0 * pi * uniform("variation.speed.ripple_once.phase"),
+        2.0 * pi * uniform("variation.speed.ripple_twice.phase"),
+    )
+    return VaryingDrive(ramp, angle_rad, ripple, _slow(specimen, record, "variation.speed.random"), speed.random_rms)
 
 
-def drawn_variation(config: Config, record: PlannedRecord) -> Variation:
-    """Return the section drawn for a specimen and operating point: the same for all of its states."""
-    uniform = named_uniforms(config.seed, Stage.OPERATING_POINT, record.specimen_id, record.operating_point_id)
-    return draw(config.variation, uniform, "variation")
-
-
-def record_owner(record: PlannedRecord) -> tuple[int, int, int, int]:
-    """Return the keys of what is drawn per record."""
-    return record.specimen_id, record.state_id, record.operating_point_id, record.repeat
-
-
-def variation_labels(config: Config, driven: RecordDrive) -> dict[str, object]:
+def variation_labels(sampling: Sampling, driven: RecordDrive) -> dict[str, object]:
     """Return the labels of the variation at the samples; none without it."""
     if driven.torque is None:
         return {}
     speed, torque = Spread(), Spread()
-    for first in range(0, config.samples, BLOCK_SAMPLES):
-        samples = np.arange(first, min(first + BLOCK_SAMPLES, config.samples))
-        turning = driven.rotation.turning(samples / config.fs_hz)
+    for first in range(0, sampling.samples, BLOCK_SAMPLES):
+        samples = np.arange(first, min(first + BLOCK_SAMPLES, sampling.samples))
+        turning = driven.rotation.turning(samples / sampling.fs_hz)
         speed.take(turning.speed_rad_s)
         torque.take(driven.torque.motor_torque_nm(turning))
     return {
@@ -129,33 +122,19 @@ def variation_labels(config: Config, driven: RecordDrive) -> dict[str, object]:
     }
 
 
-def _rotation(
-    config: Config, speed: SpeedVariation, point: OperatingPoint, record: PlannedRecord, start_angle_rad: float
-) -> VaryingDrive:
-    uniform = named_uniforms(config.seed, Stage.DRIVE, *record_owner(record))
-    carrying_hz = point.speed_hz * (1.0 - constant(speed.slip) * point.torque_nm / constant(speed.rated_torque_nm))
-    ramp = SpeedRamp(
-        constant(speed.start_ratio) * carrying_hz, constant(speed.end_ratio) * carrying_hz, config.duration_s
-    )
-    rng = named_generator(config.seed, Stage.DRIVE, *record_owner(record), name="variation.speed.random")
-    ripple = Ripple(
-        constant(speed.ripple_once),
-        constant(speed.ripple_twice),
-        2.0 * pi * uniform("variation.speed.ripple_once.phase"),
-        2.0 * pi * uniform("variation.speed.ripple_twice.phase"),
-    )
-    slow = slow_variation(rng, SLOW_CORNER_HZ, -TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S)
-    return VaryingDrive(ramp, start_angle_rad, ripple, slow, constant(speed.random_rms))
-
-
-def _torque_settings(config: Config, torque: TorqueSection, record: PlannedRecord) -> TorqueSettings:
-    uniform = named_uniforms(config.seed, Stage.DRIVE, *record_owner(record))
-    rng = named_generator(config.seed, Stage.DRIVE, *record_owner(record), name="variation.torque.random")
+def _torque_settings(specimen: Specimen, torque: TorqueLevels, record: PlannedRecord) -> TorqueSettings:
+    uniform = named_uniforms(specimen.seed, Stage.DRIVE, *record.owner)
     return TorqueSettings(
-        slow_variation(rng, SLOW_CORNER_HZ, -TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S),
-        constant(torque.random_rms),
-        constant(torque.load_once),
+        _slow(specimen, record, "variation.torque.random"),
+        torque.random_rms,
+        torque.load_once,
         2.0 * pi * uniform("variation.torque.load_once.phase"),
-        constant(torque.line_ripple),
+        torque.line_ripple,
         line_phase_rad=2.0 * pi * uniform("variation.torque.line_ripple.phase"),
     )
+
+
+def _slow(specimen: Specimen, record: PlannedRecord, name: str) -> SlowVariation:
+    rng = named_generator(specimen.seed, Stage.DRIVE, *record.owner, name=name)
+    end_s = specimen.sampling.duration_s + MARGIN_S
+    return slow_variation(rng, SLOW_CORNER_HZ, -TRANSIENT_CAP_S - MARGIN_S, end_s)

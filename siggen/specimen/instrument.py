@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.gearbox.channels import DrawnChannel, MeasuredWay
@@ -19,12 +18,7 @@ from siggen.sensing.block_filter import TOGETHER, BlockGrid, block_grid, limited
 from siggen.sensing.frequency_response import MEMORY_S
 from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input
 from siggen.sensing.spectral_filter import frequencies
-from siggen.specimen.background import (
-    SpecimenBackground,
-    background_history_s,
-    drawn_background,
-    specimen_background,
-)
+from siggen.specimen.background import SpecimenBackground, background_history_s, specimen_background
 from siggen.specimen.forced_ways import ChannelWay
 from siggen.specimen.housing import housing_settle_s, specimen_housing
 from siggen.specimen.set_on_housing import forces_through_housing
@@ -102,13 +96,16 @@ class ChannelInstrument:
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """All channels of one specimen, and the length whose frequencies their responses have: what `blocks` remember."""
+    """All channels of one specimen, and the length whose frequencies their responses have: what `blocks` remember.
+
+    `acting` are the inputs of its background.
+    """
 
     length: int
     fs_hz: float
     channels: tuple[ChannelInstrument, ...]
     blocks: BlockResponses
-    background: SpecimenBackground | None = None
+    acting: tuple[str, ...] = ()
 
 
 def settle_s(specimen: Specimen) -> float:
@@ -126,10 +123,10 @@ def history_s(specimen: Specimen) -> float:
     return max(settle_s(specimen), CHAIN_HISTORY_S)
 
 
-def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
+def specimen_instrument(specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
-    section, fs_hz = drawn_background(config, specimen.specimen_id), specimen.sampling.fs_hz
-    history = max(history_s(specimen), background_history_s(section))
+    drawn, fs_hz = specimen.background, specimen.sampling.fs_hz
+    history = max(history_s(specimen), 0.0 if drawn is None else background_history_s(drawn.base))
     blocks = block_grid(round(history * fs_hz), specimen.sampling.samples)
     housing = specimen_housing(specimen)
     grid = frequencies(blocks.memory, fs_hz)
@@ -139,15 +136,12 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     if specimen.planets is not None and specimen.housed:
         through = forces_through_housing(specimen, ways, grid)
         channels = [_on_set(channel, through[channel.name], grid) for channel in channels]
-    background = None
-    if section is not None:
-        background = specimen_background(config, specimen, section, ways, grid)
+    background = None if drawn is None else specimen_background(specimen, drawn, ways, grid)
     filters = block_responses(
         blocks, {channel.name: channel_ways(channel, background, grid.size) for channel in channels}
     )
-    if background is not None:  # nobody asks for them again
-        background = replace(background, responses={})
-    return Instrument(blocks.memory, fs_hz, tuple(channels), filters, background)
+    acting = () if background is None else background.inputs
+    return Instrument(blocks.memory, fs_hz, tuple(channels), filters, acting)
 
 
 def _on_set(channel: ChannelInstrument, accelerance: ComplexArray, grid: FloatArray) -> ChannelInstrument:

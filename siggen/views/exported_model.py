@@ -26,12 +26,12 @@ from siggen.dynamics.time.transient import both_settled_s, settling_steps
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.planning.state_config import state_config
-from siggen.record.simulation import at_point, start_angle_rad
+from siggen.record.simulation import at_point, state_drive
 from siggen.record.specimen_state import refused_as, specimen_state
 from siggen.sources import installed_version
-from siggen.specimen.drive import RecordDrive, record_drive
+from siggen.specimen.drive import RecordDrive, start_angle_rad
 from siggen.specimen.instrument import history_s
 from siggen.specimen.step_choice import stepped_motion
 
@@ -61,12 +61,10 @@ def exported_model(whole: Config, record_id: int) -> Model:
     config = state_config(whole, record.specimen_id, record.state_id)
     specimen = draw_specimen(config, record.specimen_id)
     state = specimen_state(specimen, record.state_id)
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    point = specimen.points[record.operating_point_id]
     with refused_as("outside_model"):
-        specimen, state = at_point(config, specimen, state, record)
-        angle = start_angle_rad(config, specimen, record)
-        built, parts = state.mesh.structure, (state.parts, state.parts_behind)
-        driven = record_drive(config, specimen, built, point, record, angle, *parts)
+        specimen, state = at_point(specimen, state, record)
+        driven = state_drive(specimen, state, record)
         (steps, _), motion, *_ = stepped_motion(specimen.sampling, specimen.law, state.mesh, point, driven)
         grid = _time_grid(config, specimen, motion, steps)
         start = motion.start(_first_pitches(motion, driven.rotation, grid["start_s"]))
@@ -83,7 +81,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         "torque_nm": point.torque_nm,
         "integrator": specimen.law.method,
         "speed_hz": point.speed_hz,
-        "start_angle_rad": angle,
+        "start_angle_rad": start_angle_rad(specimen, record),
         **grid,
         **_inputs(driven, grid, motion.structure),
         "start_state": start,

@@ -23,7 +23,7 @@ from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
 from siggen.keys.problems import nearest
 from siggen.names import ROLES, MeshName
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.internals import record_internals
 from siggen.record.specimen_state import SpecimenState, refused_as
@@ -94,14 +94,14 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
     called = None if gear is None else _gear_called(config, gear)
     record = planned_record(config, record_id)
     config = state_config(config, record.specimen_id, record.state_id)
-    torque_nm = draw_operating_point(config, record.specimen_id, record.operating_point_id).torque_nm
+    specimen = draw_specimen(config, record.specimen_id)
+    torque_nm = specimen.points[record.operating_point_id].torque_nm
     if torque_nm < 0.0:
         raise UsageError(
             f"record {record_id} has a torque of {torque_nm:g} N m, under which the back flanks carry; allowed: a "
             "record with a torque from 0, which loads the drive flanks, where damage is"
         )
     state, point, angle_rad, found = record_internals(config, record)
-    specimen = draw_specimen(config, record.specimen_id)
     meshes = list(_meshes(specimen, state, point, angle_rad))
     mesh, which, tooth = _looked_at(meshes, called, tooth)
     engagement = _engagement(mesh, which, tooth)

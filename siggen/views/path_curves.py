@@ -15,7 +15,7 @@ from siggen.config.planetary import pitches_per_turn
 from siggen.dynamics.structure.makers import RING_TURNING
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.specimen import draw_specimen
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import ChannelInstrument, settle_s, specimen_instrument
@@ -78,7 +78,7 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
     """
     config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
-    instrument = specimen_instrument(config, specimen)
+    instrument = specimen_instrument(specimen)
     channels = tuple(channel for channel in instrument.channels if channel.accelerance is not None)
     if not channels:
         raise UsageError(
@@ -87,7 +87,6 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
     housing = specimen_housing(specimen)
     turns = zip(specimen.meshes, specimen.shaft_turns, strict=False)
     meshing = tuple(float(turn * mesh.pair.pinion.teeth) for mesh, turn in turns)
-    points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
     if specimen.planets is not None:
         meshing = (pitches_per_turn(specimen.planets.teeth.sun, specimen.planets.teeth.ring),)
     return PathCurves(
@@ -95,7 +94,7 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
         frequency_hz=frequencies(instrument.length, config.fs_hz),
         channels=channels,
         housing=housing if any(c.path_modes for c in channels) else None,
-        mesh_hz=tuple(tuple(point.speed_hz * teeth for teeth in meshing) for point in points),
+        mesh_hz=tuple(tuple(point.speed_hz * teeth for teeth in meshing) for point in specimen.points),
         mesh_harmonics=config.mesh_harmonics,
         memory_s=settle_s(specimen),
     )

@@ -19,7 +19,7 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_complianc
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.names import ROLES
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.specimen import draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.specimen_state import static_state
 from siggen.specimen.friction import light_force_n
@@ -138,11 +138,10 @@ def static_torque_nm(config: Config, specimen_id: int = 0, mesh: int = 0) -> flo
 
     Curves are those of drive flanks; without such a point they are taken at a light contact.
     """
-    points = (draw_operating_point(config, specimen_id, i).torque_nm for i in range(len(config.operating_points)))
     specimen = draw_specimen(config, specimen_id)
     pair, turning = specimen.meshes[mesh].pair, float(specimen.shaft_turns[mesh])
     light = light_force_n(pair) * pair.pinion.base_radius_m
-    return next((torque / turning for torque in points if torque > 0.0), light)
+    return next((point.torque_nm / turning for point in specimen.points if point.torque_nm > 0.0), light)
 
 
 def stiffness_meaning(*, across_the_face: bool, torque_nm: float) -> str:

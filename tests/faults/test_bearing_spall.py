@@ -16,12 +16,12 @@ from siggen.config import Config, parse
 from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
-from siggen.specimen.drive import record_rotation, start_angle_rad
+from siggen.specimen.drive import record_rotation
 from siggen.specimen.structure import structure
 from siggen.views.exported_model import exported_model
 from tests.config.minimal import by_name, config, minimal
@@ -121,7 +121,7 @@ def test_the_mean_force_of_the_bearing_is_the_torques_whether_a_ball_sinks_or_no
     for spall in (None, {**SPALL, "length_mm": 6.0}):
         made = with_states(spall, duration_s=2.0)
         specimen, record = draw_specimen(made, 0), planned_record(made, 1)
-        response, point = record_response(made, specimen, specimen_state(specimen, 1), record, internals=True)
+        response, point = record_response(specimen, specimen_state(specimen, 1), record, internals=True)
         force = np.array([response.bearing_force_n[f"pinion_bearing/{axis}"] for axis in ("horizontal", "vertical")])
         means.append(force.mean(axis=1))
         expected = mean_force_n(specimen, structure(specimen), point, "pinion_bearing")
@@ -136,10 +136,8 @@ def test_the_mean_force_of_the_bearing_is_the_torques_whether_a_ball_sinks_or_no
 def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
     record = planned_record(made, record_id)
     specimen = draw_specimen(made, record.specimen_id)
-    point = draw_operating_point(made, record.specimen_id, record.operating_point_id)
-    rotation = record_rotation(made, point, record, start_angle_rad(made, specimen, record))
     parts = specimen_state(specimen, record.state_id).parts
-    return spall_sources(made, specimen, structure(specimen), point, record, rotation, parts)
+    return spall_sources(specimen, structure(specimen), record, record_rotation(specimen, record), parts)
 
 
 def test_an_exported_model_has_what_a_spall_pushes_and_what_of_it_the_housing_feels() -> None:

@@ -14,12 +14,13 @@ from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
+from siggen.gearbox.background import BearingLevels, RubbingLevels, drawn_background
+from siggen.gearbox.background_numbers import BaseNumbers
 from siggen.gearbox.housing import Block
-from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.record.background import BackgroundBlocks
-from siggen.record.background_course import course_at
+from siggen.record.background_course import Course, course_at
 from siggen.record.bearing_noise import velocity_density
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.rubbing import RubbingForce, force_spectrum
@@ -27,8 +28,8 @@ from siggen.record.simulation import simulate_specimen
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import resonance_response
 from siggen.sensing.spectral_filter import frequencies
-from siggen.specimen.background import ChannelWay, SpecimenBackground, drawn_background, specimen_background
-from siggen.specimen.background_numbers import BaseNumbers, BearingNumbers, RubbingNumbers
+from siggen.specimen.background import ChannelWay, SpecimenBackground, specimen_background
+from siggen.specimen.drive import record_rotation
 from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
@@ -70,45 +71,48 @@ def added(config: Config, record_id: int = 0) -> tuple[dict[str, np.ndarray], di
     """Return what the background adds to every channel, and its labels."""
     planned = planned_record(config, record_id)
     specimen = draw_specimen(config, planned.specimen_id)
-    instrument = specimen_instrument(config, specimen)
-    inputs = BlockInputs(config, specimen, planned, Standstill(instrument), instrument)
+    instrument = specimen_instrument(specimen)
+    inputs = BlockInputs(specimen, planned, record_rotation(specimen, planned), Standstill(instrument), instrument)
     blocks = list(inputs.seen())
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}, inputs.labels
 
 
-def rubbed(keys: dict[str, float], changes: dict[str, float], duration_s: float) -> tuple[Config, RubbingNumbers]:
-    """Return a configuration with these keys, and its drawn rubbing at a still level, some of it changed."""
-    config = loaded(background={"rubbing": keys}, duration_s=duration_s)
+def rubbed(changes: dict[str, float], duration_s: float) -> tuple[Config, RubbingLevels]:
+    """Return a configuration, and its drawn rubbing at a still level, some of it changed."""
+    config = loaded(background={"rubbing": {}}, duration_s=duration_s)
     drawn = drawn_background(config, 0)
     assert drawn is not None
     assert drawn.rubbing is not None
-    return config, drawn.rubbing.model_copy(update={"level_std": 0.0, **changes})
+    return config, replace(drawn.rubbing, **{"level_std": 0.0, **changes})
+
+
+def whole_course(config: Config) -> Course:
+    """Return the course of the first record over its samples."""
+    specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
+    return course_at(specimen, planned, record_rotation(specimen, planned), 0, config.samples)
 
 
 def background_ways(config: Config, specimen: Specimen) -> tuple[SpecimenBackground, np.ndarray]:
     """Return a background with its responses, and their frequencies."""
-    section = drawn_background(config, specimen.specimen_id)
-    assert section is not None
+    assert specimen.background is not None
     frequency = np.arange(0.0, 0.5 * config.fs_hz, 10.0)
     one = Input(MOTION, "casing_lid/vertical")
     ways = {"lid_vertical": ChannelWay({one: 1.0}, None, None)}
-    return specimen_background(config, specimen, section, ways, frequency), frequency
+    return specimen_background(specimen, specimen.background, ways, frequency), frequency
 
 
 def response_ways(config: Config, specimen: Specimen) -> dict[str, complex]:
     """Return what a channel sees of a second mesh's force at the highest frequency, its own shafts left out."""
-    section = drawn_background(config, specimen.specimen_id)
-    assert section is not None
-    assert section.second_stage is not None
+    assert specimen.background is not None
     frequency = np.array([0.0, 0.45 * config.fs_hz])
     ways = {
-        f"{one.name}_vertical": ChannelWay({Input(MOTION, f"casing_{one.name}/vertical"): 1.0}, None, None)
-        for one in config.sensors
+        one.name: ChannelWay({Input(MOTION, f"casing_{one.sensor}/vertical"): 1.0}, None, None)
+        for one in specimen.channels
     }
-    found = specimen_background(config, specimen, section, ways, frequency)
+    found = specimen_background(specimen, specimen.background, ways, frequency)
     assert found.inputs == ("second_stage",)
-    support = constant(section.second_stage.support_hz), constant(section.second_stage.support_damping)
-    isolated = resonance_response(frequency, *support)[-1]
+    stage = specimen.background.foreign["second_stage"]
+    isolated = resonance_response(frequency, stage.support_hz, stage.support_damping)[-1]
     return {name: complex(rows[0, -1] / isolated) for name, rows in found.responses.items()}
 
 
@@ -196,14 +200,14 @@ def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass(monkeypatch:
     centre = {**LID, "position_mm": [0.0, 0.0]}
     config = loaded(centre, housing=RIGID, background={"base": base, "shafts": shafts}, duration_s=1.0)
     signal = added(config)[0]["lid_vertical"]
-    background = specimen_instrument(config, draw_specimen(config, 0)).background
+    background = draw_specimen(config, 0).background
     assert background is not None
     rotor = background.shafts["pinion"]
     angle = 2.0 * np.pi * 30.0 * np.arange(signal.size) / config.fs_hz
     # the machine on the gear's shaft has its line too
     lines = np.stack([f(order * angle) for order in (1.0, 18 / 47) for f in (np.cos, np.sin)], axis=1)
     found, *_ = np.linalg.lstsq(lines, signal, rcond=None)
-    force_n = 10.0 * 1e-3 * constant(rotor.rotor_grade_mm_s) / constant(rotor.rated_speed_hz) * 2.0 * np.pi * 30.0**2
+    force_n = rotor.rotor_kg_m_s / rotor.rated_speed_hz * 2.0 * np.pi * 30.0**2
     total_kg = 1000.0 + 20.0 + 4.0
     # mounts at a tenth of the speed: 1 %; bolts carry 24 kg at 700 Hz: 0.2 %; gears weigh what their discs weigh
     assert np.hypot(*found[:2]) == pytest.approx(force_n / total_kg, rel=0.03)
@@ -213,10 +217,10 @@ def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass(monkeypatch:
 
 def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
     """0.4 µm over 20 mm at 0.2 mm, 4e8 N/m: 16 N before the contact's width and the film take their part."""
-    changes = {"roughness_um": 0.4, "correlation_mm": 0.2, "asperity_exponent": 1.0, "pinion_depth": 0.0}
-    changes |= {"gear_depth": 0.0, "sliding_exponent": 0.0, "roll_off_mm": 5.0, "hurst_exponent": 1.0}
-    config, rubbing = rubbed({}, changes, 1.0)
-    course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
+    changes = {"roughness_m": 0.4e-6, "correlation_m": 0.2e-3, "asperity_exponent": 1.0, "pinion_depth": 0.0}
+    changes |= {"gear_depth": 0.0, "sliding_exponent": 0.0, "roll_off_m": 5e-3, "hurst_exponent": 1.0}
+    config, rubbing = rubbed(changes, 1.0)
+    course = whole_course(config)
     spectrum = force_spectrum(rubbing, course)
     assert spectrum.rough_n == pytest.approx(16.0 * course.asperity_share)
     # waves of 5 mm pass a contact of some 0.1 mm as they are: all the power is left
@@ -228,8 +232,8 @@ def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
 
 def test_the_spectrum_of_rough_flanks_moves_with_the_rolling_speed() -> None:
     """S_F(f; v) = S_F(f/a; v/a)/a at one film: waves of a surface pass in proportion to its speed (derived)."""
-    config, rubbing = rubbed({}, {}, 0.1)
-    course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
+    config, rubbing = rubbed({}, 0.1)
+    course = whole_course(config)
     twice = replace(course, point=replace(course.point, speed_hz=2.0 * course.point.speed_hz))
     slow, fast = (force_spectrum(rubbing, one) for one in (course, twice))
     frequency = np.geomspace(10.0, 10_000.0, 50)
@@ -237,15 +241,11 @@ def test_the_spectrum_of_rough_flanks_moves_with_the_rolling_speed() -> None:
     # in the end both corners cut: 20 (H + 1) dB per tenfold speed, plus half of what the film leaves
     high = np.array([2e5])
     steepness = np.log2(fast.density(high) / slow.density(high))[0]
-    assert steepness == pytest.approx(spectrum_steepness(rubbing), rel=0.01)
-
-
-def spectrum_steepness(rubbing: RubbingNumbers) -> float:
-    return constant(rubbing.hurst_exponent) + 1.0
+    assert steepness == pytest.approx(rubbing.hurst_exponent + 1.0, rel=0.01)
 
 
 def test_bearings_have_the_velocities_of_their_class_at_its_speed_and_their_waves_at_any() -> None:
-    numbers = BearingNumbers.model_construct(low_um_s=60.0, middle_um_s=100.0, high_um_s=150.0)
+    numbers = BearingLevels(60.0, 100.0, 150.0, 1e-7, 4.0, 0.1, 0.3, 2e-3)
     for (low, high), rms in (((50, 300), 60e-6), ((300, 1800), 100e-6), ((1800, 10_000), 150e-6)):
         frequency = np.linspace(low, high, 4001)
         power = np.trapezoid(velocity_density(numbers, 30.0, frequency) ** 2, frequency)
@@ -274,8 +274,8 @@ def test_what_moves_slowly_between_shaft_and_seat_presses_on_nothing() -> None:
 
 def test_the_replayed_share_of_the_rubbing_returns_every_turn() -> None:
     changes = {"replayed_share": 0.5, "gear_depth": 0.0, "pinion_depth": 0.0, "sliding_exponent": 0.0}
-    config, rubbing = rubbed({}, changes, 4.0)
-    course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
+    config, rubbing = rubbed(changes, 4.0)
+    course = whole_course(config)
     force = RubbingForce(rubbing, course, course.length).take(course)
     turns, per_turn = 94, config.fs_hz / 30.0
     # turns of the pinion do not fall on samples: read at equal angles
@@ -298,11 +298,13 @@ def test_a_random_level_gives_the_noise_of_bearings_its_tails_and_no_power() -> 
     for std in (0.0, 0.7):
         config = loaded(background={"bearings": {}}, duration_s=20.0)
         specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
-        background = specimen_instrument(config, specimen).background
-        assert background is not None
-        quick = {"level_time_ms": 1.0, "shaft_depth": 0.0, "level_std": std, "compliance_um": 0.0}
-        own = {shaft: numbers.model_copy(update=quick) for shaft, numbers in background.bearings.items()}
-        blocks = BackgroundBlocks(config, specimen, planned, replace(background, bearings=own), 0, config.samples)
+        drawn = specimen.background
+        assert drawn is not None
+        quick = {"level_time_s": 1e-3, "shaft_depth": 0.0, "level_std": std, "compliance_m": 0.0}
+        own = {shaft: replace(levels, **quick) for shaft, levels in drawn.bearings.items()}
+        noisy = replace(specimen, background=replace(drawn, bearings=own))
+        acting, rotation = specimen_instrument(specimen).acting, record_rotation(specimen, planned)
+        blocks = BackgroundBlocks(noisy, planned, rotation, acting, 0, config.samples)
         high = frequencies(config.samples, config.fs_hz) > 2000.0
         noises = {one.name: values for one, values in blocks.take(config.samples).items()}
         found[std] = {name: np.fft.irfft(np.fft.rfft(s) * high, s.size) for name, s in noises.items()}

@@ -13,13 +13,13 @@ import siggen.sensing.block_filter as block_filter
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
+from siggen.gearbox.background_numbers import BaseNumbers, BurstNumbers
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensing.inputs import MOTION
-from siggen.specimen.background_numbers import BaseNumbers, BurstNumbers
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
@@ -56,8 +56,8 @@ def test_blocks_join_without_a_seam_to_one_convolution(monkeypatch: pytest.Monke
     """Motion and forces of the whole record, convolved with the impulse responses by scipy: no block, no overlap."""
     config = loaded(variation={}, duration_s=0.2)
     specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
-    instrument = specimen_instrument(config, specimen)
-    response, _ = record_response(config, specimen, specimen_state(specimen, 0), planned)
+    instrument = specimen_instrument(specimen)
+    response, _ = record_response(specimen, specimen_state(specimen, 0), planned)
     before, grid = response.before, instrument.blocks.grid
     expected = np.zeros(config.samples)
     for one, spectrum in instrument.blocks.filters["lid_vertical"].items():

@@ -128,7 +128,7 @@ def test_streamed_internals_are_those_of_the_whole_response_to_the_last_bit(name
     planned, specimen = planned_record(config, 1), draw_specimen(config, 0)
     (record,) = simulate(config, [1])
     state = specimen_state(specimen, planned.state_id)
-    response, _ = record_response(config, specimen, state, planned, internals=True)
+    response, _ = record_response(specimen, state, planned, internals=True)
     whole = internal_quantities(specimen, response)
     assert list(record.internals) == list(whole)
     for quantity, values in whole.items():

@@ -66,7 +66,7 @@ def _forget() -> None:
 def _motion(config, record_id: int) -> dict[str, bytes]:
     """Return the clean response in double precision, which the float32 of a stored signal may hide a difference of."""
     specimen, planned = draw_specimen(config, 0), planned_record(config, record_id)
-    response, _ = record_response(config, specimen, specimen_state(specimen, planned.state_id), planned)
+    response, _ = record_response(specimen, specimen_state(specimen, planned.state_id), planned)
     return {name: values.tobytes() for name, values in response.acceleration_m_s2.items()}
 
 

@@ -54,7 +54,7 @@ def problems(*sensors: dict[str, Any], **changes: Any) -> dict[str, str]:
 def test_a_sensor_on_a_plate_sees_bearing_forces_through_all_modes() -> None:
     config = loaded(UP, {**LID, "name": "wall", "place": "wall"})
     channels, specimen = record(config).channels, draw_specimen(config, 0)
-    response, _ = record_response(config, specimen, specimen_state(specimen, 0), planned_record(config, 0))
+    response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     housing = specimen_housing(specimen)
     assert housing is not None
     length = 2**16  # one transform, in which nothing wraps round
@@ -76,7 +76,7 @@ def test_a_sensor_on_a_plate_sees_bearing_forces_through_all_modes() -> None:
 def test_a_rigid_casing_shows_its_own_motion() -> None:
     config = loaded(RIGID)
     specimen = draw_specimen(config, 0)
-    response, _ = record_response(config, specimen, specimen_state(specimen, 0), planned_record(config, 0))
+    response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     expected = response.acceleration_m_s2["casing_lid/vertical"].astype(np.float32)
     np.testing.assert_array_equal(record(config).channels["lid_vertical"], expected)
 

@@ -31,7 +31,7 @@ def test_it_holds_what_the_model_gives() -> None:
     config = loaded(PINION)
     specimen = draw_specimen(config, 0)
     state = specimen_state(specimen, 0)
-    response, _ = record_response(config, specimen, state, planned_record(config, 0))
+    response, _ = record_response(specimen, state, planned_record(config, 0))
     expected = response.bearing_force_n["pinion_bearing/vertical"].astype(np.float32)
     np.testing.assert_array_equal(record(config).channels["pinion_vertical"], expected)
 

@@ -21,7 +21,7 @@ def test_perfect_encoders_of_both_gears_hold_the_approach_of_their_flanks(variat
     found = record(config)
     specimen = draw_specimen(config, 0)
     state, pair = specimen_state(specimen, 0), specimen.pair
-    response, _ = record_response(config, specimen, state, planned_record(config, 0), internals=True)
+    response, _ = record_response(specimen, state, planned_record(config, 0), internals=True)
     first, second = (found.channels[f"{name}_rotation"].astype(np.float64) for name in ("first", "second"))
     rate = pair.pinion.base_radius_m * first - pair.gear.base_radius_m * second
     # the speed holds over the interval about a sample, so its sum is half an interval ahead

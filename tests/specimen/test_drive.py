@@ -10,10 +10,11 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
+from siggen.dynamics.drive.drive import Drive
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import simulate_specimen
-from siggen.specimen.drive import RecordDrive, drawn_variation, record_drive
+from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.structure import structure
 from tests.simulated import simulate
 
@@ -30,11 +31,10 @@ def load(*overrides: str) -> Config:
     return load_config("tests/configs/linear_pits.yaml", [*SMALL, *overrides])
 
 
-def drive_of(config: Config, record_id: int, start_rad: float = 0.5) -> RecordDrive:
+def drive_of(config: Config, record_id: int) -> RecordDrive:
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    return record_drive(config, specimen, structure(specimen), point, record, start_rad)
+    return record_drive(specimen, structure(specimen), record)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_labels_say_what_speed_and_torque_did(varying: Config, record: Simulated
 
 
 def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: Config, record: SimulatedRecord) -> None:
-    rotation = drive_of(varying, 2, record.labels["start_angle_rad"]).rotation
+    rotation = drive_of(varying, 2).rotation
     turns = rotation.angle_rad(record.tacho_s) / (2.0 * math.pi)
     assert np.abs(turns - np.round(turns)).max() < 1e-9
     assert len(record.tacho_s) >= 5
@@ -86,9 +86,9 @@ def test_states_share_the_numbers_but_not_the_course() -> None:
     points = len(config.operating_points) * config.repeats
     first, second = planned_record(config, 0), planned_record(config, points)
     assert (first.state_id, second.state_id) == (0, 1)
-    assert drawn_variation(config, first) == drawn_variation(config, second)
-    other_specimen = planned_record(config, config.records_per_specimen)
-    assert drawn_variation(config, first) != drawn_variation(config, other_specimen)
+    point, again, of_another = (draw_operating_point(config, specimen, 0).variation for specimen in (0, 0, 1))
+    assert point is not None
+    assert point == again != of_another
     time = np.linspace(0.0, 0.2, 50)
     speeds = [drive_of(config, r.record_id).rotation.speed_rad_s(time) for r in (first, second)]
     assert np.abs(speeds[0] - speeds[1]).max() > 1e-4 * speeds[0].mean()
@@ -101,11 +101,11 @@ def test_unbalance_belongs_to_the_specimen() -> None:
     def inputs(record_id: int) -> np.ndarray:
         drive = drive_of(config, record_id)
         assert drive.excitation is not None
-        return drive.excitation.inputs(time, drive.rotation)
+        return drive.excitation.inputs(time, Drive(point.speed_hz, 0.5))
 
+    point = draw_operating_point(config, 0, 0)
     first, second = inputs(0), inputs(config.repeats * len(config.operating_points))
     np.testing.assert_array_equal(first, second)
-    point = draw_operating_point(config, 0, 0)
     mass = structure(draw_specimen(config, 0)).mass[1, 1]
     expected = mass * 6.3e-3 * (2.0 * math.pi * point.speed_hz) ** 2 / (2.0 * math.pi * 50.0)
     assert np.hypot(first[:, 0], first[:, 1]) == pytest.approx(expected, rel=1e-9)

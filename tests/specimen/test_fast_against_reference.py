@@ -14,8 +14,7 @@ import siggen
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import start_angle_rad
+from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.sets.precision import record_error, reference_config, unrounded
 from siggen.specimen.drive import record_drive
@@ -43,9 +42,7 @@ def accelerations(
     """Return the accelerations (samples, motions) of a record from the static start, means over two samples."""
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    angle = start_angle_rad(config, specimen, record)
-    driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
+    point, driven = specimen.points[record.operating_point_id], record_drive(specimen, state.mesh.structure, record)
     rate_hz = config.fs_hz * steps
     law = specimen.law.by_reference() if integrator == "runge_kutta" else specimen.law
     motion = specimen_motion(law, state.mesh, point, 1.0 / rate_hz, driven, stride=stride)
@@ -69,10 +66,7 @@ def errors(preset: str, number: int) -> np.ndarray:
     specimen = draw_specimen(config, record.specimen_id)
     assert specimen.law.method == "exponential"
     state = specimen_state(specimen, record.state_id)
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    driven = record_drive(
-        config, specimen, state.mesh.structure, point, record, start_angle_rad(config, specimen, record)
-    )
+    point, driven = specimen.points[record.operating_point_id], record_drive(specimen, state.mesh.structure, record)
     steps, stride = stepped_motion(specimen.sampling, specimen.law, state.mesh, point, driven).grid
     fine = accelerations(config, record_id, state, "runge_kutta", REFERENCE_STEPS)
     fast = accelerations(config, record_id, state, "exponential", steps, stride)

@@ -81,7 +81,7 @@ def test_a_base_that_moves_slowly_takes_the_box_along_without_force(share: float
 def test_what_a_sensor_sees_of_bearing_forces_is_the_sum_over_all_modes() -> None:
     """The instrument's rows against numpy at some frequencies of its grid."""
     config = load_config("quickstart", ["sensors.lid.cross_axis=0", "sensors.side.cross_axis=0"])
-    housing, instrument = housed(3), specimen_instrument(config, draw_specimen(config, 3))
+    housing, instrument = housed(3), specimen_instrument(draw_specimen(config, 3))
     omega = 2.0 * np.pi * np.array([1, 7, 50, 333, 1000, 2500]) * config.fs_hz / instrument.length
     modes, forces = housing.modes, [housing.seats[name] for name in INPUTS]
     own, ratio = 2.0 * np.pi * modes.frequency_hz[:, None], housing.damping_ratio[:, None]

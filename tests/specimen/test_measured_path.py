@@ -102,7 +102,7 @@ def test_forces_of_all_bearings_pass_a_response_from_a_file(tmp_path: Path) -> N
     save(columns(), tmp_path / "lid.npz")
     config = load_config(written(tmp_path, {"file": "lid.npz"}))
     specimen = draw_specimen(config, 0)
-    response, _ = record_response(config, specimen, specimen_state(specimen, 0), planned_record(config, 0))
+    response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     expected = passed(config, response, RESIDUES)
     # 1 Hz between the lines of the file, and a response that ends at half the sampling rate
     assert np.abs(signal(config) - expected).max() < 3e-3 * expected.std()
@@ -121,7 +121,7 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
     (tmp_path / "set.yaml").write_text(yaml_text(mill(sensors=by_name([sensor]), fs_hz=25600.0, duration_s=0.1)))
     config = load_config(tmp_path / "set.yaml")
     specimen = draw_specimen(config, 0)
-    response, _ = record_response(config, specimen, specimen_state(specimen, 0), planned_record(config, 0))
+    response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     # 1 Hz between the lines of the file, and a response that ends at half the sampling rate
     expected = passed(config, response, residues)
     assert np.abs(signal(config) - expected).max() < 3e-3 * expected.std()

@@ -76,7 +76,7 @@ def test_a_box_of_plates_read_back_from_its_modes_gives_the_same_record(tmp_path
 def test_a_sensor_sees_two_modes_as_their_closed_form_says(tmp_path: Path) -> None:
     config = load_config(written(tmp_path, "\n".join([HEAD, *ROWS])))
     found, specimen = record(config).channels["lid_vertical"], draw_specimen(config, 0)
-    response, _ = record_response(config, specimen, specimen_state(specimen, 0), planned_record(config, 0))
+    response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     length = 2**16  # one transform, in which nothing wraps round
     omega, own = 2.0 * np.pi * np.arange(length // 2 + 1) * config.fs_hz / length, 2.0 * np.pi * FREQUENCY_HZ
     total = np.zeros(omega.size, dtype=complex)

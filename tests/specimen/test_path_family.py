@@ -41,7 +41,7 @@ def with_paths(folder: Path, path: dict[str, Any], sensors: int = 1) -> Path:
 
 
 def rms_levels(config: Config, specimen: int) -> list[float]:
-    channels = specimen_instrument(config, draw_specimen(config, specimen)).channels
+    channels = specimen_instrument(draw_specimen(config, specimen)).channels
     return [channel.path_rms_m_s2_per_n for channel in channels]
 
 

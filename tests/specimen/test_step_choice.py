@@ -14,8 +14,7 @@ from siggen.config import Config
 from siggen.dynamics.time.response import SampleGrid, Wanted, response_of
 from siggen.dynamics.time.transient import DECAY_TIMES, TRANSIENT_CAP_S, forgotten
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import start_angle_rad
+from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen import step_choice
 from siggen.specimen.drive import RecordDrive, record_drive
@@ -37,7 +36,7 @@ def steps_of(config: Config) -> int:
     """Return the steps of the rule for the first operating point of the first gearbox."""
     specimen = draw_specimen(config, 0)
     mesh = specimen_state(specimen, 0).mesh
-    return rule_grid(config.fs_hz, specimen.law, mesh, draw_operating_point(config, 0, 0)).steps
+    return rule_grid(config.fs_hz, specimen.law, mesh, specimen.points[0]).steps
 
 
 def chosen_steps(config: Config) -> tuple[Config, Stepped, RecordDrive]:
@@ -45,8 +44,7 @@ def chosen_steps(config: Config) -> tuple[Config, Stepped, RecordDrive]:
     record = planned_record(config, RECORD)
     specimen = draw_specimen(config, 0)
     mesh = specimen_state(specimen, record.state_id).mesh
-    point = draw_operating_point(config, 0, record.operating_point_id)
-    driven = record_drive(config, specimen, mesh.structure, point, record, start_angle_rad(config, specimen, record))
+    point, driven = specimen.points[record.operating_point_id], record_drive(specimen, mesh.structure, record)
     return config, stepped_motion(specimen.sampling, specimen.law, mesh, point, driven), driven
 
 
@@ -153,7 +151,7 @@ def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
     specimen = draw_specimen(config, 0)
     record = planned_record(config, RECORD)
     mesh = specimen_state(specimen, record.state_id).mesh
-    point = draw_operating_point(config, 0, record.operating_point_id)
+    point = specimen.points[record.operating_point_id]
     law, step_s = specimen.law.by_reference(), 1.0 / (config.fs_hz * FINE_STEPS)
     fine = specimen_motion(law, mesh, point, step_s, driven)
     found, wanted = (

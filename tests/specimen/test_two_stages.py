@@ -221,7 +221,7 @@ def test_all_teeth_meet_as_at_the_start_after_the_hunting_turns_and_not_before()
     # A first pinion that turns by whole turns only; tooth and gap of a shaft in front have to stand as they did.
     assert as_at_start(whole)
     assert not any(as_at_start(turned) for turned in range(1, whole))
-    angles = [start_angle_rad(found, specimen, planned_record(found, record)) for record in range(12)]
+    angles = [start_angle_rad(specimen, planned_record(found, record)) for record in range(12)]
     assert 0.5 * whole < max(angles) / (2.0 * pi) < whole
 
 
@@ -232,9 +232,9 @@ def balance(sources: Sequence[Source]) -> tuple[list[float], list[float]]:
 
 
 def test_every_shaft_is_out_of_balance_by_the_mass_of_its_gears_and_turns_against_the_one_in_front() -> None:
-    found, specimen, mesh, _ = machine("dynamics.unbalance={grade_mm_s: 6.3}")
+    _, specimen, mesh, _ = machine("dynamics.unbalance={grade_mm_s: 6.3}")
     built = mesh.structure
-    orders, moments = balance(force_sources(found, specimen, built))
+    orders, moments = balance(force_sources(specimen, built))
     assert orders == pytest.approx([1.0, -18 / 47, 18 / 47 * 17 / 52])
     masses = [built.mass[(built.coordinates.index(f"x_{gear}"),) * 2] for gear in GEARS]
     of_shafts = np.array([masses[0], masses[1] + masses[2], masses[3]])
@@ -253,7 +253,7 @@ def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -
     specimen, record = draw_specimen(found, 0), planned_record(found, 3)
     state = specimen_state(specimen, 1)
     point, built = draw_operating_point(found, 0, 0), state.mesh.structure
-    driven = record_drive(found, specimen, built, point, record, 0.0, state.parts, state.parts_behind)
+    driven = record_drive(specimen, built, record, state.parts, state.parts_behind)
     assert driven.excitation is not None
     assert driven.excitation.vectors.shape[0] == 2
     body = {"gear": "gear", "slow.pinion": "slow_pinion", "slow.gear": "slow_gear"}[gear]

@@ -24,7 +24,7 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.planning.state_config import state_config
 from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.drive import record_drive, start_angle_rad
+from siggen.specimen.drive import record_drive
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import FORMAT_VERSION, exported_model
 from tests.config.minimal import by_name
@@ -118,9 +118,7 @@ def beginning(
     planned = planned_record(loaded, record)
     specimen = draw_specimen(loaded, planned.specimen_id)
     state = specimen_state(specimen, planned.state_id)
-    point = draw_operating_point(loaded, planned.specimen_id, planned.operating_point_id)
-    angle = start_angle_rad(loaded, specimen, planned)
-    driven = record_drive(loaded, specimen, state.mesh.structure, point, planned, angle)
+    point, driven = specimen.points[planned.operating_point_id], record_drive(specimen, state.mesh.structure, planned)
     built = state.mesh.structure
     matrices = {name: change(getattr(built, name)) for name in MATRICES}
     vectors = tuple(replace(one, vector=change(one.vector), sliding=change(one.sliding)) for one in built.meshes)

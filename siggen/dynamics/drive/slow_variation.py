@@ -19,6 +19,8 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.compiled import entry
 
+SLOW_CORNER_HZ = 0.5
+"""Above which the random part of speeds and torques falls off (assumed)."""
 KNOTS_PER_CORNER_PERIOD = 16
 """Knots per 1/f_c: the spline damps the process by 2.6 % at the corner and cuts it off around 8 f_c."""
 VALUE, SLOPE, INTEGRAL = range(3)

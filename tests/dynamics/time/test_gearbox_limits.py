@@ -108,7 +108,7 @@ def test_halving_the_step_of_a_shipped_set_changes_its_signals_by_less_than_a_th
         )
         record = planned_record(chosen, chosen.records_per_specimen - 1)
         specimen = draw_specimen(chosen, 0)
-        response, _ = record_response(chosen, specimen, specimen_state(specimen, record.state_id), record)
+        response, _ = record_response(specimen, specimen_state(specimen, record.state_id), record)
         levels.append([signal.std() for signal in response.acceleration_m_s2.values()])
     np.testing.assert_allclose(levels[0], levels[1], rtol=1e-3)
 

@@ -7,17 +7,12 @@ from __future__ import annotations
 
 from typing import Annotated, TypeVar
 
-from siggen.config import Background, Base, Bearings, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
+from siggen.config import Background, Base, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
-MESH_STIFFNESS_N_PER_UM_MM = 20.0
-"""Mean stiffness per face width that the forces meet (source: ISO 6336-1, steel)."""
 BANDS = ("low_um_s", "middle_um_s", "high_um_s")
-FOREIGN_LINES = 15
-"""Lines of another mesh (measured)."""
-
 Drawn = Annotated[Number, Within()]
 SomeSection = TypeVar("SomeSection", bound=Section)
 
@@ -65,7 +60,7 @@ class RubbingNumbers(Rubbing):
     bursts: BurstNumbers | None
 
 
-class BearingNumbers(Bearings):
+class BearingNumbers(Section):
     """Of both bearings of a shaft: rms velocities of the bands, and how the shaft modulates the noise (assumed).
 
     Balls that pass the outer ring `ball_pass_order` times a turn (derived) move the shaft by `compliance_um` (assumed);
@@ -125,7 +120,7 @@ class ForeignNumbers(ForeignMesh):
     support_damping: Drawn = Uniform(low=0.02, high=0.07)
 
 
-class BackgroundNumbers(Background):
+class BackgroundNumbers(Section):
     """The section `background` with all that is drawn for it."""
 
     base: BaseNumbers | None
@@ -139,14 +134,12 @@ class BackgroundNumbers(Background):
 
 def background_numbers(section: Background) -> BackgroundNumbers:
     """Return what a section says, and what no file says."""
-    rubbing = section.rubbing
-    bearings = section.bearings
-    bands = {} if bearings is None else dict.fromkeys(BANDS, bearings.velocity_um_s)
+    rubbing, bearings = section.rubbing, section.bearings
     bursts = None if rubbing is None else _completed(BurstNumbers, rubbing.bursts)
     return BackgroundNumbers.model_construct(
         base=_completed(BaseNumbers, section.base),
         rubbing=_completed(RubbingNumbers, rubbing, bursts=bursts),
-        bearings=_completed(BearingNumbers, section.bearings, **bands),
+        bearings=None if bearings is None else _bearings(bearings.velocity_um_s),
         machines=_completed(MachineNumbers, section.machines),
         shafts=_completed(ShaftNumbers, section.shafts),
         second_stage=_completed(ForeignNumbers, section.second_stage),
@@ -156,3 +149,7 @@ def background_numbers(section: Background) -> BackgroundNumbers:
 
 def _completed(kind: type[SomeSection], section: Section | None, **more: object) -> SomeSection | None:
     return None if section is None else kind.model_construct(**{**dict(section), **more})
+
+
+def _bearings(velocity_um_s: Number) -> BearingNumbers:
+    return BearingNumbers.model_construct(low_um_s=velocity_um_s, middle_um_s=velocity_um_s, high_um_s=velocity_um_s)

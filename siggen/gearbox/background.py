@@ -1,0 +1,167 @@
+"""What is drawn of a background: what a gearbox's machine does beside its meshing teeth, in SI.
+
+`siggen.gearbox.background_numbers` says what the numbers mean and where they come from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+from siggen.config import Config
+from siggen.dynamics.structure.gear_stage import Base
+from siggen.gearbox.background_numbers import BaseNumbers, RubbingNumbers, ShaftNumbers, background_numbers
+from siggen.keys.drawing import draw, in_si
+from siggen.keys.number import constant
+from siggen.names import ROLES
+from siggen.seeding import Stage, named_uniforms
+
+MACHINES = {"motor": "pinion", "load": "gear"}
+"""What stands beside the gearbox, and the shaft that leads there: of the first gear or sun, of its mate or carrier."""
+
+
+@dataclass(frozen=True, slots=True)
+class BurstLevels:
+    """Bursts of the rubbing."""
+
+    rate_hz: float
+    decay_s: float
+    peak: float
+
+
+@dataclass(frozen=True, slots=True)
+class RubbingLevels:
+    """Rough flanks that rub."""
+
+    correlation_m: float
+    roughness_m: float
+    roll_off_m: float
+    hurst_exponent: float
+    asperity_exponent: float
+    sliding_exponent: float
+    pinion_depth: float
+    gear_depth: float
+    level_std: float
+    level_time_s: float
+    replayed_share: float
+    bursts: BurstLevels | None
+
+
+@dataclass(frozen=True, slots=True)
+class BearingLevels:
+    """Both bearings of a shaft; velocities of the bands in the unit of their class."""
+
+    low_um_s: float
+    middle_um_s: float
+    high_um_s: float
+    compliance_m: float
+    ball_pass_order: float
+    shaft_depth: float
+    level_std: float
+    level_time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class MachineLevels:
+    """Noise of both machines beside the gearbox."""
+
+    density_n_per_sqrt_hz: float
+    low_corner_hz: float
+    low_exponent: float
+    high_corner_hz: float
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftLevels:
+    """Lines of a shaft: force of its coupling [N] at 1x, and of 2x to 4x over it [dB].
+
+    `rotor_kg_m_s` : unbalance of the rotor beside, times its angular speed while the pinion turns at `rated_speed_hz`
+    """
+
+    coupling_n: float
+    higher_db: tuple[float, float, float]
+    rotor_kg_m_s: float
+    rated_speed_hz: float
+
+
+@dataclass(frozen=True, slots=True)
+class ForeignLevels:
+    """Another mesh; `shaft_order` None: its sidebands are those of the gear."""
+
+    order: float
+    shaft_order: float | None
+    force_share: float
+    decay_exponent: float
+    sideband_db: float
+    support_hz: float
+    support_damping: float
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnBackground:
+    """The background of a gearbox; parts that it has not are None or empty.
+
+    Attributes
+    ----------
+    bearings, shafts : pinion, gear -> of this shaft
+    foreign : second_stage, auxiliary_drive -> that mesh
+    angles_rad : motor, load, auxiliary_drive -> direction of its force, from the horizontal
+    """
+
+    base: Base | None
+    rubbing: RubbingLevels | None
+    bearings: Mapping[str, BearingLevels]
+    machines: MachineLevels | None
+    shafts: Mapping[str, ShaftLevels]
+    foreign: Mapping[str, ForeignLevels]
+    angles_rad: Mapping[str, float]
+
+
+def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None:
+    """Return what belongs to the gearbox; None without a background."""
+    if config.background is None:
+        return None
+    uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen_id)
+    laws = background_numbers(config.background)
+    section = draw(laws, uniform, "background")
+    foreign = {"second_stage": section.second_stage, "auxiliary_drive": section.auxiliary_drive}
+    turned = {"auxiliary_drive": "auxiliary_drive", **{name: f"machines.{name}" for name in MACHINES}}
+    of_shafts: dict[str, Mapping[str, Any]] = {
+        key: {role: draw(law, uniform, f"background.{key}.{role}") for role in ROLES if law is not None}
+        for key, law in (("bearings", laws.bearings), ("shafts", laws.shafts))
+    }
+    return DrawnBackground(
+        base=None if section.base is None else _base(section.base),
+        rubbing=None if section.rubbing is None else _rubbing(section.rubbing),
+        bearings={role: BearingLevels(**in_si(own)) for role, own in of_shafts["bearings"].items()},
+        machines=None if section.machines is None else MachineLevels(**in_si(section.machines)),
+        shafts={role: _shaft(own) for role, own in of_shafts["shafts"].items()},
+        foreign={name: ForeignLevels(**in_si(own)) for name, own in foreign.items() if own is not None},
+        angles_rad={name: 2.0 * pi * uniform(f"background.{path}.angle") for name, path in turned.items()},
+    )
+
+
+def _base(section: BaseNumbers) -> Base:
+    mass = constant(section.mass_kg)
+    return Base(
+        mass,
+        mass * constant(section.gyration_m) ** 2,
+        (constant(section.horizontal_hz), constant(section.vertical_hz), constant(section.rocking_hz)),
+        constant(section.damping_ratio),
+    )
+
+
+def _rubbing(section: RubbingNumbers) -> RubbingLevels:
+    bursts = section.bursts
+    return RubbingLevels(**in_si(section), bursts=None if bursts is None else BurstLevels(**in_si(bursts)))
+
+
+def _shaft(section: ShaftNumbers) -> ShaftLevels:
+    return ShaftLevels(
+        coupling_n=constant(section.coupling_stiffness_n_per_um) * constant(section.offset_um),
+        higher_db=(constant(section.second_db), constant(section.third_db), constant(section.fourth_db)),
+        rotor_kg_m_s=constant(section.rotor_mass_kg) * 1e-3 * constant(section.rotor_grade_mm_s),
+        rated_speed_hz=constant(section.rated_speed_hz),
+    )
