@@ -149,7 +149,7 @@ def order_amplitudes(signal, angle_rad, orders):
 def modes():
     """Return frequencies and names of the modes by what moves most, as `siggen inspect modes` lists them."""
     config = load_config(CONFIG, CONSTANTS)
-    found = specimen_modes(config)
+    found = specimen_modes(draw_specimen(config, 0))
     shares = kinetic_shares(found)
     names = [" ".join(found.coordinates[i] for i in np.argsort(-row)[:2] if row[i] > 0.2) for row in shares]
     print("\n| mode | frequency [Hz] | share of the mesh | moves most |\n|---|---|---|---|")

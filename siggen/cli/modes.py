@@ -42,11 +42,12 @@ def modes(
 
     if out is not None:
         check_table_file(out)
+    from siggen.planning.specimen import draw_specimen
     from siggen.views.natural_modes import specimen_modes
 
     png = picture.place("modes")
     with working("computing natural modes"):
-        found = specimen_modes(load_config(config, overrides or ()), specimen)
+        found = specimen_modes(draw_specimen(load_config(config, overrides or ()), specimen))
     if as_json:
         echo_json({"mesh_stiffness_n_per_m": found.mesh_stiffness_n_per_m, "modes": found.table.to_pylist()})
     else:

@@ -53,11 +53,13 @@ def path(
 
     if out is not None:
         check_table_file(out)
+    from siggen.planning.specimen import draw_specimen
     from siggen.views.path_curves import path_curves
 
     png = picture.place("path")
     with working("computing transfer paths"):
-        found = path_curves(load_config(config, overrides or ()), specimen)
+        loaded = load_config(config, overrides or ())
+        found = path_curves(draw_specimen(loaded, specimen), loaded.mesh_harmonics)
     if as_json:
         echo_json(_facts(found))
     else:

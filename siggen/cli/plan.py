@@ -222,13 +222,13 @@ def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> 
 
 
 def _mesh_range_hz(config: Config) -> tuple[float, float]:
-    from siggen.config.planetary import pitches_per_turn
+    from siggen.config.planetary_problems import set_of
     from siggen.keys.number import bounds
 
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
     teeth: tuple[float, ...] = config.gears.teeth_of("pinion")
     if config.planetary is not None:
-        teeth = (pitches_per_turn(config.gears.pinion.teeth, config.planetary.ring_teeth),)
+        teeth = (set_of(config.gears, config.planetary).pitches_per_turn,)
     slowest, fastest = config.variation.speed_ratios
     return min(teeth) * min(low for low, _ in speeds) * slowest, max(teeth) * max(high for _, high in speeds) * fastest
 

@@ -59,11 +59,6 @@ class Planetary(Section):
     )
 
 
-def pitches_per_turn(sun: int, ring: int) -> float:
-    """Return the base pitches of every mesh per turn of the sun, z_s z_r/(z_s + z_r) (Willis)."""
-    return sun * ring / (sun + ring)
-
-
 def in_pair(name: str) -> str:
     """Return what a gear of a planetary set is in its own pair, a ring behind a planet; any other name stays."""
     return {**ROLES, RING: "gear"}.get(name, name)

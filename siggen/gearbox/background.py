@@ -8,16 +8,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
-from typing import Any
+from typing import TypeVar
 
 from siggen.config import Config
 from siggen.dynamics.structure.gear_stage import Base
-from siggen.gearbox.background_numbers import BaseNumbers, RubbingNumbers, ShaftNumbers, background_numbers
-from siggen.keys.drawing import draw, in_si
+from siggen.gearbox.background_numbers import (
+    BANDS,
+    BaseNumbers,
+    BearingNumbers,
+    BurstNumbers,
+    ForeignNumbers,
+    MachineNumbers,
+    RubbingNumbers,
+    ShaftNumbers,
+)
+from siggen.keys.drawing import SomeSection, draw, in_si
 from siggen.keys.number import constant
+from siggen.keys.section import Section
 from siggen.names import ROLES
 from siggen.seeding import Stage, named_uniforms
 
+T = TypeVar("T")
 MACHINES = {"motor": "pinion", "load": "gear"}
 """What stands beside the gearbox, and the shaft that leads there: of the first gear or sun, of its mate or carrier."""
 
@@ -121,24 +132,37 @@ class DrawnBackground:
 
 def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None:
     """Return what belongs to the gearbox; None without a background."""
-    if config.background is None:
+    section = config.background
+    if section is None:
         return None
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen_id)
-    laws = background_numbers(config.background)
-    section = draw(laws, uniform, "background")
-    foreign = {"second_stage": section.second_stage, "auxiliary_drive": section.auxiliary_drive}
+
+    def drawn(numbers: type[SomeSection], part: Section, path: str, **more: object) -> SomeSection:
+        return draw(numbers.model_construct(**{**dict(part), **more}), uniform, f"background.{path}")
+
+    def levels(kind: type[T], numbers: type[Section], part: Section | None, path: str, **more: object) -> T | None:
+        return None if part is None else kind(**in_si(drawn(numbers, part, path)), **more)
+
+    rubbing, bearings, shafts = section.rubbing, section.bearings, section.shafts
+    bursts = levels(BurstLevels, BurstNumbers, None if rubbing is None else rubbing.bursts, "rubbing.bursts")
+    bands = {} if bearings is None else dict.fromkeys(BANDS, bearings.velocity_um_s)
+    meshes = {"second_stage": section.second_stage, "auxiliary_drive": section.auxiliary_drive}
     turned = {"auxiliary_drive": "auxiliary_drive", **{name: f"machines.{name}" for name in MACHINES}}
-    of_shafts: dict[str, Mapping[str, Any]] = {
-        key: {role: draw(law, uniform, f"background.{key}.{role}") for role in ROLES if law is not None}
-        for key, law in (("bearings", laws.bearings), ("shafts", laws.shafts))
-    }
     return DrawnBackground(
-        base=None if section.base is None else _base(section.base),
-        rubbing=None if section.rubbing is None else _rubbing(section.rubbing),
-        bearings={role: BearingLevels(**in_si(own)) for role, own in of_shafts["bearings"].items()},
-        machines=None if section.machines is None else MachineLevels(**in_si(section.machines)),
-        shafts={role: _shaft(own) for role, own in of_shafts["shafts"].items()},
-        foreign={name: ForeignLevels(**in_si(own)) for name, own in foreign.items() if own is not None},
+        base=None if section.base is None else _base(drawn(BaseNumbers, section.base, "base")),
+        rubbing=levels(RubbingLevels, RubbingNumbers, rubbing, "rubbing", bursts=bursts),
+        bearings={
+            role: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{role}", **bands)))
+            for role in ROLES
+            if bearings is not None
+        },
+        machines=levels(MachineLevels, MachineNumbers, section.machines, "machines"),
+        shafts={r: _shaft(drawn(ShaftNumbers, shafts, f"shafts.{r}")) for r in ROLES if shafts is not None},
+        foreign={
+            name: ForeignLevels(**in_si(drawn(ForeignNumbers, mesh, name)))
+            for name, mesh in meshes.items()
+            if mesh is not None
+        },
         angles_rad={name: 2.0 * pi * uniform(f"background.{path}.angle") for name, path in turned.items()},
     )
 
@@ -151,11 +175,6 @@ def _base(section: BaseNumbers) -> Base:
         (constant(section.horizontal_hz), constant(section.vertical_hz), constant(section.rocking_hz)),
         constant(section.damping_ratio),
     )
-
-
-def _rubbing(section: RubbingNumbers) -> RubbingLevels:
-    bursts = section.bursts
-    return RubbingLevels(**in_si(section), bursts=None if bursts is None else BurstLevels(**in_si(bursts)))
 
 
 def _shaft(section: ShaftNumbers) -> ShaftLevels:

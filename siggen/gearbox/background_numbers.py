@@ -5,16 +5,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, TypeVar
+from typing import Annotated
 
-from siggen.config import Background, Base, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
+from siggen.config import Base, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
 BANDS = ("low_um_s", "middle_um_s", "high_um_s")
 Drawn = Annotated[Number, Within()]
-SomeSection = TypeVar("SomeSection", bound=Section)
 
 
 class BaseNumbers(Base):
@@ -57,7 +56,6 @@ class RubbingNumbers(Rubbing):
     level_std: Drawn = LogUniform(low=0.1, high=1.25)
     level_time_ms: Drawn = LogUniform(low=1.0, high=8.0)
     replayed_share: Drawn = LogUniform(low=0.01, high=0.08)
-    bursts: BurstNumbers | None
 
 
 class BearingNumbers(Section):
@@ -118,38 +116,3 @@ class ForeignNumbers(ForeignMesh):
     sideband_db: Drawn = Uniform(low=-25.0, high=-10.0)
     support_hz: Drawn = LogUniform(low=800.0, high=2500.0)
     support_damping: Drawn = Uniform(low=0.02, high=0.07)
-
-
-class BackgroundNumbers(Section):
-    """The section `background` with all that is drawn for it."""
-
-    base: BaseNumbers | None
-    rubbing: RubbingNumbers | None
-    bearings: BearingNumbers | None
-    machines: MachineNumbers | None
-    shafts: ShaftNumbers | None
-    second_stage: ForeignNumbers | None
-    auxiliary_drive: ForeignNumbers | None
-
-
-def background_numbers(section: Background) -> BackgroundNumbers:
-    """Return what a section says, and what no file says."""
-    rubbing, bearings = section.rubbing, section.bearings
-    bursts = None if rubbing is None else _completed(BurstNumbers, rubbing.bursts)
-    return BackgroundNumbers.model_construct(
-        base=_completed(BaseNumbers, section.base),
-        rubbing=_completed(RubbingNumbers, rubbing, bursts=bursts),
-        bearings=None if bearings is None else _bearings(bearings.velocity_um_s),
-        machines=_completed(MachineNumbers, section.machines),
-        shafts=_completed(ShaftNumbers, section.shafts),
-        second_stage=_completed(ForeignNumbers, section.second_stage),
-        auxiliary_drive=_completed(ForeignNumbers, section.auxiliary_drive),
-    )
-
-
-def _completed(kind: type[SomeSection], section: Section | None, **more: object) -> SomeSection | None:
-    return None if section is None else kind.model_construct(**{**dict(section), **more})
-
-
-def _bearings(velocity_um_s: Number) -> BearingNumbers:
-    return BearingNumbers.model_construct(low_um_s=velocity_um_s, middle_um_s=velocity_um_s, high_um_s=velocity_um_s)

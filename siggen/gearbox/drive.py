@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import pi
 
 from siggen.config import Dynamics, Variation
+from siggen.dynamics.drive.torque_variation import TorqueSettings
 from siggen.keys.drawing import draw, in_si
 from siggen.keys.number import constant
 from siggen.names import Names
@@ -14,7 +15,7 @@ from siggen.names import Names
 
 @dataclass(frozen=True, slots=True)
 class SpeedLevels:
-    """How the speed varies over that of the operating point; random courses belong to records."""
+    """How the speed varies over that of the operating point."""
 
     start_ratio: float
     end_ratio: float
@@ -26,20 +27,11 @@ class SpeedLevels:
 
 
 @dataclass(frozen=True, slots=True)
-class TorqueLevels:
-    """How the torque varies about that of the operating point, relative."""
-
-    random_rms: float
-    load_once: float
-    line_ripple: float
-
-
-@dataclass(frozen=True, slots=True)
 class PointVariation:
-    """What varies within a record at an operating point."""
+    """What varies within a record at an operating point; courses and phases belong to records."""
 
     speed: SpeedLevels
-    torque: TorqueLevels
+    torque: TorqueSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +47,10 @@ def drawn_variation(law: Variation, uniform: Callable[[str], float]) -> PointVar
     if not law.active:
         return None
     section = draw(law, uniform, "variation")
-    return PointVariation(SpeedLevels(**in_si(section.speed)), TorqueLevels(**in_si(section.torque)))
+    torque = in_si(section.torque)
+    return PointVariation(
+        SpeedLevels(**in_si(section.speed)), TorqueSettings(slow_rms=torque.pop("random_rms"), **torque)
+    )
 
 
 def drawn_unbalance(dynamics: Dynamics, names: Names, uniform: Callable[[str], float]) -> UnbalanceLevels | None:

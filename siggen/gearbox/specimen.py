@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
 
-from siggen.config import Dynamics
+from siggen.config.internals import ALL
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
@@ -121,6 +121,7 @@ class Specimen:
     channels : of its sensors
     points : at which it is measured
     sensor_places_mm : sensor -> where it stands, as columns give it; of those that were put somewhere
+    stored : what no sensor sees and a record holds: names, or all; None: nothing
     bearing_point : the operating point under whose load its bearings stand; None where they have one stiffness
     """
 
@@ -133,13 +134,13 @@ class Specimen:
     law: ToothLaw
     train: PairTrain | None
     planets: PlanetaryGears | None
-    dynamics: Dynamics
     housing: Housing | None
     unbalance: UnbalanceLevels | None
     background: DrawnBackground | None
     channels: tuple[DrawnChannel, ...]
     points: tuple[OperatingPoint, ...]
     sensor_places_mm: Mapping[str, tuple[float, ...]]
+    stored: tuple[str, ...] | None = None
     bearing_point: OperatingPoint | None = None
 
     @property
@@ -185,6 +186,10 @@ class Specimen:
     def reads(self, kind: str) -> bool:
         """Return whether a sensor reads a kind of `Input`, such as bearing forces."""
         return any(kind in channel.reads for channel in self.channels)
+
+    def stores(self, quantity: str) -> bool:
+        """Return whether a record holds a quantity that no sensor sees."""
+        return self.stored is not None and (ALL in self.stored or quantity in self.stored)
 
     def under(self, point: OperatingPoint) -> Specimen:
         """Return the gearbox at an operating point; itself where its bearings have one stiffness."""

@@ -13,7 +13,6 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
-from siggen.config.planetary import pitches_per_turn
 from siggen.config.stage_problems import most_teeth_per_turn
 from siggen.errors import SolverFailure
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
@@ -211,7 +210,7 @@ def _lines(gearbox: Gearbox) -> tuple[LineOrders, ...]:
     if specimen.planets is not None:
         teeth, carrier = specimen.planets.teeth, float(specimen.planets.teeth.carrier_turns)
         shafts = {"carrier": carrier, "planet": carrier * teeth.ring / teeth.planet}
-        return (LineOrders("", pitches_per_turn(teeth.sun, teeth.ring), shafts),)
+        return (LineOrders("", teeth.pitches_per_turn, shafts),)
     found, orders = [], [float(turns) for turns in specimen.shaft_turns]
     for place, (mesh, one) in enumerate(zip(names.meshes, specimen.meshes, strict=True)):
         shafts = {names.shafts[end].word: orders[end] for end in (place, place + 1)}

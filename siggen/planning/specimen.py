@@ -71,13 +71,13 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         law=tooth_law(dynamics),
         train=_train(dynamics, stages, meshes) if planets is None else None,
         planets=planets,
-        dynamics=dynamics,
         housing=drawn_housing(own, specimen_id, dynamics, meshes[0].pair, sensors),
         unbalance=drawn_unbalance(dynamics, own.names, supports),
         background=drawn_background(own, specimen_id),
         channels=tuple(drawn_channels(own, specimen_id, sensors)),
         points=points,
         sensor_places_mm={one.name: tuple(map(constant, one.place_on_casing_mm)) for one in sensors},
+        stored=None if own.internals is None else own.internals.quantities,
         bearing_point=points[0] if balls else None,
     )
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_force_name
-from siggen.config import Config
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
@@ -60,11 +59,6 @@ def internal_quantities(specimen: Specimen, response: Response) -> dict[str, Flo
 def approach_name(specimen: Specimen) -> str:
     """Return the name of the approach that the transmission error follows from, that of the first mesh."""
     return specimen.names.quantity(specimen.names.first, APPROACH) if specimen.planets is None else ""
-
-
-def is_asked_for(config: Config, name: str) -> bool:
-    """Return whether the section `internals` stores a quantity."""
-    return config.internals is not None and (config.internals.stores_all or name in config.internals.quantities)
 
 
 def pinion_angle_rad(drive: Rotation, fs_hz: float, first: int, count: int) -> FloatArray:

@@ -23,7 +23,6 @@ from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import operating_labels, state_labels
 from siggen.record.machine import Machine, machines
 from siggen.record.planetary_state import planetary_labels
-from siggen.record.quantities import is_asked_for
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
 from siggen.record.stage_labels import stage_operating_labels
 from siggen.record.stage_times import stage
@@ -123,27 +122,27 @@ def _settle_s(specimen: Specimen, motion: Motion) -> float:
 
 
 def simulated(
-    config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
+    specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
 ) -> SimulatedRecord:
-    """Return one record of a specimen in a state; `config` is that of its gearbox.
+    """Return one record of a specimen in a state.
 
     Raises
     ------
     SolverFailure
         As `record_response`.
     """
-    with_internals = config.internals is not None
+    with_internals = specimen.stored is not None
     with refused_as("outside_model"), stage("inputs"):
         specimen, state = at_point(specimen, state, planned)
         driven = state_drive(specimen, state, planned)
     seen = {motion for channel in instrument.channels for motion in channel.motions}
     if with_internals:
-        seen |= {motion for motion in state.mesh.structure.motions if is_asked_for(config, acceleration_name(motion))}
+        seen |= {motion for motion in state.mesh.structure.motions if specimen.stores(acceleration_name(motion))}
     with refused_as("outside_model"):
         stream, stepped = _stream(specimen, state, planned, driven, internals=with_internals, motions=seen)
     response: _RefusedPieces | StreamedInternals = _RefusedPieces(stream)
     if with_internals:
-        response = StreamedInternals(config, specimen, stream, response)
+        response = StreamedInternals(specimen, stream, response)
     with stage("sensing"):
         channels, channel_labels = measured_channels(specimen, planned, driven.rotation, response, instrument)
     sampling, point = specimen.sampling, specimen.points[planned.operating_point_id]
@@ -198,7 +197,7 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Simula
         try:
             machine = loaded(record.state_id if whole.changes_of(record.state_id) else 0, record.operating_point_id)
             state = state_of(record.state_id)
-            made = simulated(machine.config, machine.specimen, machine.instrument, state, record)
+            made = simulated(machine.specimen, machine.instrument, state, record)
             labels = {**made.labels, **machine.labels, **state_labels(whole, record.state_id)}
             yield replace(made, labels=named_labels(whole, labels))
         except SolverFailure as failure:

@@ -9,13 +9,11 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_force_name
-from siggen.config import Config
 from siggen.dynamics.time.response_stream import Piece, Pieces, ResponseStream
 from siggen.planning.specimen import Specimen
 from siggen.record.quantities import (
     TRANSMISSION_ERROR,
     approach_name,
-    is_asked_for,
     pinion_angle_rad,
     transmission_error_m,
 )
@@ -27,7 +25,7 @@ class StreamedInternals:
     What is kept is what the configuration asks for, 0.1 MB per second and quantity at 25.6 kHz.
     """
 
-    def __init__(self, config: Config, specimen: Specimen, stream: ResponseStream, pieces: Pieces) -> None:
+    def __init__(self, specimen: Specimen, stream: ResponseStream, pieces: Pieces) -> None:
         self.motions, self.places, self.before = pieces.motions, pieces.places, pieces.before
         self.readings = pieces.readings
         self._specimen, self._stream, self._pieces = specimen, stream, pieces
@@ -38,9 +36,7 @@ class StreamedInternals:
         last = (TRANSMISSION_ERROR,) if self._approach in self._inner else ()
         names = (self._angle, *self._accelerations, *self._forces, *self._inner, *last)
         self._kept = {
-            name: np.empty(stream.samples, dtype=np.float32)
-            for name in dict.fromkeys(names)
-            if is_asked_for(config, name)
+            name: np.empty(stream.samples, dtype=np.float32) for name in dict.fromkeys(names) if specimen.stores(name)
         }
 
     @property

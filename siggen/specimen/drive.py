@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -17,7 +17,6 @@ from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.sampling import Sampling
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
-from siggen.gearbox.drive import TorqueLevels
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
@@ -71,7 +70,7 @@ def record_drive(
     )
     if point.variation is None:
         return RecordDrive(rotation, Excitation(forces) if forces else None, None, -1)
-    settings = _torque_settings(specimen, point.variation.torque, record)
+    settings = _in_record(specimen, point.variation.torque, record)
     torque = TorqueVariation(structure, point.torque_nm, settings)
     sources: tuple[Source, ...] = (SpeedDeviation(structure.coordinates, 2.0 * pi * point.speed_hz), torque, *forces)
     return RecordDrive(rotation, Excitation(sources), torque, 0)
@@ -122,14 +121,13 @@ def variation_labels(sampling: Sampling, driven: RecordDrive) -> dict[str, objec
     }
 
 
-def _torque_settings(specimen: Specimen, torque: TorqueLevels, record: PlannedRecord) -> TorqueSettings:
+def _in_record(specimen: Specimen, torque: TorqueSettings, record: PlannedRecord) -> TorqueSettings:
+    """Return how the torque varies in one record."""
     uniform = named_uniforms(specimen.seed, Stage.DRIVE, *record.owner)
-    return TorqueSettings(
-        _slow(specimen, record, "variation.torque.random"),
-        torque.random_rms,
-        torque.load_once,
-        2.0 * pi * uniform("variation.torque.load_once.phase"),
-        torque.line_ripple,
+    return replace(
+        torque,
+        slow=_slow(specimen, record, "variation.torque.random"),
+        load_phase_rad=2.0 * pi * uniform("variation.torque.load_once.phase"),
         line_phase_rad=2.0 * pi * uniform("variation.torque.line_ripple.phase"),
     )
 

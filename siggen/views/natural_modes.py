@@ -9,11 +9,10 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.time.modes import Modes, natural_modes
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.stiffness.mesh_tables import mesh_tables
-from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.specimen.structure import structure
 
 FIRST = "first"
@@ -41,11 +40,9 @@ class SpecimenModes:
         return pa.table(columns)
 
 
-def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
+def specimen_modes(specimen: Specimen) -> SpecimenModes:
     """Return the modes of one specimen without damage, undamped, at the mean over the angle of its mesh stiffness."""
-    specimen = draw_specimen(config, specimen_id)
-    stiffness = _mean_stiffness(specimen)
-    assembled = structure(specimen)
+    stiffness, assembled = _mean_stiffness(specimen), structure(specimen)
     of_mesh = dict(zip((mesh.name or FIRST for mesh in assembled.meshes), stiffness, strict=True))
     return SpecimenModes(assembled.coordinates, of_mesh, assembled.mass, natural_modes(assembled, stiffness))
 

@@ -10,12 +10,9 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
-from siggen.config.planetary import pitches_per_turn
 from siggen.dynamics.structure.makers import RING_TURNING
 from siggen.errors import UsageError
-from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import ChannelInstrument, settle_s, specimen_instrument
@@ -68,16 +65,14 @@ class PathCurves:
         return float(largest[place]), float(self.frequency_hz[place])
 
 
-def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
-    """Return the transfer paths of one specimen.
+def path_curves(specimen: Specimen, mesh_harmonics: int) -> PathCurves:
+    """Return the transfer paths of one specimen, with so many lines of each mesh.
 
     Raises
     ------
     UsageError
         If no sensor has a path.
     """
-    config = gearbox_config(config, specimen_id)
-    specimen = draw_specimen(config, specimen_id)
     instrument = specimen_instrument(specimen)
     channels = tuple(channel for channel in instrument.channels if channel.accelerance is not None)
     if not channels:
@@ -88,14 +83,14 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
     turns = zip(specimen.meshes, specimen.shaft_turns, strict=False)
     meshing = tuple(float(turn * mesh.pair.pinion.teeth) for mesh, turn in turns)
     if specimen.planets is not None:
-        meshing = (pitches_per_turn(specimen.planets.teeth.sun, specimen.planets.teeth.ring),)
+        meshing = (specimen.planets.teeth.pitches_per_turn,)
     return PathCurves(
-        specimen_id=specimen_id,
-        frequency_hz=frequencies(instrument.length, config.fs_hz),
+        specimen_id=specimen.specimen_id,
+        frequency_hz=frequencies(instrument.length, specimen.sampling.fs_hz),
         channels=channels,
         housing=housing if any(c.path_modes for c in channels) else None,
         mesh_hz=tuple(tuple(point.speed_hz * teeth for teeth in meshing) for point in specimen.points),
-        mesh_harmonics=config.mesh_harmonics,
+        mesh_harmonics=mesh_harmonics,
         memory_s=settle_s(specimen),
     )
 

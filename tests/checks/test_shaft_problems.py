@@ -13,9 +13,12 @@ from siggen.checks.loading import load_config
 from siggen.checks.shaft_notes import shaft_notes
 from siggen.checks.tilt_problems import MEMBERS, NEEDED, flank_tilts, static_tilts_rad
 from siggen.columns.record import RecordFailure, SimulatedRecord
+from siggen.config import Config, Dynamics
 from siggen.errors import ConfigError
+from siggen.keys.drawing import draw
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.specimen_state import specimen_state
+from siggen.seeding import Stage, named_uniforms
 from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
 from tests.simulated import simulate
@@ -79,7 +82,8 @@ def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
     specimen = draw_specimen(config, 0)
     state = specimen_state(specimen, 0)
     motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
-    found = sum(static_tilts_rad(specimen.dynamics, which, state.pair, 45.0)[1] for which in ("pinion", "gear"))
+    dynamics = drawn_dynamics(config, 0)
+    found = sum(static_tilts_rad(dynamics, which, state.pair, 45.0)[1] for which in ("pinion", "gear"))
     assert abs(found) > 1e-6
     assert found == pytest.approx(motion.pair_equations.static[0, 2], rel=1e-9)
 
@@ -114,6 +118,10 @@ def test_soft_shafts_are_refused_though_some_gearboxes_have_their_gear_in_the_mi
         load_config(with_shafts(diameter_mm=5.0, bearing_span_mm=140.0, gear_position=around))
 
 
+def drawn_dynamics(config: Config, number: int) -> Dynamics:
+    return draw(config.dynamics, named_uniforms(config.seed, Stage.SUPPORTS, number), "dynamics")
+
+
 @pytest.mark.parametrize("which", ["bench", "industrial", "quickstart", "paper_b"])
 def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
     # By the drawn gearboxes, where the check takes places at equal shares: half of them at least have room.
@@ -121,10 +129,9 @@ def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
     sections = {name: getattr(config, name) for name in NEEDED}
     rooms = []
     for number in range(9):
-        specimen = draw_specimen(config, number)
-        pair = specimen.pair
+        pair, dynamics = draw_specimen(config, number).pair, drawn_dynamics(config, number)
         found = flank_tilts(sections, pair)
-        tilts = [static_tilts_rad(specimen.dynamics, gear, pair, found.torque_nm)[1] for gear in MEMBERS]
+        tilts = [static_tilts_rad(dynamics, gear, pair, found.torque_nm)[1] for gear in MEMBERS]
         rooms.append(abs(sum(tilts)) / found.limit_rad)
     assert 0.0 < np.median(rooms) < 1.0
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
+from siggen.planning.specimen import draw_specimen
 from siggen.record.internals import internals_table
 from siggen.views.natural_modes import specimen_modes
 from tests.config.minimal import minimal
@@ -37,7 +38,7 @@ def test_its_teeth_rub_as_lubricated_ones_do() -> None:
 
 def test_all_supports_swing_and_the_lowest_modes_of_the_housing() -> None:
     # As stiff as the plain sum of pairs: the softer the mesh, the more the supports count.
-    found = specimen_modes(load_config(minimal(stiffness__coupling="none")))
+    found = specimen_modes(draw_specimen(load_config(minimal(stiffness__coupling="none")), 0))
     assert 8 + 6 <= len(found.coordinates) <= 8 + 9
     assert (np.diff(found.modes.frequency_hz) > 0.0).all()
     inertia = dict(zip(found.coordinates, np.diag(found.mass), strict=True))

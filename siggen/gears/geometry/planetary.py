@@ -42,6 +42,11 @@ class PlanetarySet:
         return Fraction(self.sun, self.slots)
 
     @property
+    def pitches_per_turn(self) -> float:
+        """Base pitches of every mesh per turn of the sun (Willis)."""
+        return self.sun * self.ring / self.slots
+
+    @property
     def evenly_spaced(self) -> bool:
         """Whether all neighbours are equally far apart."""
         return len(set(self.gaps)) == 1
