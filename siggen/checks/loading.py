@@ -64,11 +64,13 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.response_files import response_problems, with_measured_responses
     from siggen.checks.state_problems import state_problems
+    from siggen.rig.sizes import with_sizes
 
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)
     with_modes, unread_modes = with_mode_file(filled, folder)
-    parsed = parse(with_modes)
+    sized, unsized = with_sizes(with_modes)
+    parsed = parse(sized)
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
     of_physics = [
         *physical_problems(parsed),
@@ -76,7 +78,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         *response_problems(parsed.sections),
         *mode_problems(parsed.sections),
     ]
-    told = [*written, *parsed.problems, *unread, *unread_modes, *unusable]
+    told = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *unsized]
     problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:
         from siggen.checks.quantity_names import quantity_problems

@@ -12,6 +12,7 @@ from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
 from siggen.keys.usual import Usual
+from siggen.keys.wording import AllowedText
 
 
 class Shaft(Section):
@@ -53,6 +54,9 @@ ALIKE = {
 }
 """Key of the vertical direction -> that of the horizontal one, whose value it has where it is not given."""
 MACHINE = "of the machine that drives, or is driven"
+RATED = "rated_torque_nm"
+"""Key from which the sizes follow that a file leaves out."""
+RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
 
 class PlainRotor(Section):
@@ -144,6 +148,12 @@ class Dynamics(Section):
     unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")
     shafts: Shafts | None = Field(
         default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
+    )
+    rated_torque_nm: Annotated[float | None, Field(gt=0, le=1e6), RATED_TEXT] = Field(
+        default=None,
+        description="of the pinion's shaft: masses, inertias, bearings, couplings, and shafts if there are any, follow "
+        "from it where they are not given, by the rules of `siggen init`, and take the place of those of a file that "
+        "is extended; null: their own defaults",
     )
 
     @property

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from siggen.config.data_file import is_file
+from siggen.config.dynamics import ALIKE, RATED
 from siggen.config.presets import config_file
 from siggen.config.yaml_source import read_yaml
 from siggen.errors import ConfigError, Problem, UsageError
@@ -17,6 +18,15 @@ EXTENDS = "extends"
 REPLACED = ("gears", "stages", "planetary")
 """Sections that a machine takes the place of."""
 REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
+SIZED: Mapping[str, Any] = {
+    **dict.fromkeys(
+        ("pinion", "gear"),
+        dict.fromkeys(("mass_kg", "inertia_kg_m2", *(key for pair in ALIKE.items() for key in pair))),
+    ),
+    **dict.fromkeys(("motor_inertia_kg_m2", "load_inertia_kg_m2", "input_coupling", "output_coupling")),
+    "shafts": dict.fromkeys(("pinion", "gear"), dict.fromkeys(("bearing_span_mm", "diameter_mm"))),
+}
+"""Keys of `dynamics` that a rated torque takes the place of; None: a key, else those of a section."""
 DEEPEST = 8
 """Files that may extend each other in a row."""
 
@@ -26,7 +36,8 @@ def inherited(raw: Mapping[str, Any], folder: Path = Path(), source: str = "conf
 
     Mappings are merged key by key, states and sensors by name; one with `others: null` takes nothing over. Everything
     else replaces what it extends: numbers, lists, null, and mappings that have a `kind` of their own, are
-    `like` something or stand for a number. A `machine` takes the place of gears and of their shafts.
+    `like` something or stand for a number. A `machine` takes the place of gears and of their shafts, a rated
+    torque that of the sizes that follow from it.
 
     Parameters
     ----------
@@ -72,7 +83,23 @@ def _resolved(raw: Mapping[str, Any], folder: Path, source: str, seen: tuple[Pat
         raise ConfigError([Problem(EXTENDS, f"{received_text(raw[EXTENDS])}, {circle}", "allowed: a chain that ends")])
     base = _anchored(_resolved(read_yaml(file), file.parent, str(file), (*seen, file)), file.parent)
     own = {key: value for key, value in raw.items() if key != EXTENDS}
-    return merged(_without_drivetrain(base) if own.get("machine") else base, own)
+    base = _without_drivetrain(base) if own.get("machine") else base
+    own_dynamics = own.get("dynamics")
+    rated = own_dynamics.get(RATED) if isinstance(own_dynamics, Mapping) else None
+    return merged(base if rated is None else without_sizes(base), own)
+
+
+def without_sizes(base: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a raw configuration without what follows from a rated torque."""
+    return _without(base, {"dynamics": SIZED})
+
+
+def _without(value: Mapping[str, Any], keys: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        key: item if key not in keys or not isinstance(item, Mapping) else _without(item, keys[key])
+        for key, item in value.items()
+        if key not in keys or keys[key] is not None
+    }
 
 
 def _without_drivetrain(base: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,6 +6,8 @@ import copy
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from siggen.config.dynamics import RATED
+from siggen.config.inheritance import without_sizes
 from siggen.config.yaml_source import yaml_value
 from siggen.errors import ConfigError, Problem
 from siggen.keys.by_name import BY_NAME, named_entries
@@ -29,6 +31,9 @@ def apply_overrides(raw: Mapping[str, Any], overrides: Sequence[str]) -> dict[st
     changed = copy.deepcopy(dict(raw))
     problems = []
     for override in overrides:
+        path, _, text = override.partition("=")
+        if path.strip() == f"dynamics.{RATED}" and text.strip() != "null":
+            changed = without_sizes(changed)
         try:
             _refuse_new_name(override, raw, changed)
             _apply(changed, override)

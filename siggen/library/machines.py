@@ -15,7 +15,8 @@ from siggen.library.makers import counts, made
 from siggen.rig.rating import bearable_torque_nm, proposed_face_width_mm, rated_torque_nm
 from siggen.rig.rig import Rig, checked_rig
 from siggen.rig.rig_numbers import RigNumbers, RotorNumbers, rig_numbers
-from siggen.rig.rig_text import BENCH_FACE_MM, SPREAD
+from siggen.rig.rig_text import BENCH_FACE_MM
+from siggen.rig.sizes import SPREAD
 
 __all__ = ["machine", "planetary"]
 

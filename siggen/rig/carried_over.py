@@ -107,6 +107,7 @@ def _housing(size: float) -> dict[str, float]:
 
 def _dynamics(scales: PairScales) -> dict[str, float]:
     found = {
+        "rated_torque_nm": scales.torque,
         "motor_inertia_kg_m2": scales.end_inertia[0],
         "load_inertia_kg_m2": scales.end_inertia[1],
         "backlash_um": scales.module,

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from siggen.rig.rig import Pair, Rig
-from siggen.rig.rig_numbers import ASSUMED, RigNumbers, RotorNumbers, rig_numbers
+from siggen.rig.rig_numbers import ASSUMED, RigNumbers, rig_numbers
 
 SCHEMA_FILE = "siggen.schema.json"
 """Beside the file of a rig, whose first line names it to editors (`yaml-language-server`)."""
 PLACES = (("lid", "vertical"), ("gear_end", "horizontal"), ("wall", "axial"), ("pinion_end", "horizontal"))
 """Of sensors on the housing; further sensors take the same again."""
 BENCH_MODULE_MM, BENCH_FACE_MM = 3.0, 20.0
-SPREAD = (0.75, 1.33)
-"""Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
 CLASSES_RULE = "the whole face carries at full load (ISO 6336-1: K_Hbeta up to 2)"
 NAMES = {1: ["severe"], 2: ["slight", "severe"], 3: ["slight", "moderate", "severe"]}
 """Of so many sizes; of more, size_1, size_2 ..."""
@@ -99,40 +97,23 @@ manufacture:
 
 
 def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
+    shafts, stands = [rotor.shaft for rotor in numbers.rotors], ("pinion", "gear")
+    on = [f"{shaft.bearing.kind} bearings of {shaft.bearing.bore_mm:.3g} mm bore" for shaft in shafts]
+    given = [
+        f"    {name}: {{diameter_mm: {_exact(shaft.diameter_mm)}}}"
+        for name, shaft in zip(stands, shafts, strict=True)
+        if rig.bores_mm is not None
+    ]
     lines = [
         "dynamics:",
-        *(_rotor(name, rotor) for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)),
-        "  shafts:                     # the gear between its bearings as in the preset",
-        *(
-            f"    {name}: {{bearing_span_mm: {_exact(shaft.span_mm)}, diameter_mm: {_exact(shaft.diameter_mm)}}}"
-            for name, shaft in zip(("pinion", "gear"), (rotor.shaft for rotor in numbers.rotors), strict=True)
-        ),
-        f"  # From here on {ASSUMED}.",
-        f"  motor_inertia_kg_m2: {numbers.motor_inertia_kg_m2:.3g}",
-        f"  load_inertia_kg_m2: {numbers.load_inertia_kg_m2:.3g}",
-        f"  backlash_um: [{20 * rig.module_mm:.3g}, {40 * rig.module_mm:.3g}]",
-        *(
-            f"  {which}_coupling: {{stiffness_nm_per_rad: {k:.4g}, damping_nm_s_per_rad: {c:.3g}}}"
-            for which, k, c in zip(
-                ("input", "output"), numbers.coupling_nm_per_rad, numbers.coupling_nm_s_per_rad, strict=True
-            )
-        ),
+        "  # Masses, bearings, shafts and couplings follow from it where they are not given; the set's config.yaml has",
+        f"  # them. Shafts of {shafts[0].diameter_mm:.4g} and {shafts[1].diameter_mm:.4g} mm, {on[0]} and {on[1]}.",
+        f"  rated_torque_nm: {_exact(rig.torque_nm[1])}     # on the pinion",
+        *(["  shafts:                     # as thick as the bores", *given] if given else []),
+        f"  backlash_um: [{20 * rig.module_mm:.3g}, {40 * rig.module_mm:.3g}]     # {ASSUMED}",
         f"  mesh: {{tip_relief_um: {_range(numbers.tip_relief_um)}}}    # running in alone, deflection at full load",
     ]
     return "\n".join(lines) + "\n"
-
-
-def _rotor(name: str, rotor: RotorNumbers) -> str:
-    stiffness, bearing = _spread(rotor.bearing_n_per_m), rotor.shaft.bearing
-    damping = tuple(2.0 * ratio * (rotor.bearing_n_per_m * rotor.mass_kg) ** 0.5 for ratio in (0.02, 0.04))
-    return f"""\
-  {name}:
-    mass_kg: {rotor.mass_kg:.3g}             # disc and a shaft of {rotor.shaft.span_mm:.3g} mm
-    inertia_kg_m2: {rotor.inertia_kg_m2:.3g}
-    bearing_stiffness_x_n_per_m: {stiffness}     # two {bearing.kind} bearings of {bearing.bore_mm:.3g} mm bore
-    bearing_stiffness_y_n_per_m: {stiffness}
-    bearing_damping_x_n_s_per_m: {_range(damping, log=True)}    # 2 to 4 % of critical
-    bearing_damping_y_n_s_per_m: {_range(damping, log=True)}"""
 
 
 def _states(rig: Rig) -> str:
@@ -227,10 +208,6 @@ def _sensors(rig: Rig) -> str:
 def _sensor(i: int) -> str:
     place, axis = PLACES[i % len(PLACES)]
     return f"  sensor_{i + 1}: {{place: {place}, axes: [{axis}], model: laboratory, mount: any}}"
-
-
-def _spread(value: float) -> str:
-    return _range((SPREAD[0] * value, SPREAD[1] * value), log=True)
 
 
 def _range(values: Pair, log: bool = False) -> str:

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from siggen.config import Config, inherited, parse, parse_yaml
+from siggen.checks.loading import load_config
+from siggen.config import Config, inherited, parse_yaml
 from siggen.config.pairs import Pair
 from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import GearPair
@@ -109,9 +110,7 @@ def _compare_reliefs(found: dict[str, float], wanted: dict[str, float]) -> None:
 
 
 def _parsed(text: str) -> Config:
-    parsed = parse(inherited(parse_yaml(text, "rig")))
-    assert parsed.config is not None
-    return parsed.config
+    return load_config(inherited(parse_yaml(text, "rig")))
 
 
 def _numbers(value: Any, path: str = "") -> Iterator[tuple[str, float]]:
