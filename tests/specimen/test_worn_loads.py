@@ -26,9 +26,9 @@ PER_PITCH = 960
 TEETH = StiffnessOptions("base_circle", "none")
 WORE_UNDER_N, FORCE_N, DEPTH_M, RELIEF_M = 2500.0, 1500.0, 20e-6, 60e-6
 """So long a relief for so little force that no tip corner touches beside the path: the computation by hand has none."""
-SPECIMEN = draw_specimen(config_with(), 0)
+GEARS, SPECIMEN = config_with().gears, draw_specimen(config_with(), 0)
 LAW = replace(SPECIMEN.law, relief_m=RELIEF_M)
-PAIR = gear_pair(SPECIMEN.gears)
+PAIR = SPECIMEN.pair
 PATH = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, POINTS)
 
 
@@ -76,7 +76,7 @@ def test_mesh_harmonics_of_the_transmission_error_at_rest_are_those_by_hand(worn
 
 
 def test_swapped_gears_wear_the_same_under_the_same_force() -> None:
-    other = gear_pair(SPECIMEN.gears.model_copy(update={"pinion": SPECIMEN.gears.gear, "gear": SPECIMEN.gears.pinion}))
+    other = gear_pair(GEARS.model_copy(update={"pinion": GEARS.gear, "gear": GEARS.pinion}))
     load = load_at_rest(LAW, other, TEETH, WORE_UNDER_N)
     swapped = worn_until(other, load, 1e-17, depth_m=DEPTH_M)
     # The end of a pair's way is the beginning of the other: steps of the load lie in other cells of the profile.
