@@ -34,4 +34,4 @@ def _varied(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _digits(value: float) -> int:
-    return len(repr(value).split("e")[0].replace(".", "").strip("-0"))
+    return len("".join(filter(str.isdigit, repr(value).split("e")[0])).strip("0"))

@@ -54,7 +54,8 @@ def read_apart(path: Path, work: str, *, size: int | None = None, **more: Any) -
     with tempfile.TemporaryDirectory(prefix="siggen-reading-") as name:
         folder = Path(name)
         if hasattr(os, "fork"):
-            question = {"path": str(path.absolute()), "shown": str(path), "to": name, "work": work, "size": size}
+            here = path.anchor or str(Path.cwd())
+            question = {"path": str(path), "here": here, "to": name, "work": work, "size": size}
             answer = _asked({**question, "more": more})
             if "refused" in answer:
                 raise UsageError(answer["refused"])
@@ -132,12 +133,12 @@ def _read(question: dict[str, Any]) -> None:
     """Read one file, leave what was asked for or a sentence, and end the process."""
     path, folder = Path(question["path"]), Path(question["to"])
     try:
+        os.chdir(question["here"])
         own = path.stat().st_size if path.exists() else 0  # the function says that there is none
         _limit(own if question["size"] is None else question["size"])
         _function(question["work"])(path, folder, **question["more"])
     except UsageError as error:
-        text = str(error).replace(question["path"], question["shown"])
-        (folder / "refused").write_text(text, encoding="utf-8", errors="replace")
+        (folder / "refused").write_text(str(error), encoding="utf-8", errors="replace")
     except BaseException:
         os._exit(1)
     os._exit(0)

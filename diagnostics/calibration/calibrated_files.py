@@ -265,8 +265,8 @@ def _path_file(sensor: str, number: int) -> str:
 
 def _write_path(file: Path, found: Calibration, axis: str, draw: PathDraw) -> None:
     columns = {"frequency_hz": found.grid_hz}
-    for weight, force in zip(draw.direction, found.rig.forces, strict=True):
-        stem = f"{axis}_from_{force.replace('/', '_')}"
+    for weight, force in zip(draw.direction, found.rig.forces_in_columns, strict=True):
+        stem = f"{axis}_from_{force}"
         curve = weight * draw.accelerance
         columns |= {f"{stem}_real_m_s2_per_n": curve.real, f"{stem}_imag_m_s2_per_n": curve.imag}
     archive = BytesIO()

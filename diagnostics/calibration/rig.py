@@ -44,6 +44,11 @@ class Rig:
     forces: tuple[str, ...]
 
     @property
+    def forces_in_columns(self) -> list[str]:
+        """What parts of the names of columns call its bearing forces."""
+        return ["_".join(force.split("/")) for force in self.forces]
+
+    @property
     def sensors(self) -> dict[str, dict[str, Any]]:
         """Accelerometers by name: recordings of others have neither path nor noise that is fitted."""
         return {name: one for name, one in self.config["sensors"].items() if one["kind"] == "accelerometer"}

@@ -43,7 +43,7 @@ class SourceLibrary:
 
 def force_columns(rig: Rig) -> list[str]:
     """Return what internals call the bearing forces of a rig."""
-    return [f"bearing_force_{force.replace('/', '_')}_n" for force in rig.forces]
+    return [f"bearing_force_{force}_n" for force in rig.forces_in_columns]
 
 
 def source_library(

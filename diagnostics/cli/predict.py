@@ -104,8 +104,9 @@ def predict(
     else:
         _tell(found, refused)
     if out is not None:
+        folders = dict(zip(_names(sources), _folders(sources), strict=True))
         for name, one in found.items():
-            place = out / name.replace(":", "_").replace("/", "_") if len(sources) > 1 else out
+            place = out / folders[name] if len(sources) > 1 else out
             echo(str(write_prediction(one, loaded.facts, place)), err=as_json)
     if refused:
         raise typer.Exit(EXIT_USAGE)
@@ -126,9 +127,19 @@ def _tell(found: Mapping[str, Prediction], refused: Mapping[str, str]) -> None:
 
 def _names(sources: Sequence[tuple[Path, int | None]]) -> list[str]:
     """Return what recordings are called: by their files, by whole paths where two of these have one name."""
-    alike = len({(path.name, row) for path, row in sources}) < len(sources)
-    files = [path.as_posix() if alike else path.name for path, _ in sources]
+    files = [path.as_posix() if _alike(sources) else path.name for path, _ in sources]
     return [file if row is None else f"{file}:{row}" for file, (_, row) in zip(files, sources, strict=True)]
+
+
+def _folders(sources: Sequence[tuple[Path, int | None]]) -> list[str]:
+    """Return what the folder of each is called: like the recording, in one part."""
+    files = [path.relative_to(path.anchor).parts if _alike(sources) else (path.name,) for path, _ in sources]
+    rows = [() if row is None else (str(row),) for _, row in sources]
+    return ["_".join((*file, *row)) for file, row in zip(files, rows, strict=True)]
+
+
+def _alike(sources: Sequence[tuple[Path, int | None]]) -> bool:
+    return len({(path.name, row) for path, row in sources}) < len(sources)
 
 
 def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> tuple[int, int]:

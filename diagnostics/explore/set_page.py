@@ -40,7 +40,7 @@ NAMED_FILTERS = (("class", "Class"), *NAMED_COLUMNS)
 CODE = """import diagnostics
 import siggen
 
-table = diagnostics.table(siggen.open("SET"))  # a row per record; SET: your path to the set
+table = diagnostics.table(siggen.open("{name}"){own})  # a row per record; SET: your path to the set
 values = table.values[:, table.names.index("COLUMN")]
 healthy = table.labels["fault"] == "healthy"
 limit = sorted(values[healthy])[int(0.95 * healthy.sum())]  # one of twenty healthy records is above it
@@ -197,7 +197,7 @@ def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Li
         filters=(*FILTERS, *(NAMED_FILTERS if known else ())),
         missing=missing,
         seen=seen_sentence([str(one) for one in source.labels["seen"]]) if known else "",
-        code=CODE.replace("SET", dataset.path.name, 1).replace("))", f"), indicators=[{own}])" if own else "))", 1),
+        code=CODE.format(name=dataset.path.name, own=f", indicators=[{own}]" if own else ""),
         ranked=list(options.ranked),
     )
 

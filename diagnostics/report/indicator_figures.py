@@ -29,9 +29,6 @@ from diagnostics.statistics.judged_records import JudgedRecords
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-AXES = ("vertical", "horizontal", "axial")
-"""As channels of simulated sensors end."""
-
 CROWDED = 8
 """States beyond which their names are small."""
 ROWS_SHOWN = 36
@@ -50,17 +47,11 @@ def in_words(column: str, gears: GearNames) -> str:
     return column_title(column.partition("__")[0], gears)
 
 
-def channel_title(channel: str) -> str:
-    """Return what people call a channel: sensor and axis (`lid_vertical` is lid, vertical); other names as they are."""
-    sensor, _, axis = channel.rpartition("_")
-    return f"{sensor.replace('_', ' ')}, {axis}" if sensor and axis in AXES else channel
-
-
 def term_cell(column: str, gears: GearNames) -> Cell:
     """Return the cell that names a column: its title, which leads to the definition, its channel and its own name."""
     known = known_column(column, gears)
     channel = column.partition("__")[2]
-    small = f"{channel_title(channel)}; {column.partition('__')[0]}" if channel else column
+    small = f"{channel}; {column.partition('__')[0]}" if channel else column
     return Cell(in_words(column, gears), small, link=f"#term-{known.entry.name}" if known else "")
 
 
@@ -69,13 +60,13 @@ def in_a_sentence(column: str, gears: GearNames) -> str:
     title, channel = in_words(column, gears), column.partition("__")[2]
     if title[1:2].islower():
         title = title[:1].lower() + title[1:]
-    return f"{title} at {channel_title(channel)}" if channel else title
+    return f"{title} at {channel}" if channel else title
 
 
 def panel_title(column: str, gears: GearNames, width: int = 38) -> str:
     """Return title and channel of a column for a figure, in lines of at most so many signs."""
     title, channel = in_words(column, gears), column.partition("__")[2]
-    return "\n".join(textwrap.wrap(f"{title} ({channel_title(channel)})" if channel else title, width))
+    return "\n".join(textwrap.wrap(f"{title} ({channel})" if channel else title, width))
 
 
 def separation_rows(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, list[float]]:

@@ -94,14 +94,14 @@ def angle_name(names: Names) -> str:
 
 def acceleration_name(place: str) -> str:
     """Return the name of the clean acceleration of a motion such as "casing/vertical"."""
-    return f"clean_accel_{place.replace('/', '_')}_m_s2"
+    return f"clean_accel_{'_'.join(place.split('/'))}_m_s2"
 
 
 def bearing_force_name(place: str) -> str:
     """Return the name of a bearing force, or of the moment that keeps a ring from turning."""
     if place.endswith("/turning"):
         return f"support_moment_{place.rpartition('/')[0]}_nm"
-    return f"bearing_force_{place.replace('/', '_')}_n"
+    return f"bearing_force_{'_'.join(place.split('/'))}_n"
 
 
 def _contact_ratio(pair: GearPair) -> float:

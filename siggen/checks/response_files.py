@@ -121,10 +121,10 @@ def _curves_problems(response: FrequencyResponse, wanted: _Wanted, where: str) -
     if strange := sorted(key for key in response.curves if key[1] not in wanted.forces):
         known = ", ".join(dict.fromkeys(force.split("/")[0] for force in wanted.forces))
         axis, force = strange[0]
-        yield Problem(where, f"columns {axis}_from_{force.replace('/', '_')}_...", f"allowed: forces of {known}")
+        yield Problem(where, f"columns {axis}_from_{'_'.join(force.split('/'))}_...", f"allowed: forces of {known}")
         return
     for key in ((axis, name) for axis in wanted.axes for name in wanted.forces):
-        label = f"{key[0]}_from_{key[1].replace('/', '_')}"
+        label = f"{key[0]}_from_{'_'.join(key[1].split('/'))}"
         if key not in response.curves:
             if not key[1].endswith("/axial"):
                 allowed = "allowed: two columns for every axis and bearing force; zeros where nothing passes"
@@ -241,5 +241,5 @@ def _complex(key: tuple[str, str], parts: Mapping[str, FloatArray]) -> NDArray[n
             return parts["real"] + 1j * parts["imag"]
         case ["magnitude", "phase"]:
             return np.asarray(parts["magnitude"] * np.exp(1j * parts["phase"]))
-    received = f"{' and '.join(sorted(parts))} of {key[0]}_from_{key[1].replace('/', '_')}"
+    received = f"{' and '.join(sorted(parts))} of {key[0]}_from_{'_'.join(key[1].split('/'))}"
     raise ResponseRefusal(received, "allowed: real and imag, or magnitude and phase")

@@ -43,7 +43,7 @@ class PathCurves:
         columns = {"frequency_hz": self.frequency_hz[::step]}
         for channel in self.channels:
             for name, curve in zip(channel.forces, _rows(channel), strict=True):
-                stem = f"{channel.name}_from_{name.replace('/', '_')}"
+                stem = f"{channel.name}_from_{'_'.join(name.split('/'))}"
                 unit = "m_s2_per_nm" if name == RING_TURNING else "m_s2_per_n"
                 columns |= {f"{stem}_real_{unit}": curve.real[::step], f"{stem}_imag_{unit}": curve.imag[::step]}
         return pa.table(columns)

@@ -32,7 +32,7 @@ def path_figure(found: PathCurves) -> Figure:
         for name, row in zip(channel.forces, channel.accelerance, strict=True):  # type: ignore[arg-type]
             if name == RING_TURNING:  # per N m
                 continue
-            label = name.replace("_bearing/", ", ").replace("/", ", ")
+            label = ", ".join(name.split("/"))
             panel.loglog(found.frequency_hz[shown], np.abs(row[shown]), lw=0.9, label=label)
         panel.set_title(channel.name, loc="left", fontsize="medium")
         panel.grid(alpha=0.3)

@@ -38,7 +38,7 @@ COMMON: dict[str, Any] = {
 STATE, SENSOR = "pinion_spalled", "pinion_end"
 CHANNEL = f"{SENSOR}_vertical"
 SPELT = [name.replace("_", "_(<wbr>)?") for name in (STATE, SENSOR)]
-OF_THE_USER = re.compile("|".join([*SPELT, "pinion end, vertical"]))
+OF_THE_USER = re.compile("|".join(SPELT))
 """Data that hold the program's word for a gear, as they stand in files and on pages."""
 
 

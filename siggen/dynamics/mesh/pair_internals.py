@@ -111,6 +111,9 @@ def with_units(coordinates: Iterable[str]) -> tuple[str, ...]:
     return tuple(f"{name}_{units[name.startswith(turning)]}" for name in coordinates)
 
 
+PIVOTS = "moment_pinion_nm", "moment_gear_nm"
+
+
 def as_back_flanks(found: FloatArray, slots: int, line_m: float, contact: PairContact | None) -> FloatArray:
     """Return values of pairs of the mirrored pair, in which the gear is in front, as those of the pinion's back flanks.
 
@@ -122,10 +125,9 @@ def as_back_flanks(found: FloatArray, slots: int, line_m: float, contact: PairCo
             told[:, column] = -found[:, column]
         elif name.endswith("position_m"):
             told[:, column] = line_m - found[:, column]
-        elif name.endswith("moment_pinion_nm"):
-            told[:, column] = -found[:, names.index(name.replace("pinion", "gear"))]
-        elif name.endswith("moment_gear_nm"):
-            told[:, column] = -found[:, names.index(name.replace("gear", "pinion"))]
+        for own, other in (PIVOTS, PIVOTS[::-1]):
+            if name.endswith(own):
+                told[:, column] = -found[:, names.index(f"{name.removesuffix(own)}{other}")]
     return told
 
 

@@ -240,7 +240,7 @@ class PairMotion:
         for m, (mesh, law) in enumerate(zip(self.structure.meshes, self.laws, strict=True)):
             static, allowed = self.pair_equations.static[m], LARGEST_SHIFT * law.base_pitch_m
             self._refuse_tilt(m, static[TILT : TILT + 1], static[APPROACH : APPROACH + 1], "under the mean torque")
-            shift = max(moved[name.replace("theta", axis)] for name in mesh.turning for axis in "xy")
+            shift = max(moved[f"{axis}{name.removeprefix('theta')}"] for name in mesh.turning for axis in "xy")
             if not shift <= allowed:
                 where = "stages" if len(self.meshes) > 1 else "dynamics.shafts"
                 raise ValueError(

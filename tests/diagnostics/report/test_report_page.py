@@ -150,7 +150,7 @@ def feature_columns(folder: Path) -> list[str]:
 def test_an_indicator_has_a_human_name_and_its_definition_on_hover(folder: Path) -> None:
     text = (folder / "report.html").read_text().replace("<wbr>", "")
     table = next(part for part in text.split("<table")[1:] if ">Indicator, channel<" in part)
-    assert '<a href="#term-rms">RMS</a> <small>bearing, vertical; rms</small>' in table
+    assert '<a href="#term-rms">RMS</a> <small>bearing_vertical; rms</small>' in table
     assert 'id="term-rms" data-hint="sqrt(mean x²); from record"' in text  # a script gives it to the links
 
 
