@@ -22,8 +22,9 @@ from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.errors import SolverFailure
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.motion import specimen_motion

@@ -14,8 +14,9 @@ from siggen.config import Config
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid

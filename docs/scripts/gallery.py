@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.tooth_damage import pits_of
 from siggen.gears.stiffness.sections import contact_length_loss
-from siggen.planning.specimen import draw_specimen
 from siggen.specimen.mesh_teeth import all_teeth
 from siggen.views.flank_figure import save_flank_figure
 from siggen.views.flank_views import flank_damage_table, flank_views

@@ -89,7 +89,7 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
 def _with_own_path(found: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the machine with the path of its first gearbox for all of them."""
     from siggen.dataset.table_file import write_table_file
-    from siggen.planning.specimen import draw_specimen
+    from siggen.gearbox.draw import draw_specimen
 
     file = (folder / "path.parquet").resolve()
     if not file.exists():

@@ -7,8 +7,8 @@ from math import degrees
 
 from siggen.checks.bearing_problems import STIFFNESSES
 from siggen.config import Config
-from siggen.planning.specimen import draw_specimen
-from siggen.planning.state_config import state_config
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
 from siggen.specimen.loaded_bearings import BEARINGS
 from siggen.specimen.structure import specimen_bearings
 

@@ -28,6 +28,7 @@ from siggen.config.short_form import names_in
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import allowed_text, found_problems, in_mm, mesh_of_gear
+from siggen.gearbox.configured import possible_states
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
@@ -35,7 +36,6 @@ from siggen.gears.stiffness.coupled_pairs import StiffTeethError
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
-from siggen.planning.drawn_parts import possible_states
 
 KEYS = {
     "teeth": "teeth",

@@ -16,6 +16,7 @@ from siggen.config import Config, Coupling, Housing, ModalHousing, Pair, PlainRo
 from siggen.config.changes import SECTIONS, changed_sections
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
 from siggen.errors import counted
+from siggen.gearbox.configured import pair_configs
 from siggen.gearbox.mode_table import mode_table
 from siggen.gearbox.pair import gear_pair
 from siggen.gearbox.planetary import RIM_MODULES
@@ -24,7 +25,6 @@ from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, bounds
 from siggen.keys.usual import unusual
-from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
 from siggen.sensors.sensor import SensorBase
 

@@ -8,14 +8,15 @@ from dataclasses import replace
 from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
+from siggen.gearbox.configured import pair_configs
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
 from siggen.keys.drawing import corners
 from siggen.names import Names
-from siggen.planning.gearbox import pair_configs
-from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.structure import structure
 from siggen.specimen.wavy_teeth import WavyTeeth

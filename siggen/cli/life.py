@@ -80,7 +80,7 @@ def _write(file: Path, config: Config, specimen: int) -> None:
     from siggen.config import yaml_text
     from siggen.errors import UsageError
     from siggen.file_writing import write_file
-    from siggen.planning.gearbox import gearbox_config
+    from siggen.gearbox.configured import gearbox_config
 
     if file.exists():
         raise UsageError(f"--as-states {file}: is there already; give a new file")

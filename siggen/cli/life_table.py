@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from siggen.config import Config
-    from siggen.planning.lived import Lived
+    from siggen.gearbox.lived import Lived
     from siggen.sets.record_cost import SetCost
 
 QUANTILES = (0.05, 0.5, 0.95)
@@ -25,7 +25,7 @@ def life_summary(config: Config) -> dict[str, Any] | None:
         return None
     import numpy as np
 
-    from siggen.planning.gearbox import gearbox_life
+    from siggen.gearbox.configured import gearbox_life
 
     lives = [gearbox_life(config, i) for i in range(min(config.specimens, MOST_LIVES))]
 

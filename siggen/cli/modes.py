@@ -42,7 +42,7 @@ def modes(
 
     if out is not None:
         check_table_file(out)
-    from siggen.planning.specimen import draw_specimen
+    from siggen.gearbox.draw import draw_specimen
     from siggen.views.natural_modes import specimen_modes
 
     png = picture.place("modes")

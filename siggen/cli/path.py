@@ -53,7 +53,7 @@ def path(
 
     if out is not None:
         check_table_file(out)
-    from siggen.planning.specimen import draw_specimen
+    from siggen.gearbox.draw import draw_specimen
     from siggen.views.path_curves import path_curves
 
     png = picture.place("path")

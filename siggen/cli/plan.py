@@ -208,7 +208,7 @@ def _notes(config: Config) -> dict[str, Any]:
 
 def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> list[str]:
     """Return notes of all gear pairs, each once; where only some have it, with one of them and their number."""
-    from siggen.planning.gearbox import pair_configs
+    from siggen.gearbox.configured import pair_configs
 
     found: dict[str, list[int]] = {}
     for index, own in enumerate(pair_configs(config)):

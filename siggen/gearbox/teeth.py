@@ -55,7 +55,7 @@ Drawing: TypeAlias = Callable[[GearPair, Sequence[Rotor], int, str, float], Teet
 """Pair, its rotors, seed of its draws, what damage calls the mesh, turns of its pinion -> teeth of one gearbox."""
 
 
-def drawn_teeth(
+def draw_teeth(
     config: Config,
     specimen_id: int,
     bending: StiffnessOptions,

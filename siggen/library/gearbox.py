@@ -12,13 +12,14 @@ from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.config.planetary import RING
 from siggen.errors import UsageError
+from siggen.gearbox.configured import inspection_count
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
 from siggen.library.shape_fault import ShapeFault
 from siggen.names import ROLES, ShaftName
-from siggen.planning.gearbox import inspection_count
-from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.labels import gearbox_labels
 from siggen.sensing.inputs import Input
 from siggen.sensors.places import PLATE_OF

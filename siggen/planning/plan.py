@@ -14,7 +14,7 @@ from itertools import chain, pairwise
 from typing import overload
 
 from siggen.config import BLOCK, Config, Splits
-from siggen.planning.gearbox import inspection_count, pair_of
+from siggen.gearbox.configured import inspection_count, pair_of
 from siggen.seeding import Stage, generator
 from siggen.sensors.converter import FROM_NOISE
 from siggen.sensors.sensor import SensorBase

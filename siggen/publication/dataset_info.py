@@ -12,8 +12,8 @@ import pyarrow as pa
 
 from siggen.dataset.card import faults
 from siggen.faults.registry import HEALTHY
+from siggen.gearbox.lived import SEVERITIES
 from siggen.names import SEVERAL
-from siggen.planning.lived import SEVERITIES
 
 if TYPE_CHECKING:
     from siggen.config import Config

@@ -73,8 +73,8 @@ def _seldom_collected() -> Iterator[None]:
 
 
 def _run_teeth(config: Config) -> None:
-    from siggen.planning.gearbox import gearbox_config
-    from siggen.planning.specimen import draw_specimen
+    from siggen.gearbox.configured import gearbox_config
+    from siggen.gearbox.draw import draw_specimen
     from siggen.record.specimen_state import state_teeth
     from siggen.specimen.mesh_teeth import MeshTeeth
 
@@ -94,9 +94,9 @@ def _run_motion(config: Config) -> None:
     import numpy as np
 
     from siggen.dynamics.mesh.tooth_law import LINEAR
-    from siggen.planning.gearbox import gearbox_config
+    from siggen.gearbox.configured import gearbox_config
+    from siggen.gearbox.draw import draw_specimen
     from siggen.planning.plan import planned_record
-    from siggen.planning.specimen import draw_specimen
     from siggen.record.simulation import simulated
     from siggen.record.specimen_state import specimen_state
     from siggen.specimen.friction import mean_force_n

@@ -7,10 +7,10 @@ from functools import lru_cache
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
 from siggen.config import Config
 from siggen.faults.flank_place import DOT
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.part import Part, Parts
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
-from siggen.planning.state_config import state_config
 from siggen.specimen.bearing_spalls import drawn_labels
 from siggen.specimen.mesh_teeth import MeshTeeth
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from siggen.config import Config
-from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import Specimen, draw_specimen
-from siggen.planning.state_config import state_config
+from siggen.gearbox.configured import gearbox_config, state_config
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.record.labels import damage_labels
 from siggen.record.stage_labels import LARGEST
 from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth

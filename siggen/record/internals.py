@@ -11,10 +11,11 @@ from siggen.columns.record import channel_metadata, channels
 from siggen.config import Config
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.keys.column import Column
 from siggen.planning.plan import PlannedRecord, planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
-from siggen.planning.state_config import state_config
 from siggen.record.channels import measured_channels
 from siggen.record.quantities import internal_quantities, quantity_column
 from siggen.record.simulation import record_response

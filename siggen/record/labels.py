@@ -14,6 +14,7 @@ from siggen.columns.state_columns import (
 )
 from siggen.config import Config
 from siggen.dynamics.time.sampling import Sampling
+from siggen.gearbox.configured import pair_of
 from siggen.gearbox.specimen import DrawnState, OperatingPoint, Specimen
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.part import Parts, teeth_of
@@ -22,7 +23,6 @@ from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
 from siggen.names import ROLES, SEVERAL
-from siggen.planning.gearbox import pair_of
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS
 from siggen.specimen.static_mesh import StaticMesh

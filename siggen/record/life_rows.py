@@ -8,8 +8,8 @@ from dataclasses import asdict
 import numpy as np
 
 from siggen.config import Config
-from siggen.planning.gearbox import gearbox_life
-from siggen.planning.lived import Lived
+from siggen.gearbox.configured import gearbox_life
+from siggen.gearbox.lived import Lived
 
 Row = dict[str, object]
 RUNS = 200

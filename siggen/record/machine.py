@@ -12,9 +12,9 @@ from functools import lru_cache
 
 from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
-from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import Specimen, draw_specimen
-from siggen.planning.state_config import state_config
+from siggen.gearbox.configured import gearbox_config, state_config
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.record.labels import gearbox_labels
 from siggen.record.specimen_state import refused_as
 from siggen.record.stage_times import stage

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from siggen.config.planetary import RING
+from siggen.gearbox.specimen import Specimen
 from siggen.names import SEVERAL
-from siggen.planning.specimen import Specimen
 from siggen.record.stage_labels import ADDED, LARGEST, LOSS
 from siggen.specimen.static_mesh import StaticMesh
 

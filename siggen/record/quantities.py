@@ -11,9 +11,9 @@ from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
+from siggen.gearbox.specimen import Specimen
 from siggen.keys.column import Column
 from siggen.names import Names
-from siggen.planning.specimen import Specimen
 
 UNITS = {
     "_n_s_per_m": "N s/m", "_n_per_m": "N/m", "_nm": "N m", "_n": "N", "_m_s2": "m/s^2", "_m_s": "m/s", "_m": "m",

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from siggen.faults.flank_place import DOT
+from siggen.gearbox.specimen import Specimen
 from siggen.names import ROLES, SEVERAL
-from siggen.planning.specimen import Specimen
 from siggen.specimen.static_mesh import StaticMesh
 
 ADDED = ("damage_count", "damaged_area_mm2")

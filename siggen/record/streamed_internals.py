@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_force_name
 from siggen.dynamics.time.response_stream import Piece, Pieces, ResponseStream
-from siggen.planning.specimen import Specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.record.quantities import (
     TRANSMISSION_ERROR,
     approach_name,

@@ -169,7 +169,7 @@ def _sample(config: Config, meshes: int) -> Sample:
 
 def _pitted(config: Config) -> tuple[int, tuple[int, ...]]:
     """Return a gearbox that shows both whole and pitted teeth, and an inspection of each."""
-    from siggen.planning.gearbox import gearbox_life
+    from siggen.gearbox.configured import gearbox_life
 
     for specimen in range(min(config.specimens, LOOKED_THROUGH)):
         found = gearbox_life(config, specimen)

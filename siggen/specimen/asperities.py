@@ -9,8 +9,8 @@ from siggen.dynamics.friction.asperity_table import share_at
 from siggen.dynamics.friction.contact_kinematics import effective_modulus, relative_radius
 from siggen.dynamics.friction.reversal import slip_speed
 from siggen.dynamics.mesh.tooth_law import FlankFriction
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, mean_force_n, pitch_point
 
 

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from math import floor, pi
 
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.idler import idler_ahead_pitches
-from siggen.planning.specimen import Specimen
 
 
 def clocked_pitches(pairs: Sequence[GearPair], specimen: Specimen, uniform: Callable[[str], float]) -> Iterator[float]:

@@ -12,8 +12,8 @@ from siggen.dynamics.friction.lubrication import LubricatedMesh
 from siggen.dynamics.friction.oil import MINERAL_OILS
 from siggen.dynamics.friction.reversal import PitchPoint, slip_speed
 from siggen.dynamics.mesh.tooth_law import CONSTANT, OFF, FlankFriction
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.planning.specimen import OperatingPoint
 
 LARGEST_FORCE = 10.0
 """End of the table's load axis over the static mesh force; beyond it the coefficient stays."""

@@ -20,9 +20,9 @@ from siggen.dynamics.friction.friction import SLIP_SPEED_M_S
 from siggen.dynamics.mesh.tooth_law import CONSTANT, EXPONENTIAL, MIXED_EHL, ToothLaw
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.modes import natural_modes
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import MeshTables
-from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.asperities import FrictionTurn, friction_turn
 from siggen.specimen.motion import SpecimenMesh
 

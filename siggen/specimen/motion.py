@@ -20,6 +20,7 @@ from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.back_flanks import pitches_ahead
 from siggen.gears.geometry.face_shares import FaceShares
@@ -30,7 +31,6 @@ from siggen.gears.geometry.missing_material import (
     missing_material,
 )
 from siggen.gears.stiffness.mesh_tables import MeshTables
-from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import tip_relief
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh, specimen_friction

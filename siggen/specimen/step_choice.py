@@ -33,7 +33,7 @@ from siggen.dynamics.time.sampling import Sampling
 from siggen.dynamics.time.stretch import LEAD, Seen, Stretch, seen_stretch, state_at
 from siggen.dynamics.time.transient import DECAY_TIMES, forgotten
 from siggen.errors import SolverFailure
-from siggen.planning.specimen import OperatingPoint
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.sensors.quantity import STILL_M_S2
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid

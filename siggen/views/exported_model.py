@@ -25,9 +25,10 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.transient import both_settled_s, settling_steps
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import Specimen, draw_specimen
-from siggen.planning.state_config import state_config
 from siggen.record.simulation import at_point, state_drive
 from siggen.record.specimen_state import refused_as, specimen_state
 from siggen.sources import installed_version

@@ -14,6 +14,9 @@ from siggen.config import Config
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.errors import UsageError
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.contact.kind_row import KindRow, kind_row
 from siggen.gears.contact.loads_under_force import loads_under_force
 from siggen.gears.contact.slice_pressures import slice_pressures
@@ -23,8 +26,6 @@ from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
 from siggen.keys.problems import nearest
 from siggen.names import ROLES, MeshName
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
-from siggen.planning.state_config import state_config
 from siggen.record.internals import record_internals
 from siggen.record.specimen_state import SpecimenState, refused_as
 from siggen.specimen.contact import face_options

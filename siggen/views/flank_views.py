@@ -12,6 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.columns.record import damage_schema
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
@@ -22,7 +23,6 @@ from siggen.gears.stiffness.sections import union_area_m2
 from siggen.keys.problems import nearest
 from siggen.names import ROLES
 from siggen.planning.plan import record_ids_of
-from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.specimen.mesh_teeth import MeshTeeth
 

@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gearbox.configured import gearbox_config, state_config
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.names import ROLES
-from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import draw_specimen
-from siggen.planning.state_config import state_config
 from siggen.record.specimen_state import static_state
 from siggen.specimen.friction import light_force_n
 from siggen.specimen.mesh_teeth import MeshTeeth

@@ -11,12 +11,12 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.tooth_errors import MadeGear
 from siggen.gears.errors.gear_errors import profiles_m
 from siggen.gears.errors.helix import HELIX_POINTS
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.problems import nearest
-from siggen.planning.specimen import draw_specimen
 
 
 @dataclass(frozen=True, slots=True)

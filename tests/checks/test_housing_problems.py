@@ -12,10 +12,10 @@ from siggen.checks.loading import load_config
 from siggen.config import inherited, parse_yaml, yaml_text
 from siggen.dynamics.housing.layout import layout
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.housing_layout import specimen_layout
 from siggen.gearbox.housing_numbers import plate_numbers
 from siggen.gearbox.pair import gear_pair
-from siggen.planning.specimen import draw_specimen
 from siggen.rig.rig_answers import rig_of
 from siggen.rig.rig_text import rig_text
 from tests.config.minimal import minimal

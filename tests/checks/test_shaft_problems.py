@@ -15,8 +15,8 @@ from siggen.checks.tilt_problems import MEMBERS, NEEDED, flank_tilts, static_til
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config, Dynamics
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.keys.drawing import draw
-from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.seeding import Stage, named_uniforms
 from siggen.specimen.motion import specimen_motion

@@ -12,7 +12,7 @@ from siggen.checks.loading import load_config
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.time.equations import mesh_springs
 from siggen.errors import ConfigError, Problem
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.specimen.staged_structure import axis_places_m
 from siggen.specimen.structure import structure
 from tests.config.minimal import by_name

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.planning.gearbox import gearbox_life
+from siggen.gearbox.configured import gearbox_life
 from tests.config.minimal import minimal
 
 HISTORY = [[1.0, 60.0, 30.0], [0.5, 0.0, 0.0], [1.5, 42.0, 20.0]]

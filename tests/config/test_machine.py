@@ -11,7 +11,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import label_columns, label_names
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.specimen.structure import structure
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler

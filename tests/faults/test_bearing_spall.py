@@ -15,8 +15,8 @@ from siggen.checks.physical_problems import physical_problems
 from siggen.config import Config, parse
 from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state

@@ -11,8 +11,8 @@ from siggen.checks.quantity_names import available_quantities
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.chip import WholeChip
-from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.specimen_state import specimen_state
 from tests.faults.test_damage import config_with, damage_of

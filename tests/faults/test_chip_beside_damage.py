@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.chip import WholeChip
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.outlines import Polygon
@@ -13,7 +14,6 @@ from siggen.gears.damage.part_chip import PartChip, lost_outline
 from siggen.gears.damage.pit import FlankPit
 from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.stiffness.damage_summary import damage_summary
-from siggen.planning.specimen import draw_specimen
 from tests.faults.test_damage import PIT, config_with, damage_of
 from tests.gears.builders import pair_18_47
 

@@ -8,9 +8,9 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.crack import RootCrack
 from siggen.gears.geometry.root_chord import root_chord
-from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from tests.faults.test_damage import config_with, damage_of
 

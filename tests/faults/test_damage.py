@@ -11,10 +11,10 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.tooth_damage import Damage
-from siggen.planning.specimen import draw_specimen
 from siggen.specimen.mesh_teeth import all_teeth
 from tests.config.minimal import by_name
 

@@ -12,9 +12,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.heights import clipped_arc_m
 from siggen.gears.damage.irregular import IrregularSpall
-from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from tests.faults.test_damage import PIT, config_with, damage_of
 

@@ -9,9 +9,9 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.tooth_damage import on_teeth
 from siggen.gears.stiffness.sections import union_area_m2
-from siggen.planning.specimen import draw_specimen
 from siggen.specimen.mesh_teeth import all_teeth
 from tests.config.minimal import minimal
 

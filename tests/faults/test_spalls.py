@@ -10,10 +10,10 @@ import pytest
 
 from siggen.errors import ConfigError
 from siggen.faults.flank_place import axial_heights_m
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import profile_arc_m
 from siggen.gears.stiffness.sections import contact_length_loss
-from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from tests.faults.test_damage import config_with, damage_of
 

@@ -10,9 +10,9 @@ import pytest
 from diagnostics.indicators.record import record_values
 from siggen.columns.record import SimulatedRecord
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.wear import LABEL_POINTS, WornFlanks
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
-from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.specimen_state import specimen_state, state_teeth
 from siggen.specimen.mesh_teeth import all_teeth

@@ -68,6 +68,18 @@ def test_a_room_imports_only_from_rooms_before_it(package: str) -> None:
     assert not against, "\n".join(sorted(against))
 
 
+KNOW_THE_FILE = {"config", "rig", "gearbox", "cli"} | {
+    "checks", "columns", "dataset", "library", "planning", "publication", "record", "sets", "views",
+}  # fmt: skip
+"""Rooms that import the configuration; the second line is to become empty."""
+
+
+def test_what_moves_and_measures_knows_a_drawn_gearbox_and_no_file() -> None:
+    asking = {m for m, names in imported_by().items() if any(n.startswith("siggen.config") for n in names)}
+    rooms = {m.removeprefix("siggen.").split(".")[0] for m in asking if m.startswith("siggen.")}
+    assert rooms == KNOW_THE_FILE
+
+
 @pytest.mark.parametrize("package", ROOMS)
 def test_no_modules_import_each_other_in_a_circle(package: str) -> None:
     paths = TREE[package]

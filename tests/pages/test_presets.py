@@ -19,7 +19,7 @@ from siggen.config import Config
 from siggen.config.inheritance import inherited
 from siggen.config.state_keys import complete_states
 from siggen.config.yaml_source import read_yaml
-from siggen.planning.gearbox import pair_of
+from siggen.gearbox.configured import pair_of
 from siggen.planning.plan import SPLITS, split_of
 from siggen.sets.verification import verify
 from tests.simulated import simulate

@@ -8,9 +8,9 @@ from math import gcd
 import pytest
 
 from siggen.config import parse
-from siggen.planning.gearbox import gearbox_config, pair_of
+from siggen.gearbox.configured import gearbox_config, pair_of
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import SPLITS, specimen_count, split_of
-from siggen.planning.specimen import draw_specimen
 from tests.config.minimal import by_name, config, minimal
 
 RANGES = {

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.gearbox.pair import gear_pair
 from siggen.gearbox.tooth_law import tooth_law
-from siggen.planning.specimen import draw_operating_point, draw_specimen
 from tests.config.minimal import config
 
 SPREAD = {

@@ -8,7 +8,8 @@ import pytest
 
 from siggen.config import Config, parse
 from siggen.config.stages import hunting_turns
-from siggen.planning.specimen import OperatingPoint, draw_specimen
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.specimen.mesh_teeth import all_teeth
 from tests.config.minimal import by_name
 from tests.config.staged import SPALL, staged

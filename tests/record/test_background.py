@@ -16,9 +16,10 @@ from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
 from siggen.gearbox.background import BearingLevels, RubbingLevels, drawn_background
 from siggen.gearbox.background_numbers import BaseNumbers
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.housing import Block
+from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.record.background import BackgroundBlocks
 from siggen.record.background_course import Course, course_at
 from siggen.record.bearing_noise import velocity_density

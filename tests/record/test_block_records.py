@@ -14,8 +14,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.gearbox.background_numbers import BaseNumbers, BurstNumbers
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.sensing.block_filter import AHEAD

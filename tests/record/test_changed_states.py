@@ -10,8 +10,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.planning.specimen import draw_specimen
-from siggen.planning.state_config import state_config
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 

@@ -13,8 +13,8 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import parse, parse_yaml
 from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.internals import internals_table, stored_quantities
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response

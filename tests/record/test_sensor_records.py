@@ -11,10 +11,10 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing

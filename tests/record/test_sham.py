@@ -11,7 +11,7 @@ from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.faults.registry import BY_WORD
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.record.simulation import damage_rows
 from siggen.record.specimen_state import specimen_state
 from tests.config.minimal import by_name, minimal

@@ -8,7 +8,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
-from siggen.planning.gearbox import pair_config, pair_of
+from siggen.gearbox.configured import pair_config, pair_of
 from siggen.record.damage_rows import damage_rows
 from siggen.record.internals import internals_table
 from siggen.record.simulation import simulate_specimen

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.checks.loading import load_config
+from siggen.gearbox.configured import gearbox_config
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.contact import contact_table
 from siggen.gears.damage import flank_damage, irregular, outlines
 from siggen.gears.stiffness import compliance
-from siggen.planning.gearbox import gearbox_config
-from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import StateTeeth, state_teeth
 from siggen.specimen import contact
 from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth

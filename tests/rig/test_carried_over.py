@@ -10,9 +10,9 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import Config, inherited, parse_yaml
 from siggen.config.pairs import Pair
+from siggen.gearbox.configured import pair_config
 from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.planning.gearbox import pair_config
 from siggen.rig.rig import Rig
 from siggen.rig.rig_text import rig_text
 from tests.config.minimal import config as minimal

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
-from siggen.planning.state_config import state_config
+from siggen.gearbox.configured import state_config
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.converter import MOST_BITS, bits_of_noise
 from tests.config.minimal import by_name, minimal

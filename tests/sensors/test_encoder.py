@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.sensors.runs import GEAR_RATIO, line, loaded, problems, record

@@ -12,7 +12,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, channels
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.specimen.staged_structure import axis_places_m
 from tests.config.minimal import by_name
 from tests.config.staged import SLOW, staged

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from tests.sensors.runs import loaded, problems, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION

@@ -16,9 +16,9 @@ from diagnostics.records.record_classes import set_classes
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
-from siggen.planning.gearbox import gearbox_life
+from siggen.gearbox.configured import gearbox_life
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import plan
-from siggen.planning.specimen import draw_specimen
 from siggen.publication.dataset_info import class_names
 from siggen.sets.extension import extend
 from tests.config.minimal import by_name, minimal

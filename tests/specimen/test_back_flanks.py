@@ -8,7 +8,8 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.config import Config, parse
 from siggen.dynamics.structure.drivetrain import Modes
-from siggen.planning.specimen import OperatingPoint, draw_specimen
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.motion import specimen_motion
 from siggen.specimen.structure import specimen_body

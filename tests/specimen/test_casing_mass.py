@@ -10,8 +10,8 @@ from siggen.config import Config
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.housing import Block
-from siggen.planning.specimen import draw_specimen
 from siggen.specimen.structure import structure
 from tests.config.minimal import by_name, minimal
 

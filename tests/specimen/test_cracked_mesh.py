@@ -10,7 +10,7 @@ import pytest
 
 from siggen.dynamics.mesh.pair_forces import static_approach_m
 from siggen.dynamics.mesh.static_stiffness import secant_stiffness_n_per_m
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from tests.faults.test_damage import config_with
 

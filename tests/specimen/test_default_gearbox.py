@@ -6,7 +6,7 @@ import numpy as np
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.record.internals import internals_table
 from siggen.views.natural_modes import specimen_modes
 from tests.config.minimal import minimal

@@ -11,8 +11,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.dynamics.drive.drive import Drive
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import simulate_specimen
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.structure import structure

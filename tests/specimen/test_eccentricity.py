@@ -8,9 +8,9 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.tooth_errors import SpecimenErrors
-from siggen.planning.specimen import draw_specimen
-from siggen.planning.state_config import state_config
 from tests.config.minimal import by_name
 from tests.sensors.runs import loaded, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config, parse
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.tooth_errors import SpecimenErrors
-from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from tests.simulated import simulate
 

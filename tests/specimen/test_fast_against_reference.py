@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 import siggen
 from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.sets.precision import record_error, reference_config, unrounded
 from siggen.specimen.drive import record_drive

@@ -11,8 +11,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, label_names
 from siggen.config import Config
 from siggen.gearbox import flank_waves
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.flank_waves import CLAMPING, SpecimenWaves
-from siggen.planning.specimen import draw_specimen
 from tests.simulated import simulate
 
 

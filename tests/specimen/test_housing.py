@@ -15,10 +15,10 @@ from siggen.dynamics.structure.gear_stage import Base
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.makers import on_base
 from siggen.dynamics.structure.structure import Structure
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.housing import Plates
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
-from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import MOTION
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.instrument import specimen_instrument

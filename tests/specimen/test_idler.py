@@ -13,8 +13,9 @@ from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.errors.gear_errors import eccentric_m
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from siggen.specimen.motion import SpecimenMesh, specimen_motion

@@ -9,9 +9,9 @@ import pytest
 
 import siggen
 from siggen.checks.loading import load_config
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
-from siggen.planning.specimen import draw_specimen
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.accelerometer import Accelerometer
 from siggen.specimen.instrument import ChannelInstrument, channel_ways, settle_s

@@ -12,7 +12,8 @@ from siggen.checks.shaft_notes import shaft_notes
 from siggen.config import Config
 from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
-from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.specimen import OperatingPoint
 from siggen.specimen.bearing_spalls import mean_force_n
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 from siggen.specimen.structure import specimen_bearings, structure

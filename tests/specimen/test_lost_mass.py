@@ -10,12 +10,12 @@ import pytest
 from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.external_forces import turning_sense
 from siggen.dynamics.structure.structure import Structure
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.chip import WholeChip, tooth_height_m
 from siggen.gears.damage.lost_mass import STEEL_KG_M3, lost_moment_kg_m
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.part_chip import PartChip, lost_outline
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.planning.specimen import draw_specimen
 from siggen.specimen.lost_mass import lost_mass_sources
 from siggen.specimen.structure import structure
 from tests.faults.test_damage import config_with

@@ -17,10 +17,10 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, parse_yaml, yaml_text
 from siggen.dataset.card_making import making
 from siggen.errors import ConfigError
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.config.minimal import by_name, minimal

@@ -12,7 +12,7 @@ from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.config import Config, parse, parse_yaml, yaml_text
 from siggen.errors import ConfigError
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate

@@ -16,7 +16,8 @@ from siggen.checks.loading import load_config
 from siggen.dynamics.structure.forced_motion import forced_motion
 from siggen.dynamics.structure.makers import SEATS_OF_SET, planetary_train
 from siggen.dynamics.structure.structure import Structure
-from siggen.planning.specimen import Specimen, draw_specimen
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.sensing.inputs import MOTION, Input
 from siggen.specimen.background import AXES, EVEN, mean_meshes, mesh_directions
 from siggen.specimen.forced_ways import ChannelWay

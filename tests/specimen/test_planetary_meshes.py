@@ -11,9 +11,10 @@ from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.columns.planetary_columns import manufacture_of_others
 from siggen.columns.record import label_names
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.errors.gear_errors import eccentric_m
 from siggen.gears.geometry.internal_pair import ring_begins_pitches
-from siggen.planning.specimen import Specimen, draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from tests.config.planets import planets

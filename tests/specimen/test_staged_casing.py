@@ -16,7 +16,7 @@ from siggen.dynamics.structure.makers import GROUND
 from siggen.dynamics.structure.structure import Structure, matrices
 from siggen.dynamics.time.equations import mesh_springs
 from siggen.dynamics.time.modes import natural_modes
-from siggen.planning.specimen import draw_specimen
+from siggen.gearbox.draw import draw_specimen
 from siggen.specimen.staged_structure import axis_places_m
 from siggen.specimen.structure import specimen_body, structure
 from tests.config.staged import SLOW, staged

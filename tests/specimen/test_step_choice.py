@@ -13,8 +13,8 @@ import siggen
 from siggen.config import Config
 from siggen.dynamics.time.response import SampleGrid, Wanted, response_of
 from siggen.dynamics.time.transient import DECAY_TIMES, TRANSIENT_CAP_S, forgotten
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen import step_choice
 from siggen.specimen.drive import RecordDrive, record_drive

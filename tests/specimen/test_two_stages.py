@@ -23,9 +23,10 @@ from siggen.dynamics.drive.external_forces import Unbalance, shaft_mass
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad

@@ -10,12 +10,12 @@ import pytest
 
 from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
 from siggen.dynamics.mesh.static_stiffness import static_approaches_m
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.flank_loss import with_losses
 from siggen.gears.damage.wear import POINTS, Worn, WornFlanks, worn_until
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.planning.specimen import draw_specimen
 from siggen.specimen.contact import RELIEF_LENGTH, tooth_tables
 from siggen.specimen.motion import teeth_missing
 from siggen.specimen.worn_loads import load_at_rest

@@ -19,9 +19,9 @@ from siggen.cli.app import app
 from siggen.config import by_reference
 from siggen.dynamics.time.equations import no_inputs
 from siggen.errors import UsageError
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.planning.state_config import state_config
 from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive

@@ -15,8 +15,8 @@ from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import by_reference
 from siggen.dynamics.time.equations import no_inputs
+from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import exported_model

@@ -11,9 +11,9 @@ from siggen.checks.loading import load_config
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gearbox.draw import draw_specimen
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.dynamics.casing_stage import make_structure

@@ -13,19 +13,19 @@ from siggen.config.stages import Stage, turned, with_idlers
 from siggen.dynamics.time.sampling import Sampling
 from siggen.gearbox.background import drawn_background
 from siggen.gearbox.channels import drawn_channels
+from siggen.gearbox.configured import gearbox_config
 from siggen.gearbox.drive import drawn_unbalance, drawn_variation
 from siggen.gearbox.housing import drawn_housing
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gearbox.planetary import planetary_stage, planetary_teeth
 from siggen.gearbox.specimen import DrawnState, OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
-from siggen.gearbox.teeth import Drawing, drawn_teeth, mesh_seed, on_one_body
+from siggen.gearbox.teeth import Drawing, draw_teeth, mesh_seed, on_one_body
 from siggen.gearbox.tooth_law import tooth_law
 from siggen.gearbox.train import ball_bearings, bending_shafts, gear_stage, next_stages
 from siggen.gears.geometry.idler import idler_later_rad
 from siggen.gears.geometry.internal_pair import ring_round
 from siggen.keys.drawing import draw
 from siggen.keys.number import at, constant
-from siggen.planning.gearbox import gearbox_config
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_generator, named_uniforms
 
@@ -50,7 +50,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     dynamics = draw(own.dynamics, supports, "dynamics")
     stages = tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages)))
     section = None if own.planetary is None else draw(own.planetary, supports, "planetary")
-    drawing, rotors = partial(drawn_teeth, own, specimen_id, stiffness_options(stiffness)), _rotors(own.dynamics)
+    drawing, rotors = partial(draw_teeth, own, specimen_id, stiffness_options(stiffness)), _rotors(own.dynamics)
     planets = None
     if section is None:
         meshes = tuple(_meshes(first, rotors, stages, own.seed, drawing))

@@ -1,0 +1,165 @@
+"""The configuration of one gearbox, and of one of its states, as if a user had written a file for it alone.
+
+What is drawn as a whole (pair, damaged gear, its teeth, oil) stands in its place, and so do the keys that a state
+changes. So nothing behind it knows of sets with many pairs or of changes, and each number takes the uniform that it has
+in the healthy gearbox.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache, partial
+from typing import Any
+
+from siggen.config import Config, StateSection
+from siggen.config.changes import changed_sections
+from siggen.config.oil import oils_of
+from siggen.faults.fault import Fault
+from siggen.gearbox.lived import Lived, lived, lived_states
+from siggen.keys.distributions import Choice
+from siggen.keys.teeth import drawn_teeth, most_teeth
+from siggen.rig.carried_over import carried_over
+from siggen.seeding import Stage, generator, named_uniforms
+
+
+def gearbox_config(config: Config, specimen_id: int) -> Config:
+    """Return the configuration of one gearbox; depends on configuration and index alone, and is itself its own."""
+    return _drawn(config, specimen_id) if config.life is None else _inspected(config, specimen_id)
+
+
+def _drawn(config: Config, specimen_id: int) -> Config:
+    index = pair_of(config, specimen_id)
+    return with_drawn_parts(config if index is None else pair_config(config, index), specimen_id)
+
+
+@lru_cache(maxsize=16)
+def _inspected(config: Config, specimen_id: int) -> Config:
+    """Return the configuration of a gearbox whose inspections are states, as if a user had listed all outlines."""
+    assert config.life is not None
+    states = lived_states(config.life, gearbox_life(config, specimen_id))
+    return _drawn(config, specimen_id).model_copy(update={"life": None, "states": states})
+
+
+@lru_cache(maxsize=1024)
+def gearbox_life(config: Config, specimen_id: int) -> Lived:
+    """Return the life of a gearbox of a set with a section `life`."""
+    return lived(_drawn(config, specimen_id), config.gears, specimen_id)
+
+
+def inspection_count(config: Config, specimen_id: int) -> int:
+    """Return how many states a gearbox has: all, or with `life` as many inspections as it lives to see."""
+    return config.state_count if config.life is None else len(gearbox_life(config, specimen_id).ages_h)
+
+
+@lru_cache(maxsize=64)
+def pair_config(config: Config, index: int) -> Config:
+    """Return the configuration of the gearboxes with one of the pairs of `gears.pairs`."""
+    sections: dict[str, Any] = {name: getattr(config, name) for name in type(config).model_fields}
+    return config.model_copy(update=carried_over(sections, config.gears.pairs[index]))
+
+
+def pair_configs(config: Config) -> Iterator[Config]:
+    """Yield the configuration of each pair of a set; the configuration itself where it has one pair."""
+    if not config.gears.pairs:
+        yield config
+    yield from (pair_config(config, index) for index in range(len(config.gears.pairs)))
+
+
+def pair_of(config: Config, specimen_id: int) -> int | None:
+    """Return the index in `gears.pairs` of a gearbox's pair, or None without pairs.
+
+    Every pair occurs once in every block of as many gearboxes, in an order that is drawn for the block.
+    """
+    count = len(config.gears.pairs)
+    if not count:
+        return None
+    block, place = divmod(specimen_id, count)
+    return _order(config.seed, count, block)[place]
+
+
+@lru_cache(maxsize=256)
+def _order(seed: int, count: int, block: int) -> tuple[int, ...]:
+    return tuple(generator(seed, Stage.PAIR_ORDER, block).permutation(count).tolist())
+
+
+def with_drawn_parts(config: Config, specimen_id: int) -> Config:
+    """Return a configuration in which one gearbox's damaged gear, number of teeth and oil are given."""
+    if not has_drawn_parts(config):
+        return config
+    teeth = named_uniforms(config.seed, Stage.DAMAGED_TEETH, specimen_id)
+    oils = oils_of(config.dynamics.friction.oil)
+    supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
+    oil = oils[int(supports("dynamics.friction.oil") * len(oils))]
+    return _with_oil(_with_damage(config, _drawn_hit(teeth)), oil)
+
+
+def has_drawn_parts(config: Config) -> bool:
+    """Tell whether gearboxes differ in what `with_drawn_parts` gives."""
+    return isinstance(config.dynamics.friction.oil, tuple) or any(
+        _gear(one) == "either" or isinstance(getattr(one, "teeth", None), Choice)
+        for state in config.states
+        for one in state.damages
+    )
+
+
+def possible_states(states: Mapping[str, StateSection]) -> Iterator[dict[str, StateSection]]:
+    """Yield the states with each gear that may be damaged, at most of its teeth: what checks look at."""
+    either = any(_gear(one) == "either" for state in states.values() for one in state.damages)
+    for gear in ("pinion", "gear") if either else ("pinion",):
+        hit = partial(_most_hit, gear)
+        yield {index: _state_hit(state, hit) for index, state in states.items()}
+
+
+Hit = Callable[[Any], dict[str, object]]
+"""Damage of a state -> its gear and teeth."""
+
+
+def _drawn_hit(uniform: Callable[[str], float]) -> Hit:
+    gear, u = ("pinion", "gear")[int(2.0 * uniform("gear"))], uniform("teeth")
+    return lambda damage: _hit(damage, gear, drawn_teeth(damage.teeth, u))
+
+
+def _most_hit(gear: str, damage: Any) -> dict[str, object]:
+    return _hit(damage, gear, most_teeth(damage.teeth))
+
+
+def _hit(damage: Any, gear: str, teeth: int | tuple[int, ...]) -> dict[str, object]:
+    return {"gear": gear if damage.gear == "either" else damage.gear, "teeth": teeth}
+
+
+def _gear(damage: Fault) -> str | None:
+    return getattr(damage, "gear", None)
+
+
+def _with_damage(config: Config, hit: Hit) -> Config:
+    return config.model_copy(update={"states": tuple(_state_hit(state, hit) for state in config.states)})
+
+
+def _state_hit(state: StateSection, hit: Hit) -> StateSection:
+    hits = (one if _gear(one) is None else one.model_copy(update=hit(one)) for one in state.damages)
+    return state.with_damages(tuple(hits))
+
+
+def _with_oil(config: Config, oil: str) -> Config:
+    friction = config.dynamics.friction.model_copy(update={"oil": oil})
+    return config.model_copy(update={"dynamics": config.dynamics.model_copy(update={"friction": friction})})
+
+
+def state_config(config: Config, specimen_id: int, state_id: int) -> Config:
+    """Return the configuration of a gearbox in a state, itself its own; that of the gearbox where nothing changes.
+
+    A change that is drawn belongs to gearbox and state; what a state keeps of a milder one keeps its draw.
+    """
+    own = gearbox_config(config, specimen_id)
+    changes = own.changes_of(state_id)
+    if not changes:
+        return own
+    drawn = [
+        one.drawn(named_uniforms(own.seed, Stage.DAMAGE, specimen_id, origin), own.states[origin].name)
+        for origin, one in changes
+    ]
+    sections = {name: getattr(own, name) for name in type(own).model_fields}
+    # the converter is that of all states, whatever becomes of the noise: its step must not tell the state
+    sections["sensors"] = tuple(one.model_copy(update={"bits": one.converter_bits}) for one in own.sensors)
+    states = tuple(state.model_copy(update={"changes": ()}) for state in own.states)
+    return own.model_copy(update={**changed_sections(sections, drawn), "states": states})
