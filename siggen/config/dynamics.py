@@ -151,7 +151,7 @@ class Dynamics(Section):
     )
     rated_torque_nm: Annotated[float | None, Field(gt=0, le=1e6), RATED_TEXT] = Field(
         default=None,
-        description="of the pinion's shaft: masses, inertias, bearings, couplings, and shafts if there are any, follow "
+        description="of the first shaft: masses, inertias, bearings, couplings, and shafts if there are any, follow "
         "from it where they are not given, by the rules of `siggen init`, and take the place of those of a file that "
         "is extended; null: their own defaults",
     )

@@ -25,7 +25,7 @@ MAKES_RECORDS = (
         "faults/**/*.py",
     ),
     *("noise/**/*.py", "sensors/**/*.py", "life/**/*.py", "config/**/*.py", "rig/**/*.py"),
-    *("planning/**/*.py", "checks/quantity_names.py"),
+    *("gearbox/**/*.py", "planning/**/*.py", "checks/quantity_names.py"),
     *("gears/**/*.py", "dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py"),
     *("columns/**/*.py", "record/**/*.py"),
     "dataset/chunk.py",

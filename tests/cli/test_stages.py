@@ -147,7 +147,7 @@ def test_a_stage_is_looked_at_by_its_name(tmp_path: Path, made: Path) -> None:
     done = run("inspect", "flank", file, "--stage", "slow", "--out", str(table))
     assert done.returncode == 0, done.stderr
     (row,) = pc.read_csv(table).to_pylist()
-    assert row["gear"] == "pinion"
+    assert row["gear"] == "slow.pinion"
     told = run("inspect", "flank", file, "--stage", "fast", "--out", str(table)).stderr
     assert "allowed: slow" in told
     curves = tmp_path / "tvms.csv"

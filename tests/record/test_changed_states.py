@@ -71,19 +71,20 @@ def test_a_patch_is_the_set_whose_healthy_gearbox_has_these_numbers() -> None:
 def test_factor_and_shift_act_on_what_the_healthy_gearbox_drew() -> None:
     chosen = config(changed({"dynamics.mesh_damping_ratio": {"times": 2}, "dynamics.backlash_um": {"add": 40}}))
     for gearbox in range(2):
-        healthy = draw_specimen(chosen, gearbox).dynamics
-        own = draw_specimen(state_config(chosen, gearbox, 1), gearbox).dynamics
-        assert own.mesh_damping_ratio == 2.0 * healthy.mesh_damping_ratio
-        assert own.backlash_um == healthy.backlash_um + 40.0
+        healthy = draw_specimen(chosen, gearbox).law
+        own = draw_specimen(state_config(chosen, gearbox, 1), gearbox).law
+        assert own.damping_ratio == 2.0 * healthy.damping_ratio
+        assert own.backlash_m == pytest.approx(healthy.backlash_m + 40e-6, rel=1e-12)
 
 
 def test_a_drawn_change_belongs_to_gearbox_and_state_and_stays_while_it_grows() -> None:
     wide = {"dynamics.backlash_um": {"add": [10, 200]}}
     worse = {"name": "worse", "fault": "lubrication", "severity": "severe", "grows": "hot"}
     chosen = config(changed(wide), {**worse, "changes": {"dynamics.motor_inertia_kg_m2": {"times": 2}}})
-    drawn = [[draw_specimen(state_config(chosen, g, s), g).dynamics for s in range(3)] for g in range(2)]
-    assert drawn[0][1].backlash_um == drawn[0][2].backlash_um != drawn[1][1].backlash_um
-    assert drawn[0][2].motor_inertia_kg_m2 == 2.0 * drawn[0][0].motor_inertia_kg_m2
+    drawn = [[draw_specimen(state_config(chosen, g, s), g) for s in range(3)] for g in range(2)]
+    assert drawn[0][1].law.backlash_m == drawn[0][2].law.backlash_m != drawn[1][1].law.backlash_m
+    healthy, heavy = (drawn[0][s].train.first.motor_inertia_kg_m2 for s in (0, 2))  # type: ignore[union-attr]
+    assert heavy == 2.0 * healthy
     assert [one.path for _, one in chosen.changes_of(2)] == ["dynamics.backlash_um", "dynamics.motor_inertia_kg_m2"]
 
 

@@ -77,7 +77,7 @@ def test_the_choice_is_named_with_the_others_beside_it_and_a_network_of_few_gear
     found = said(**{INDICATOR: indicator, CLASSIFIER: detector(0.8, 4.0), NETWORKS: network})
     assert found["By what"] == (
         "Each group of gearboxes is judged by the detector that is best on the others (nested cross-validation): "
-        "always the best single indicator (RMS at side 1, axial). AUC 0.90 (0.80 to 1.00) for all damage together; 0.5 "
+        "always the best single indicator (RMS at side_1_axial). AUC 0.90 (0.80 to 1.00) for all damage together; 0.5 "
         "is chance. Each alone: logistic regression 0.80 (0.70 to 0.90), 1-D network 1.00 (0.90 to 1.10) on 5 test "
         "gearboxes alone."
     )
