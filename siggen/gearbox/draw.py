@@ -29,8 +29,6 @@ from siggen.keys.number import at, constant
 from siggen.seeding import Stage as Consumer
 from siggen.seeding import named_generator, named_uniforms
 
-__all__ = ["OperatingPoint", "Specimen", "draw_operating_point", "draw_specimen"]
-
 
 def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     """Return a specimen; depends on the seed, the sections it is drawn from and its index alone.

@@ -171,10 +171,8 @@ def _mesh_state(specimen: Specimen, teeth: MeshTeeth, state_id: int, assembled: 
             teeth.shares(state_id), sham=specimen.states[state_id].sham,
         )  # fmt: skip
         if specimen.planets is None:  # which carries no torque below 0
-            before, loads = (
-                teeth.missing_before_chips(state_id),
-                (teeth.teeth.largest_force_n, lead_of(of_state.errors)),
-            )
+            loads = teeth.teeth.largest_force_n, lead_of(of_state.errors)
+            before = teeth.missing_before_chips(state_id)
             mesh = with_back_flanks(mesh, specimen.law, of_state.options, *loads, before, parts)
     return SpecimenState(pair, of_state.options, of_state.damage, mesh, labels, static, parts)
 
