@@ -65,11 +65,11 @@ REFUSED = (
     ("helical", "gears.pressure_angle_deg=60"),
     ("two_stage", "housing.bolts.positions_mm=[[0, 0]]"),
     ("two_stage", "states.slight.damage.gear=third"),
-    ("two_stage", "stages.0.direction_deg=1000"),
+    ("two_stage", "machine.meshes.1.direction_deg=1000"),
     ("planetary", "planetary.positions_deg=[0, 10, 20]"),
     ("planetary", "planetary.ring_teeth=79"),
     ("planetary", "states.sun_slight.damage.gear=slow.pinion"),
-    ("kinds", "sensors.te.gear_encoder=none"),
+    ("kinds", "sensors.te.driven_encoder=none"),
     ("kinds", "states.bearing_spall.damage.bearing=motor_bearing"),
 )
 """Preset and override whose message is kept word for word."""

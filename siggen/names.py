@@ -7,10 +7,10 @@ leaves the program, such as columns, places and messages, is composed of these n
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 from siggen.errors import Problem
 
@@ -20,12 +20,6 @@ Value = TypeVar("Value")
 DRIVER, DRIVEN, EITHER, SEVERAL = "pinion", "gear", "either", "several"
 ROLES = (DRIVER, DRIVEN)
 """What the gears of a mesh are to each other: the one that drives, and the one that is driven."""
-KEYS: Table = (
-    ("pinion", "driver"), ("gear", "driven"), ("pinion_depth", "driver_depth"), ("gear_depth", "driven_depth"),
-    ("pinion_encoder", "driver_encoder"), ("gear_encoder", "driven_encoder"),
-    ("accuracy_class_gear", "accuracy_class_driven"), ("crowning_gear_um", "crowning_driven_um"),
-)  # fmt: skip
-"""Keys of sections and those of a file with a `machine`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,8 +172,7 @@ class Names:
         """Return a problem at the key that the user wrote."""
         if not self.given:
             return problem
-        path, keys = self.own_path(problem.path), {inner: own for inner, own in KEYS if inner not in ROLES}
-        path = ".".join(keys.get(part, part) for part in path.split("."))
+        path = self.own_path(problem.path)
         before, changes, below = path.partition(".changes.")
         return replace(problem, path=f"{before}{changes}{self.own_path(below)}" if changes else path)
 
@@ -198,25 +191,6 @@ PLANETARY = Names(
     (ShaftName(DRIVER, "sun", "the sun's shaft"), ShaftName(DRIVEN, "carrier", "the carrier's shaft")),
 )
 """Of a planetary set, whose first mesh is that of the sun with its first planet."""
-
-
-@cache
-def of_stages(*stages: str) -> Names:
-    """Return the names of a pair with stages behind it, whose gears are STAGE.pinion and STAGE.gear."""
-    behind = []
-    for stage in stages:
-        gears = ((f"{stage}.{role}", f"{stage}_{role}") for role in ROLES)
-        behind.append(MeshName(stage, stage, *(GearName(name, name, body, name) for name, body in gears)))
-    shafts = (ShaftName(stage, stage, f"the shaft of {stage}.{DRIVEN}") for stage in stages)
-    return replace(PAIR, meshes=(*PAIR.meshes, *behind), shafts=(*PAIR.shafts, *shafts))
-
-
-def renamed_keys(value: Any, *, own: bool) -> Any:
-    """Return mappings and lists with the keys of the other form: the user's `own`, or those of sections."""
-    table = dict(KEYS) if own else {to: key for key, to in KEYS}
-    if isinstance(value, Mapping):
-        return {table.get(key, key): renamed_keys(item, own=own) for key, item in value.items()}
-    return [renamed_keys(item, own=own) for item in value] if isinstance(value, (list, tuple)) else value
 
 
 def _in(mesh: str, gear: str) -> str:

@@ -22,6 +22,8 @@ from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
 FACTS = "calibration.json"
+DEPTHS = "driver_depth", "driven_depth"
+"""Keys of `noise_spectrum.modulation` for the first two shafts."""
 
 
 def data_folder(out: Path) -> Path:
@@ -108,7 +110,7 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         "  others: null",
     ]
     for channel, (name, axis) in zip(found.channels, sensor_axes(found), strict=True):
-        lines += _sensor(channel, (name, axis), data_folder(out).name, found.rig.depth_keys)
+        lines += _sensor(channel, (name, axis), data_folder(out).name)
     return "\n".join(lines) + "\n"
 
 
@@ -118,7 +120,7 @@ def _manufacture(config: dict[str, Any]) -> Iterable[str]:
         yield "manufacture: {flank_waves: 'off'}    # among the lines of the recordings"
 
 
-def _sensor(channel: ChannelFit, called: tuple[str, str], folder: str, depth_keys: tuple[str, str]) -> Iterable[str]:
+def _sensor(channel: ChannelFit, called: tuple[str, str], folder: str) -> Iterable[str]:
     (name, axis), noise, sensor = called, channel.noise, channel.sensor
     yield f"  {name}:                # column or channel {channel.name}"
     yield "    place: casing"
@@ -132,7 +134,7 @@ def _sensor(channel: ChannelFit, called: tuple[str, str], folder: str, depth_key
     yield f"    noise_spectrum:             # {level.value:.1f} dB re 1 (m/s2)2 in all, {_interval(level)}"
     yield f"      file: {folder}/noise_{name}.csv"
     yield f"      factor: {_range(1.0 / ratio, ratio, log=True)}"
-    depths = dict(zip(depth_keys, noise.depths, strict=True)) | {"level_std": noise.level_std}
+    depths = dict(zip(DEPTHS, noise.depths, strict=True)) | {"level_std": noise.level_std}
     inner = ", ".join(f"{key}: {_depth(value)}" for key, value in depths.items())
     yield f"      modulation: {{{inner}}}"
     if table := _lines(channel):
@@ -166,7 +168,7 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
                     if np.isfinite(level.value)
                 },
                 "noise_level_db": _fact(channel.noise.level_db),
-                **dict(zip(found.rig.depth_keys, map(_fact, channel.noise.depths), strict=True)),
+                **dict(zip(DEPTHS, map(_fact, channel.noise.depths), strict=True)),
                 "level_std": _fact(channel.noise.level_std),
                 "lines_beside_the_mesh": len(channel.own),
                 "second_stage_level_db": {one.name: _fact(one.level_db) for one in channel.stage},

@@ -34,7 +34,7 @@ class Shaft:
 
 @dataclass(frozen=True, slots=True)
 class MeshOrder:
-    """One mesh: name, empty for the first of the short form, order, and the shafts of its driver and driven gear."""
+    """One mesh: name, empty for that of a pair, order, and the shafts of its driver and driven gear."""
 
     name: str
     order: float

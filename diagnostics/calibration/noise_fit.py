@@ -81,7 +81,7 @@ class NoiseFit:
     spread_db : float
         Half the range in which a record's level is drawn: at least LEAST_SPREAD_DB, and UNKNOWN_SPREAD_DB from fewer
         than three recordings.
-    pinion_depth, gear_depth, level_std : Fitted
+    driver_depth, driven_depth, level_std : Fitted
         As keys of `noise_spectrum.modulation`.
     """
 
@@ -89,14 +89,14 @@ class NoiseFit:
     density: np.ndarray
     level_db: Fitted
     spread_db: float
-    pinion_depth: Fitted
-    gear_depth: Fitted
+    driver_depth: Fitted
+    driven_depth: Fitted
     level_std: Fitted
 
     @property
     def depths(self) -> tuple[Fitted, Fitted]:
         """How deep the first and the second shaft modulate it."""
-        return self.pinion_depth, self.gear_depth
+        return self.driver_depth, self.driven_depth
 
 
 def noise_fit(

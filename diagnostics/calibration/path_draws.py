@@ -44,7 +44,7 @@ def housing_mass_kg(config: Mapping[str, Any]) -> Any:
     """
     if (given := (config.get("housing") or {}).get("mass_kg")) is not None:
         return given
-    if "gears" not in config or config.get("stages"):
+    if "gears" not in config:
         return None
     gears = config["gears"]
     teeth = gears["pinion"]["teeth"] + gears["gear"]["teeth"]

@@ -59,11 +59,6 @@ class Rig:
         return tuple(f"{name}_{axis}" for name, sensor in self.sensors.items() for axis in sensor["axes"])
 
     @property
-    def depth_keys(self) -> tuple[str, str]:
-        """Keys of `noise_spectrum.modulation` for its first two shafts."""
-        return ("driver_depth", "driven_depth") if self.config.get("machine") else ("pinion_depth", "gear_depth")
-
-    @property
     def shows_other_stages(self) -> bool:
         """Whether a comb of lines tells a stage that it does not list: tried on single spur pairs alone.
 

@@ -44,7 +44,7 @@ class GearOptions:
         typer.Option(
             "--config",
             metavar="YAML",
-            help="Configuration with the gears, in the place of --teeth: further `stages` and `planetary` sets too.",
+            help="Configuration with the gears, in the place of --teeth: a `machine` or a planetary set too.",
             show_default=False,
         ),
     ] = None

@@ -15,7 +15,7 @@ def configured_train(file: Path) -> GearTrain:
     Parameters
     ----------
     file : Path
-        As `siggen init` writes it, with or without `stages` or `planetary`, or a `machine`; anything of it but teeth
+        As `siggen init` writes it, with or without `planetary`, or a `machine`; anything of it but teeth
         and places of planets counts nothing.
 
     Raises

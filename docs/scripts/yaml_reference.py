@@ -151,12 +151,10 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
     return " ".join(str(text).split())
 
 
-REPEATED = {"stages[].gears": "gears", "stages[].gear": "dynamics.gear"}
-"""Section -> the section whose keys it repeats with the same meaning: one line says so."""
 TAKEN_OVER = {
-    "machine.shafts[]": ("dynamics.gear", "stages[]"),
+    "machine.shafts[]": ("dynamics.gear",),
     "machine.gears[]": ("gears.gear",),
-    "machine.meshes[]": ("gears", "stages[]"),
+    "machine.meshes[]": ("gears",),
 }
 """Section with keys of its own -> the sections whose other keys it repeats with the same meaning."""
 
@@ -216,25 +214,14 @@ def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
 
 
 def without_repeated(schema: Schema, keys: list[Key]) -> list[Key]:
-    """Return the keys without those of sections that repeat another one.
-
-    Raises
-    ------
-    ValueError
-        If the other one does not have all of them, with the same meaning and range.
-    """
+    """Return the keys without those that sections take over from another one."""
     meanings = {key.path: (described(schema, key.schema), allowed(schema, key.schema)) for key in keys}
     left = []
     for key in keys:
-        section = next((one for one in REPEATED if key.path.startswith(f"{one}.")), None)
         mixed = next((one for one in TAKEN_OVER if key.path.startswith(f"{one}.")), "")
         others = (meanings.get(of + key.path.removeprefix(mixed)) for of in TAKEN_OVER.get(mixed, ()))
-        if meanings[key.path] in others:
-            continue
-        if section is None:
+        if meanings[key.path] not in others:
             left.append(key)
-        elif meanings[key.path] != meanings.get(REPEATED[section] + key.path.removeprefix(section)):
-            raise ValueError(f"{key.path}: not as in {REPEATED[section]}")
     return left
 
 
@@ -243,8 +230,6 @@ def listed(schema: Schema, entry: Entry) -> str | None:
     first = entry.keys[0]
     values = entry.values(schema)
     defaults = "" if entry.defaults == [""] else " / ".join(each or "required" for each in entry.defaults)
-    if first.path in REPEATED:
-        return f"* `{entry.names[0]}`: {described(schema, first.schema)}; keys as in `{REPEATED[first.path]}`"
     if entry.is_plain(schema):
         return None
     alike = {name.replace("pinion", "gear") for name in entry.names if "pinion" in name}

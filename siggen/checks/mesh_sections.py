@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from siggen.config import Gears, OperatingRange, Pair, PlainRotor, Rotor, Stage, StateSection
+from siggen.config import Gears, OperatingRange, Pair, Rotor, Stage, StateSection
 from siggen.config.machine import Machine
 from siggen.config.planetary import RING
 from siggen.config.short_form import mesh_alone
@@ -36,7 +36,7 @@ def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[s
     for index, (stage, turning) in enumerate(zip(stages, turned(sections["gears"], stages), strict=False)):
         own = {**_sections_on(sections, stage.name), **_machine_alone(sections, index + 1), "gears": _gears(stage)}
         if "dynamics" in sections:
-            own["dynamics"] = sections["dynamics"].model_copy(update=_rotors(stage))
+            own["dynamics"] = sections["dynamics"].model_copy(update={"pinion": Rotor(), "gear": stage.gear})
         if "operating_points" in sections:
             own["operating_points"] = _points(sections["operating_points"], float(turning))
         yield f"stages.{index}", own
@@ -44,12 +44,6 @@ def stage_sections(sections: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[s
 
 def _gears(stage: Stage) -> Gears:
     return Gears.model_construct(**{name: getattr(stage.gears, name) for name in Pair.model_fields})
-
-
-def _rotors(stage: Stage) -> dict[str, Rotor]:
-    """Return the rotors of a stage as those of a pair alone; its pinion is a disc."""
-    own = {name: getattr(stage.gear, name) for name in PlainRotor.model_fields}
-    return {"pinion": Rotor(), "gear": Rotor.model_construct(**own)}
 
 
 def ring_sections(sections: Mapping[str, Any]) -> Mapping[str, Any]:

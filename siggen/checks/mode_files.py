@@ -63,7 +63,7 @@ def mode_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     present = (*map(shape_column, table.shapes), *table.base)
     sensors = tuple(sections.get("sensors", {}).values())
     planetary = sections.get("planetary") is not None
-    names = names_in(sections.get("machine"), sections.get("stages", ()), planetary=planetary)
+    names = names_in(sections.get("machine"), planetary=planetary)
     seats = SEATS_OF_SET if planetary else seats_of(names)
     for column, use in {**_needed(sensors, seats), **_needed_behind(sections.get("background"))}.items():
         if column not in present:

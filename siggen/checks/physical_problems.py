@@ -89,7 +89,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
         for path, damage in state.placed(f"states.{index}"):
             problems += _state_problems(flanks, damage, path, through_face=through_face)
     if sections.get("manufacture") is not None:
-        driver, driven = names_in(sections.get("machine"), (), planetary=False).first.gears
+        driver, driven = names_in(sections["machine"], planetary=False).first.gears
         problems += _outside_tolerances(sound, {"pinion": driver.word, "gear": driven.word})
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)
     problems += bearing_problems(sections)

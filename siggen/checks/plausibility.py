@@ -12,7 +12,7 @@ from itertools import accumulate
 from math import pi, sqrt
 from operator import mul
 
-from siggen.config import Config, Coupling, Housing, ModalHousing, Pair, PlainRotor, Planetary, RigidHousing
+from siggen.config import Config, Coupling, Housing, ModalHousing, Pair, Planetary, RigidHousing, Rotor
 from siggen.config.changes import SECTIONS, changed_sections
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
 from siggen.errors import counted
@@ -216,7 +216,7 @@ def _hertz_pa(pair: GearPair, force_n: float) -> float:
     return sqrt(force_n * modulus / (pi * pair.face_width_m * radius))
 
 
-def _rotor(at: str, rotor: PlainRotor, gear: SpurGear, pair: GearPair) -> Iterator[Quantity]:
+def _rotor(at: str, rotor: Rotor, gear: SpurGear, pair: GearPair) -> Iterator[Quantity]:
     hint = "null takes the disc; a value left from other teeth?"
     disc = disc_mass_kg(gear, pair.face_width_m)
     if rotor.mass_kg is not None:
@@ -252,7 +252,7 @@ def _bearings(config: Config, pair: GearPair) -> Iterator[Quantity]:
     rotors = {"dynamics.pinion": config.dynamics.pinion, "dynamics.gear": config.dynamics.gear}
     forces = dict.fromkeys(rotors, torque / pair.pinion.base_radius_m)
     ratio = pair.gear.teeth / pair.pinion.teeth
-    stages: dict[str, PlainRotor] = dict(rotors)
+    stages: dict[str, Rotor] = dict(rotors)
     for index, stage in enumerate(config.stages):
         own = gear_pair(next(corners(stage.gears)))
         stages[f"stages.{index}.gear"] = stage.gear
@@ -319,7 +319,7 @@ def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
         )
 
 
-def _inertia(rotor: PlainRotor, gear: SpurGear, pair: GearPair) -> float:
+def _inertia(rotor: Rotor, gear: SpurGear, pair: GearPair) -> float:
     if rotor.inertia_kg_m2 is None:
         return disc_inertia_kg_m2(gear, pair.face_width_m)
     return bounds(rotor.inertia_kg_m2)[0]

@@ -46,7 +46,7 @@ def stage_layout_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
         yield from _span(stage, index, _widest_mm(before) + _widest_mm(own))
     distances = [_centre_distances_mm(pair) for pair in every]
     if all(one.size for one in distances):
-        names = names_in(sections.get("machine"), stages, planetary=False)
+        names = names_in(sections["machine"], planetary=False)
         yield from _axes(names, every, stages, distances)
 
 

@@ -24,7 +24,7 @@ def pressure(
     picture: PictureOptions,
     gear: Annotated[
         str | None,
-        typer.Option("--gear", help="Whose flank: pinion, slow.gear, a gear's own name; by default the damaged one's."),
+        typer.Option("--gear", help="Whose flank: pinion, gear, or a gear's own name; by default the damaged one's."),
     ] = None,
     tooth: Annotated[
         int | None, typer.Option("--tooth", min=0, help="Index of the tooth; by default the first damaged one.")

@@ -11,7 +11,7 @@ from siggen.config.background import (
     ShaftLines,
 )
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
-from siggen.config.dynamics import Coupling, Dynamics, PlainRotor, Rotor, Shaft, Shafts, Unbalance, by_reference
+from siggen.config.dynamics import Coupling, Dynamics, Rotor, Shaft, Shafts, Unbalance, by_reference
 from siggen.config.gears import Gears, Pair, Wheel
 from siggen.config.housing import Bolts, Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
@@ -52,7 +52,6 @@ __all__ = [
     "OperatingRange",
     "Pair",
     "ParsedConfig",
-    "PlainRotor",
     "Planetary",
     "PlateHousing",
     "RigidHousing",

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_serializer, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
 from siggen.config.background import Background
 from siggen.config.changes import Change
@@ -108,11 +109,10 @@ class Config(Section):
     )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
     gears: Gears = Field(description="the gear pair; needed without `machine`")
-    stages: tuple[Stage, ...] = Field(
-        default=(), description="further meshes behind `gears`, in the order of power; the last gear drives the load"
-    )
+    stages: SkipJsonSchema[tuple[Stage, ...]] = Field(default=(), exclude=True)
+    """Meshes of the machine behind the first one, in the order of power; no key of a file."""
     machine: Machine | None = Field(
-        default=None, description="shafts, gears and meshes with names of your own, in place of `gears` and `stages`"
+        default=None, description="shafts, gears and meshes with names of your own, in place of `gears`"
     )
     planetary: Planetary | None = Field(
         default=None, description="null: a pair on two shafts; given: `gears` are sun and planets in a ring"
@@ -200,7 +200,7 @@ class Config(Section):
     @property
     def names(self) -> Names:
         """What its gears, shafts and meshes are called."""
-        return names_in(self.machine, self.stages, planetary=self.planetary is not None)
+        return names_in(self.machine, planetary=self.planetary is not None)
 
     def grown_from(self, state_id: int) -> int | None:
         """Return the index of the state whose damage a state contains, or None."""

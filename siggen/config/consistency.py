@@ -41,7 +41,6 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         life_problems,
         _sample_count,
         _band,
-        _twice_named,
         _growth,
         _fault_names,
         _severities,
@@ -105,11 +104,11 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
 
 def places_of(sections: Mapping[str, Any]) -> Places | None:
     """Return what there is for sensors; None where sections that say so are wrong themselves."""
-    if not {"dynamics", "stages"} <= sections.keys():
+    if "dynamics" not in sections:
         return None
     model, stages = sections["dynamics"].model, sections["stages"]
     housing, planetary = sections.get("housing"), sections.get("planetary") is not None
-    names = names_in(sections.get("machine"), stages, planetary=planetary)
+    names = names_in(sections["machine"], planetary=planetary)
     if model == "casing" and isinstance(housing, ModalHousing):
         model = MODAL
     if planetary or stages:  # other models and housings are refused
@@ -132,12 +131,12 @@ def _sensors_beside(sections: Mapping[str, Any], raw: Mapping[str, object]) -> I
 
 def _sensor_turns(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield sensors that read nothing of a record in which shafts turn as little as they may."""
-    if not {"duration_s", "gears", "operating_points", "stages"} <= sections.keys():
+    if not {"duration_s", "gears", "operating_points"} <= sections.keys():
         return
     pinion = sections["duration_s"] * min(bounds(point.speed_hz)[0] for point in sections["operating_points"])
     gears = sections["gears"]
     slowest = Fraction(min(gears.teeth_of("pinion")), max(gears.teeth_of("gear")))
-    names = names_in(sections.get("machine"), sections["stages"], planetary=sections.get("planetary") is not None)
+    names = names_in(sections["machine"], planetary=sections.get("planetary") is not None)
     orders = names.of_turning(shaft_orders(slowest, sections["stages"]))
     turns = {name: pinion * order for name, order in orders.items()}
     for index, sensor in sections.get("sensors", {}).items():
@@ -206,29 +205,6 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     if sections["dynamics"].mesh.law == "linear":
         allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"
         yield Problem("manufacture", "errors of single teeth", allowed)
-
-
-def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    for key in ("stages",):
-        names = _raw_names(raw, key)
-        for index, name in names.items():
-            first = next(i for i, other in names.items() if other == name)
-            if first < index:
-                yield Problem(
-                    f"{key}.{index}.name", f"'{name}'", f"allowed: a name that {key}.{first} does not have already"
-                )
-
-
-def _raw_names(raw: Mapping[str, object], key: str) -> dict[int, str]:
-    # from the raw file, so that a bad entry elsewhere does not make a good name look unknown
-    entries = raw.get(key)
-    listed = entries if isinstance(entries, (list, tuple)) else []
-    names = {i: _raw_name(entry) for i, entry in enumerate(listed)}
-    return {i: name for i, name in names.items() if isinstance(name, str)}
-
-
-def _raw_name(entry: object) -> object:
-    return entry.get("name") if isinstance(entry, Mapping) else getattr(entry, "name", None)
 
 
 def _growth(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -318,7 +294,7 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "gears" not in sections:
         return
     of_set = sections.get("planetary") is not None
-    names = names_in(sections.get("machine"), sections.get("stages", ()), planetary=of_set)
+    names = names_in(sections["machine"], planetary=of_set)
     for index, state in sections.get("states", {}).items():
         hit = (
             (f"{path}.{key}", *rest) for path, one in state.placed(f"states.{index}") for key, *rest in one.hit_teeth()

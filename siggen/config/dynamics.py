@@ -59,8 +59,8 @@ RATED = "rated_torque_nm"
 RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
 
-class PlainRotor(Section):
-    """Mass of a gear and the bearings of its shaft (x along the centre line, y vertical)."""
+class Rotor(Section):
+    """Mass of a gear, what makes it wobble, and the bearings of its shaft (x along the centre line, y vertical)."""
 
     mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: a solid steel disc of the pitch circle with its bore"
@@ -72,19 +72,6 @@ class PlainRotor(Section):
     bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
     bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
     bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _alike(cls, value: Any) -> Any:
-        """Give y what x has where it has nothing of its own."""
-        if not isinstance(value, Mapping):
-            return value
-        return {**{key: value[other] for key, other in ALIKE.items() if other in value}, **value}
-
-
-class Rotor(PlainRotor):
-    """The same with what makes it wobble, and with bearings that follow the load."""
-
     eccentricity_um: Annotated[Number, Within(least=0, most=200), Usual(0.5, 200)] = Field(
         default=0.0,
         description="of its gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
@@ -100,6 +87,14 @@ class Rotor(PlainRotor):
             "whose stiffness follows load and clearance"
         ),
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _alike(cls, value: Any) -> Any:
+        """Give y what x has where it has nothing of its own."""
+        if not isinstance(value, Mapping):
+            return value
+        return {**{key: value[other] for key, other in ALIKE.items() if other in value}, **value}
 
 
 class Coupling(Section):

@@ -15,7 +15,7 @@ from siggen.keys.merging import merged
 from siggen.keys.problems import received_text
 
 EXTENDS = "extends"
-REPLACED = ("gears", "stages", "planetary")
+REPLACED = ("gears", "planetary")
 """Sections that a machine takes the place of."""
 REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
 SIZED: Mapping[str, Any] = {

@@ -17,9 +17,9 @@ def life_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Ite
         return
     if raw.get("states"):
         yield Problem("states", "states beside a section life", "allowed: one of both; with life states: null")
-    for key in ("stages", "planetary"):
+    for key, what in (("stages", "further meshes"), ("planetary", "planets")):
         if sections.get(key):
-            yield Problem("life", f"a section life with {key}", f"allowed: null, or no {key}: teeth of one pair wear")
+            yield Problem("life", f"a section life with {what}", f"allowed: null, or no {what}: teeth of one pair wear")
     yield from _loads(sections, life)
 
 

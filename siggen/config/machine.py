@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field
 
 from siggen.config.dynamics import Rotor
 from siggen.config.gears import ToothForm, Wheel
-from siggen.config.stages import DIRECTION, SPAN, Span
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
+from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 
 NAME_TEXT = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), NAME_TEXT]
+IDLER = "idler"
+Span: TypeAlias = Annotated[
+    Number | Literal["idler"] | None, Within(above=0, most=2000, words=(IDLER, None)), Usual(5, 3000)
+]
+Direction: TypeAlias = Annotated[Number, Within(least=-180, most=180)]
 
 
 NAMED: Any = Field(description="its name: in places of sensors, damage, columns, messages and pages")
@@ -24,7 +29,11 @@ class MachineShaft(Rotor):
     """A shaft on two bearings; masses are those of the gear that the shaft in front drives, of the first its own."""
 
     name: Name = NAMED
-    span_mm: Span = Field(default=None, description=SPAN)
+    span_mm: Span = Field(
+        default=None,
+        description="distance of the bearings of a shaft with two gears, which stand at its thirds; idler: one gear in "
+        "two meshes; null: twice both face widths (assumed)",
+    )
 
 
 class MachineGear(Wheel):
@@ -40,14 +49,15 @@ class MachineMesh(ToothForm):
     name: Name = NAMED
     driver: str = Field(description="name of the driving gear")
     driven: str = Field(description="name of the driven gear")
-    direction_deg: Annotated[Number, Within(least=-180, most=180)] = Field(
+    direction_deg: Direction = Field(
         default=0.0,
-        description=DIRECTION,
+        description="of the line from the driving to the driven gear against that of the first mesh, in the sense in "
+        "which the first shaft turns",
     )
 
 
 class Machine(Section):
-    """Shafts, gears and meshes in any order; takes the place of `gears` and `stages`.
+    """Shafts, gears and meshes in any order; takes the place of `gears`.
 
     The motor drives the shaft whose gear none drives, the load hangs on the shaft whose gear drives none.
     """

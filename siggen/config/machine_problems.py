@@ -7,8 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from siggen.config.machine import Machine, MachineMesh
-from siggen.config.stages import IDLER
+from siggen.config.machine import IDLER, Machine, MachineMesh
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 

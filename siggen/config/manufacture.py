@@ -27,7 +27,7 @@ class Manufacture(Section):
     """Deviations of every tooth of both gears within ISO 1328-1:2013; needs the mesh law pairs."""
 
     accuracy_class: Annotated[Number, Within(least=1, most=11)] = Field(description=CLASS)
-    accuracy_class_gear: Annotated[Number | None, Within(least=1, most=11, words=(None,))] = Field(
+    accuracy_class_driven: Annotated[Number | None, Within(least=1, most=11, words=(None,))] = Field(
         default=None, description=CLASS
     )
     # Real gears use 30 to 70 % of their tolerance. Running in takes the peaks first, and gears at their full tolerance
@@ -39,7 +39,7 @@ class Manufacture(Section):
         default=0.0,
         description=CROWNING,
     )
-    crowning_gear_um: Annotated[Number | None, Within(least=0, most=200, words=(None,)), Usual(0.1, 100)] = Field(
+    crowning_driven_um: Annotated[Number | None, Within(least=0, most=200, words=(None,)), Usual(0.1, 100)] = Field(
         default=None, description=CROWNING
     )
     helix: Literal["off", "iso_1328"] = Field(
@@ -68,7 +68,7 @@ class Manufacture(Section):
     @model_validator(mode="after")
     def _whole_classes(self) -> Manufacture:
         problems = []
-        for key in ("accuracy_class", "accuracy_class_gear"):
+        for key in ("accuracy_class", "accuracy_class_driven"):
             number = getattr(self, key)
             values = number.values if isinstance(number, Choice) else (number,)
             if any((isinstance(v, float) and not v.is_integer()) or not isinstance(v, float | None) for v in values):
@@ -88,7 +88,7 @@ class Manufacture(Section):
     @property
     def crowning_of_gear(self) -> Number:
         """Crowning of the driven gear, as given or as for the pinion."""
-        return self.crowning_um if self.crowning_gear_um is None else self.crowning_gear_um
+        return self.crowning_um if self.crowning_driven_um is None else self.crowning_driven_um
 
     @property
     def has_crowning(self) -> bool:
@@ -103,14 +103,14 @@ class Manufacture(Section):
     @property
     def classes_text(self) -> str:
         """The classes in words, such as "6", "5, 6 or 7" or "6, gear 7"."""
-        gear = self.accuracy_class_gear
+        gear = self.accuracy_class_driven
         pinion = _class_text(self.accuracy_class)
         return pinion if gear is None else f"{pinion}, gear {_class_text(gear)}"
 
     @property
     def gear_class(self) -> Number:
         """Class of the driven gear, as given or as for the pinion."""
-        return self.accuracy_class if self.accuracy_class_gear is None else self.accuracy_class_gear
+        return self.accuracy_class if self.accuracy_class_driven is None else self.accuracy_class_driven
 
 
 def _class_text(number: Number) -> str:

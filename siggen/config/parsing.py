@@ -12,9 +12,8 @@ from pydantic import TypeAdapter, ValidationError
 
 from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
-from siggen.config.machine import Machine
 from siggen.config.machine_problems import machine_problems
-from siggen.config.short_form import names_of, short_form
+from siggen.config.short_form import drivetrain, names_of, short_form
 from siggen.config.state_keys import complete_states, source_of
 from siggen.errors import Problem
 from siggen.keys.by_name import BY_NAME, named_entries, refused_list
@@ -30,6 +29,7 @@ from siggen.keys.problems import (
 from siggen.keys.wording import allowed_text
 from siggen.names import PAIR, Names
 
+NONE: Mapping[str, Any] = MappingProxyType({})
 MOST_ENTRIES = 5_000
 """Of a section that is a list; a file has no room for as many mappings."""
 
@@ -60,29 +60,35 @@ class ParsedConfig:
 def parse(raw: Mapping[str, object]) -> ParsedConfig:
     """Return the configuration that a mapping stands for, or all its problems; never raises because of its content."""
     if raw.get("machine") is None:
-        return _parsed(raw, None)
+        return _parsed(raw, {"machine": None, "stages": ()})
     machine, wrong = _validated(_adapter("machine"), raw["machine"], ("machine",))
     if wrong := wrong or machine_problems(machine):
         return ParsedConfig(None, MappingProxyType({}), tuple(wrong))  # words of all else are those of its names
     names = names_of(machine)
-    short, wrong = short_form(raw, machine, names)
-    parsed, told = _parsed(short, machine), {problem.path for problem in wrong}
+    gears, stages, rotors = drivetrain(machine)
+    short, wrong = short_form(raw, names)
+    parsed, told = (
+        _parsed(short, {"machine": machine, "gears": gears, "stages": stages}, rotors),
+        {problem.path for problem in wrong},
+    )
     problems = [*wrong, *(one for one in map(names.problem, parsed.problems) if one.path not in told)]
     return ParsedConfig(None if wrong else parsed.config, parsed.sections, tuple(problems), names)
 
 
-def _parsed(raw: Mapping[str, object], machine: Machine | None) -> ParsedConfig:
-    """Return what a mapping in the short form holds."""
+def _parsed(raw: Mapping[str, object], of_machine: Mapping[str, Any], rotors: Mapping[str, Any] = NONE) -> ParsedConfig:
+    """Return what a mapping holds, beside the sections and the rotors that a machine stands for."""
     if raw.get("life") and not raw.get("states", True):  # no states, as a file says that extends one with some
         raw = {key: value for key, value in raw.items() if key != "states"}
-    sections: dict[str, Any] = {"machine": machine}
-    unknown = [(str(key), raw[key]) for key in raw if key not in Config.model_fields]
-    problems = unknown_keys(unknown, list(Config.model_fields))
-    for name in (name for name in Config.model_fields if name != "machine"):
+    sections: dict[str, Any] = dict(of_machine)
+    known = [name for name, field in Config.model_fields.items() if not field.exclude]
+    problems = unknown_keys([(str(key), raw[key]) for key in raw if key not in known], known)
+    for name in (name for name in known if name not in of_machine):
         value, found = _entries(name, raw) if name in BY_NAME and name in raw else _section(name, raw)
         problems += found
         if value is not None:
             sections[name] = {} if value == () and name in BY_NAME else value
+    if rotors and "dynamics" in sections:
+        sections["dynamics"] = sections["dynamics"].model_copy(update=rotors)
     problems += consistency_problems(sections, raw)
     if isinstance(states := raw.get("states"), Mapping):
         problems = [one for one in problems if not _taken_over(one, problems, states)]

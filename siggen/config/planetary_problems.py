@@ -18,12 +18,10 @@ KEYS = {"ring": "ring_teeth", "carrier": "positions_deg", "planets": "positions_
 """What a problem of teeth is about -> key of the section."""
 
 
-def sets_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+def sets_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield what is wrong about a planetary set between the valid sections of a configuration."""
     section: Planetary | None = sections.get("planetary")
     if section is None:
-        if raw.get("planetary") is None:  # not one that is wrong itself
-            yield from _without_one(sections)
         return
     if "gears" in sections:
         yield from _of_gears(sections["gears"], section)
@@ -37,13 +35,6 @@ def set_of(gears: Gears, section: Planetary) -> PlanetarySet:
     """Return the teeth of a set and the places of its planets."""
     sun, planet = gears.pinion.teeth, gears.gear.teeth
     return PlanetarySet(sun, planet, section.ring_teeth, typed_places(section.positions_deg, sun + section.ring_teeth))
-
-
-def _without_one(sections: Mapping[str, Any]) -> Iterator[Problem]:
-    for index, state in sections.get("states", {}).items():
-        for where, one in state.placed(f"states.{index}"):
-            if getattr(one, "gear", "") in {*ROLES, RING}:
-                yield Problem(f"{where}.gear", f"'{one.gear}'", "allowed: pinion, gear, either; or a section planetary")
 
 
 def _of_gears(gears: Gears, section: Planetary) -> Iterator[Problem]:
@@ -74,8 +65,6 @@ def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
 
 
 def _of_others(sections: Mapping[str, Any]) -> Iterator[Problem]:
-    if sections.get("stages"):
-        yield Problem("stages", "further meshes", f"allowed: none {BESIDE}")
     if sections.get("internals") is not None:
         yield Problem("internals", "a section", f"allowed: null {BESIDE}")
     background = sections.get("background")

@@ -1,7 +1,7 @@
-"""A file with a `machine` as the short form that all code reads, and back: its names are those of the short form.
+"""A machine as the pairs that all code reads, and back: its names are those of pinions and gears.
 
-In the short form the first mesh is `gears`, with a pinion and a gear; further meshes are `stages`. The shaft of the
-pinion is `dynamics.pinion`, that of the gear `dynamics.gear`, those behind are `stages[].gear`.
+The first mesh is `gears`, with a pinion and a gear; further meshes are `stages`. The shaft of the pinion is
+`dynamics.pinion`, that of the gear `dynamics.gear`, those behind are `stages[].gear`.
 """
 
 from __future__ import annotations
@@ -10,31 +10,29 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from typing import Any
 
-from siggen.config.dynamics import ALIKE, Rotor
-from siggen.config.gears import ToothForm, Wheel
+from siggen.config.dynamics import Rotor
+from siggen.config.gears import Gears, Pair, ToothForm, Wheel
 from siggen.config.inheritance import REPLACED
 from siggen.config.machine import Machine, MachineMesh
 from siggen.config.machine_problems import idlers, train
-from siggen.config.stages import IDLER, Stage
+from siggen.config.stages import Stage
 from siggen.errors import Problem
 from siggen.keys.problems import nearest, received_text
 from siggen.keys.section import Section
 from siggen.names import (
     DRIVEN,
     DRIVER,
-    KEYS,
+    PAIR,
     PLANETARY,
     ROLES,
     GearName,
     MeshName,
     Names,
     ShaftName,
-    of_stages,
-    renamed_keys,
 )
 
-WITH_KEYS = ("dynamics", "manufacture", "sensors", "background")
-"""Sections with keys of their own for driver and driven gear."""
+OF_SHAFTS = ("driver", "driven")
+"""Keys of `dynamics.shafts` beside a machine."""
 
 
 @cache
@@ -51,11 +49,11 @@ def names_of(machine: Machine) -> Names:
     return Names(meshes, named, tuple(_paths(machine)), given=True)
 
 
-def names_in(machine: Machine | None, stages: tuple[Stage, ...], *, planetary: bool) -> Names:
+def names_in(machine: Machine | None, *, planetary: bool) -> Names:
     """Return the names of a gearbox by valid sections."""
     if machine is not None:
         return names_of(machine)
-    return PLANETARY if planetary else of_stages(*(stage.name for stage in stages))
+    return PLANETARY if planetary else PAIR
 
 
 def _mesh_name(inner: str, mesh: MachineMesh, shared: Collection[str]) -> MeshName:
@@ -80,19 +78,16 @@ def _paths(machine: Machine) -> Iterator[tuple[str, str]]:
             yield f"{here}.span_mm", f"machine.shafts.{found.shafts[number]}.span_mm"
             yield f"{here}.gear", f"machine.shafts.{found.shafts[number + 1]}"
             yield here, f"machine.meshes.{place}"
-    for role, place in zip(ROLES, found.shafts, strict=False):
+    for role, key, place in zip(ROLES, OF_SHAFTS, found.shafts, strict=False):
         yield f"dynamics.{role}", f"machine.shafts.{place}"
+        yield f"dynamics.shafts.{role}", f"dynamics.shafts.{key}"
 
 
-def short_form(raw: Mapping[str, Any], machine: Machine, names: Names) -> tuple[dict[str, Any], list[Problem]]:
-    """Return a raw configuration with a machine in the short form, and words of the file that are none of its own."""
+def short_form(raw: Mapping[str, Any], names: Names) -> tuple[dict[str, Any], list[Problem]]:
+    """Return what a file says beside its machine in words of pairs, and words of the file that are none of its own."""
     problems = [*_beside(raw), *_keys(raw)]
     short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
-    short |= {key: renamed_keys(raw[key], own=False) for key in WITH_KEYS if key in raw}
-    short |= _drivetrain(machine)
-    rotors = _rotors(machine)
-    if isinstance(own := short.get("dynamics", {}), Mapping):
-        short["dynamics"] = {**own, **rotors}
+    short |= {"dynamics": _with_shafts(raw["dynamics"], OF_SHAFTS, ROLES)} if "dynamics" in raw else {}
     for section, key, table in _words(names):
         if section in short:
             short[section] = _replaced(short[section], key, {own: word for word, own in table.items()})
@@ -104,8 +99,7 @@ def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
     """Return a configuration as plain mappings and lists as the user writes it; `short_form` of it is the same."""
     own = {key: value for key, value in plain.items() if key not in REPLACED}
     dynamics = {key: value for key, value in own["dynamics"].items() if key not in (DRIVER, DRIVEN)}
-    own = {**own, "dynamics": dynamics}
-    own |= {key: renamed_keys(own[key], own=True) for key in WITH_KEYS}
+    own = {**own, "dynamics": _with_shafts(dynamics, ROLES, OF_SHAFTS)}
     for section, key, table in _words(names):
         own[section] = _replaced(own[section], key, table)
     states = {
@@ -131,51 +125,51 @@ def _beside(raw: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def _keys(raw: Mapping[str, Any]) -> Iterator[Problem]:
-    """Yield keys of the short form alone."""
-    for section in WITH_KEYS:
-        for path, key in _all_keys(raw.get(section), section):
-            if key in dict(KEYS) and not (section == "dynamics" and path.count(".") == 0):
-                yield Problem(f"{path}.{key}", "a key", f"allowed with a machine: {dict(KEYS)[key]}")
+    """Yield keys of a pair alone."""
     if isinstance(dynamics := raw.get("dynamics"), Mapping):
-        for key in {DRIVER, DRIVEN, "driver", "driven"} & dynamics.keys():
+        for key in {*ROLES, *OF_SHAFTS} & dynamics.keys():
             yield Problem(f"dynamics.{key}", received_text(dynamics[key]), "allowed with a machine: machine.shafts")
+        shafts = dynamics.get("shafts")
+        for key, now in zip(ROLES, OF_SHAFTS, strict=True):
+            if isinstance(shafts, Mapping) and key in shafts:
+                yield Problem(f"dynamics.shafts.{key}", received_text(shafts[key]), f"allowed with a machine: {now}")
 
 
-def _all_keys(value: Any, path: str) -> Iterator[tuple[str, str]]:
-    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
-    for key, item in items:
-        if isinstance(key, str):
-            yield path, key
-        yield from _all_keys(item, f"{path}.{key}")
+def _with_shafts(dynamics: Any, keys: tuple[str, str], to: tuple[str, str]) -> Any:
+    """Return the section with the keys of its shafts replaced."""
+    shafts = dynamics.get("shafts") if isinstance(dynamics, Mapping) else None
+    table = dict(zip(keys, to, strict=True))
+    own = {table.get(key, key): one for key, one in shafts.items()} if isinstance(shafts, Mapping) else shafts
+    return dynamics if own is None else {**dynamics, "shafts": own}
 
 
-def _drivetrain(machine: Machine) -> dict[str, Any]:
-    found = train(machine)
-    wheels = {gear.name: _given(gear, Wheel) for gear in machine.gears}
+def drivetrain(machine: Machine) -> tuple[Gears, tuple[Stage, ...], dict[str, Rotor]]:
+    """Return its first pair, its further meshes, and both shafts of the first mesh by the keys of `dynamics`."""
+    found, shafts = train(machine), machine.shafts
+    wheels = {gear.name: Wheel(**_values(gear, Wheel)) for gear in machine.gears}
     pairs = [
-        {**_given(mesh, ToothForm), DRIVER: wheels[mesh.driver], DRIVEN: wheels[mesh.driven]}
+        Pair(**_values(mesh, ToothForm), pinion=wheels[mesh.driver], gear=wheels[mesh.driven])
         for mesh in (machine.meshes[place] for place in found.meshes)
     ]
     stages = []
     for number, pair in enumerate(pairs[1:], start=1):
         mesh, front, own = machine.meshes[found.meshes[number]], *found.shafts[number : number + 2]
-        stages.append({
-            "name": mesh.name, "gears": pair, "gear": _given(machine.shafts[own], Rotor),
-            "span_mm": IDLER if mesh.driver in idlers(machine) else machine.shafts[front].span_mm,
-            "direction_deg": mesh.direction_deg,
-        })  # fmt: skip
-    return {"gears": pairs[0], "stages": stages}
+        stages.append(
+            Stage(
+                name=mesh.name,
+                gears=pair,
+                gear=Rotor(**_values(shafts[own], Rotor)),
+                span_mm="idler" if mesh.driver in idlers(machine) else shafts[front].span_mm,
+                direction_deg=mesh.direction_deg,
+            )
+        )
+    rotors = (Rotor(**_values(shafts[place], Rotor)) for place in found.shafts)
+    return Gears(**_values(pairs[0], Pair)), tuple(stages), dict(zip(ROLES, rotors, strict=False))
 
 
-def _rotors(machine: Machine) -> dict[str, Any]:
-    first, second = train(machine).shafts[:2]
-    return {DRIVER: _given(machine.shafts[first], Rotor), DRIVEN: _given(machine.shafts[second], Rotor)}
-
-
-def _given(section: Section, model: type[Section]) -> dict[str, Any]:
-    """Return what a section has of a model's keys beside its defaults, and what would follow from another key."""
-    values = {key: getattr(section, key) for key in model.model_fields}
-    return {key: value for key, value in values.items() if key in ALIKE or value != model.model_fields[key].default}
+def _values(section: Section, model: type[Section]) -> dict[str, Any]:
+    """Return what a section has of a model's keys."""
+    return {key: getattr(section, key) for key in model.model_fields}
 
 
 def _words(names: Names) -> Iterator[tuple[str, str, dict[str, str]]]:

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from siggen.config.dynamics import Dynamics
+from siggen.config.dynamics import Dynamics, Rotor
 from siggen.config.gears import Gears, Pair, Wheel
 from siggen.config.planetary import RING, ROLES
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
+from siggen.keys.problems import received_text
 
 
-def stage_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+def stage_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
     """Yield what is wrong about further meshes between the valid sections of a configuration."""
-    yield from _names(sections)
     yield from _beside(sections)
     yield from _idlers(sections)
-    yield from _named(sections)
+    yield from _named(sections, raw)
 
 
 def most_teeth_per_turn(sections: Mapping[str, Any]) -> float:
@@ -35,45 +34,6 @@ def pair_of(sections: Mapping[str, Any], gear: str) -> Pair | None:
     return stages.get(name) if name else sections["gears"]
 
 
-TAKEN = {
-    **dict.fromkeys(("pinion", "gear"), "the first mesh has bearings and labels of this name"),
-    "either": "damage means a drawn gear by it",
-    "casing": "sensors stand on the casing by it",
-    **dict.fromkeys(("motor", "load"), "it turns before or behind all meshes, and a stage has a shaft of its own"),
-}
-"""Words that mean something else -> what."""
-PAIR = re.compile(r"(^|_)pair_[0-9]+$")
-"""Ends of names that pairs of teeth have in what no sensor sees."""
-
-
-def _names(sections: Mapping[str, Any]) -> Iterator[Problem]:
-    for index, stage in enumerate(sections.get("stages", ())):
-        if reason := _taken(stage.name):
-            allowed = f"allowed: another name than {', '.join(TAKEN)}, casing_..., ..._pair_0"
-            yield Problem(f"stages.{index}.name", f"'{stage.name}', but {reason}", allowed)
-    yield from _columns_twice(sections.get("stages", ()))
-
-
-def _taken(name: str) -> str | None:
-    """Return why a stage cannot have a name."""
-    if name.startswith("casing_"):
-        return "motions of sensors on the casing are called so"
-    if PAIR.search(name):
-        return "quantities of single pairs of teeth are called so"
-    return TAKEN.get(name)
-
-
-def _columns_twice(stages: tuple[Stage, ...]) -> Iterator[Problem]:
-    """Yield names that make a column of another stage, as `mesh_a` and `a_shaft` do."""
-    owners: dict[str, str] = {}
-    for index, stage in enumerate(stages):
-        for column in (f"mesh_{stage.name}_hz", f"{stage.name}_shaft_hz"):
-            owner = owners.setdefault(column, stage.name)
-            if owner != stage.name:
-                received = f"'{stage.name}', whose column {column} the stage {owner} has too"
-                yield Problem(f"stages.{index}.name", received, "allowed: a name whose columns are its own")
-
-
 BESIDE = "with several meshes"
 
 
@@ -83,6 +43,11 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
         return
     if "dynamics" in sections:
         yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
+    for index, stage in enumerate(sections["stages"]):
+        for key in ("bearing", "eccentricity_um"):
+            if (value := getattr(stage.gear, key)) != Rotor.model_fields[key].default:
+                received = received_text(value)
+                yield Problem(f"stages.{index}.gear.{key}", received, "allowed: none on a shaft behind the second")
     if "gears" in sections:
         yield from _of_gears(sections["gears"], sections["stages"])
     background = sections.get("background")
@@ -148,14 +113,13 @@ def _whole_teeth(sections: Mapping[str, Any], flanks: Collection[str]) -> Iterat
                 yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
 
 
-def _named(sections: Mapping[str, Any]) -> Iterator[Problem]:
-    """Yield damage on gears of stages that do not exist."""
-    if "stages" not in sections or "gears" not in sections:
+def _named(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield damage on gears that a pair or a planetary set has not; words of a machine are those of its names."""
+    if sections["machine"] is not None or (raw.get("planetary") and not sections.get("planetary")):
         return
+    known = ("pinion", "gear", "either") if sections.get("planetary") is None else (*ROLES, RING)
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
-            gear = str(getattr(one, "gear", ""))
-            if pair_of(sections, gear) is None:
-                front = ("pinion", "gear") if sections.get("planetary") is None else (*ROLES, RING)
-                names = [f"{stage.name}.{which}" for stage in sections["stages"] for which in ("pinion", "gear")]
-                yield Problem(f"{where}.gear", f"'{gear}'", f"allowed: {', '.join([*front, *names])}")
+            gear = str(getattr(one, "gear", known[0]))
+            if gear not in known:
+                yield Problem(f"{where}.gear", f"'{gear}'", f"allowed: {', '.join(known)}")

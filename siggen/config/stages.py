@@ -1,59 +1,29 @@
-"""Section `stages`: further meshes behind the pair of `gears`, in the order of power."""
+"""Further meshes behind the first one, in the order of power: what the sections of a machine say of each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from math import lcm
-from typing import Annotated, Literal, TypeAlias
 
-from pydantic import Field
-
-from siggen.config.dynamics import PlainRotor
+from siggen.config.dynamics import Rotor
 from siggen.config.gears import Pair
-from siggen.keys.number import Number, Within
+from siggen.config.machine import IDLER, Direction, Span
 from siggen.keys.section import Section
-from siggen.keys.usual import Usual
-from siggen.keys.wording import AllowedText
-
-STAGE_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
-
-
-IDLER = "idler"
-Span: TypeAlias = Annotated[
-    Number | Literal["idler"] | None, Within(above=0, most=2000, words=(IDLER, None)), Usual(5, 3000)
-]
-SPAN = (
-    "distance of the bearings of the shaft with two gears; idler: one gear in two meshes; null: twice both face "
-    "widths (assumed)"
-)
-DIRECTION = (
-    "of the line from the driving to the driven gear against that of the first mesh, in the sense in which the first "
-    "shaft turns"
-)
 
 
 class Stage(Section):
     """One further mesh: its pinion stands on the shaft of the gear in front or is that, its gear on a shaft of its own.
 
     Both gears on one shaft stand at a third and at two thirds between its bearings, which are those of the gear in
-    front. The last gear drives the load.
+    front. The last gear drives the load. `gear` is its gear with that gear's shaft; its pinion is a solid steel disc.
     """
 
-    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), STAGE_NAME] = Field(
-        description="part of the names of its labels, and of its gears: NAME.pinion and NAME.gear"
-    )
-    gears: Pair = Field(description="its pair, without `pairs`")
-    gear: PlainRotor = Field(
-        default=PlainRotor(),
-        description="its gear and that gear's shaft, without `eccentricity_um` and `bearing`; its pinion is a "
-        "solid steel disc",
-    )
-    span_mm: Span = Field(default=None, description=SPAN)
-    direction_deg: Annotated[Number, Within(least=-180, most=180)] = Field(
-        default=0.0,
-        description=DIRECTION,
-    )
+    name: str
+    gears: Pair
+    gear: Rotor
+    span_mm: Span
+    direction_deg: Direction
 
     @property
     def idler(self) -> bool:

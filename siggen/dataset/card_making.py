@@ -92,8 +92,7 @@ def _teeth_text(config: Config) -> str:
     if config.machine is not None:
         return _machine_text(config)
     if not gears.pairs:
-        first = f"A spur pair with {gears.pinion.teeth} and {gears.gear.teeth} teeth"
-        return f"{first}.{_stages_text(config)}"
+        return f"A spur pair with {gears.pinion.teeth} and {gears.gear.teeth} teeth."
     (least, most), (low, high) = (_ends(gears.teeth_of(which)) for which in ("pinion", "gear"))
     small, large = _ends([pair.module_mm for pair in gears.pairs])
     return (
@@ -101,14 +100,6 @@ def _teeth_text(config: Config) -> str:
         f"{large:g} mm; every gearbox has one of them (`pair`), and masses, supports, torque and damage of its size. "
         f"Splits never share a {config.splits.by}."
     )
-
-
-def _stages_text(config: Config) -> str:
-    """Say which further meshes stand behind the first one."""
-    if not config.stages:
-        return ""
-    pairs = [f"`{one.name}` with {one.gears.pinion.teeth} and {one.gears.gear.teeth}" for one in config.stages]
-    return f" Behind it, in the order of power: {', '.join(pairs)}; all meshes are simulated together."
 
 
 def _machine_text(config: Config) -> str:

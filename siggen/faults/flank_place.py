@@ -26,8 +26,7 @@ from siggen.keys.wording import AllowedText
 
 GearName: TypeAlias = Literal["pinion", "gear"]
 GEAR_TEXT = AllowedText(
-    "one of pinion, gear, either; of a further stage NAME.pinion, NAME.gear, NAME.either; of planetary sets sun, "
-    "planet, ring",
+    "one of pinion, gear, either; of a machine the name of a gear, or MESH.either; of planetary sets sun, planet, ring",
     ("pinion", "gear", "either", "sun", "planet", "ring"),
 )
 AnyGear: TypeAlias = Annotated[
@@ -38,13 +37,13 @@ AnyGear: TypeAlias = Annotated[
 ListedGear: TypeAlias = Annotated[
     str,
     Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear)|sun|planet|ring)$"),
-    AllowedText("one of pinion, gear; of a further stage NAME.pinion, NAME.gear; of planetary sets sun, planet, ring",
+    AllowedText("one of pinion, gear; of a machine the name of a gear; of planetary sets sun, planet, ring",
                 ("pinion", "gear", "sun", "planet", "ring")),
 ]  # fmt: skip
 
 DAMAGED_GEAR = (
-    "damaged gear: pinion, gear, or either, drawn per gearbox; of a further stage slow.pinion; of a planetary set "
-    "sun, ring, or planet, the first one"
+    "damaged gear: pinion, gear, or either, drawn per gearbox; of a machine a gear by its name, or MESH.either; of a "
+    "planetary set sun, ring, or planet, the first one"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi, sqrt
 
-from siggen.config import Dynamics, PlainRotor, Planetary, Rotor
+from siggen.config import Dynamics, Planetary, Rotor
 from siggen.config.planetary import RING
 from siggen.dynamics.structure.gear_stage import PlanetaryBody, PlanetaryStage
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3
@@ -40,7 +40,7 @@ def planetary_stage(
     section: Planetary, dynamics: Dynamics, pair: GearPair, inner: InternalPair, teeth: PlanetarySet
 ) -> PlanetaryStage:
     """Return the bodies of a drawn set with motor, load and couplings."""
-    sun, planet = (rotor_numbers(PlainRotor(), gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
+    sun, planet = (rotor_numbers(Rotor(), gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
     return PlanetaryStage(
         sun_angle_rad=pair.working_pressure_angle_rad,
         ring_angle_rad=inner.working_pressure_angle_rad,

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from siggen.config import Coupling as CouplingSection
-from siggen.config import Dynamics, PlainRotor, Rotor, Stage
+from siggen.config import Dynamics, Rotor, Stage
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.structure.gear_stage import Bearing, CommonShaft, Coupling, GearStage, NextStage, Shaft
@@ -32,12 +32,9 @@ def gear_stage(dynamics: Dynamics, pair: GearPair) -> GearStage:
     )
 
 
-def rotor_numbers(section: PlainRotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
+def rotor_numbers(section: Rotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
     """Return a gear with both bearings of its shaft."""
     mass, inertia = section.mass_kg, section.inertia_kg_m2
-    along = {}
-    if isinstance(section, Rotor):
-        along["stiffness_z_n_per_m"] = constant(section.bearing_stiffness_z_n_per_m)
     return RotorNumbers(
         base_radius_m=gear.base_radius_m,
         mass_kg=disc_mass_kg(gear, face_width_m) if mass is None else constant(mass),
@@ -47,7 +44,7 @@ def rotor_numbers(section: PlainRotor, gear: SpurGear, face_width_m: float) -> R
             stiffness_y_n_per_m=constant(section.bearing_stiffness_y_n_per_m),
             damping_x_n_s_per_m=constant(section.bearing_damping_x_n_s_per_m),
             damping_y_n_s_per_m=constant(section.bearing_damping_y_n_s_per_m),
-            **along,
+            stiffness_z_n_per_m=constant(section.bearing_stiffness_z_n_per_m),
         ),
     )
 
@@ -91,7 +88,7 @@ def next_stages(dynamics: Dynamics, stages: Sequence[Stage], meshes: Sequence[To
         pair, width_m = mesh.pair, (before if mesh.idler else mesh).pair.face_width_m
         yield NextStage(
             working_pressure_angle_rad=pair.working_pressure_angle_rad,
-            pinion=rotor_numbers(seat if mesh.idler else PlainRotor(), pair.pinion, width_m),
+            pinion=rotor_numbers(seat if mesh.idler else Rotor(), pair.pinion, width_m),
             gear=rotor_numbers(stage.gear, pair.gear, pair.face_width_m),
             shaft=None if mesh.idler else _common_shaft(stage, before.pair, pair),
             direction_rad=mesh.direction_rad,

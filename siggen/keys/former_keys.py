@@ -2,8 +2,18 @@
 
 from __future__ import annotations
 
-NOW = {
-    "grows_from": "write grows: NAME of the milder state; a state without it begins anew",
-    "sham": "write acts: false",
+RENAMED = {
+    "pinion_encoder": "driver_encoder",
+    "gear_encoder": "driven_encoder",
+    "pinion_depth": "driver_depth",
+    "gear_depth": "driven_depth",
+    "accuracy_class_gear": "accuracy_class_driven",
+    "crowning_gear_um": "crowning_driven_um",
 }
-"""Last part of the path of a former key -> the words of its refusal."""
+NOW = {
+    ".grows_from": "write grows: NAME of the milder state; a state without it begins anew",
+    ".sham": "write acts: false",
+    "stages": "write machine: with shafts, gears and meshes of your own names, in place of gears and stages",
+    **{f".{key}": f"write {now}" for key, now in RENAMED.items()},
+}
+"""Former key -> the words of its refusal; behind a dot it is the last part of any path."""

@@ -119,8 +119,8 @@ def _unknown_key(path: str, value: object, known: Sequence[str]) -> Problem:
     """Return the problem of a key that does not exist at its place."""
     path = _short_path(path)
     key = path.rpartition(".")[2]
-    if key in NOW:
-        return Problem(path, received_text(value), NOW[key])
+    if now := NOW.get(path) or NOW.get(f".{key}"):
+        return Problem(path, received_text(value), now)
     hint = nearest(key, known) or ";"
     return Problem(path, received_text(value), f"there is no such key here{hint} known keys: {', '.join(known)}")
 

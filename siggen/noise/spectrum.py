@@ -57,8 +57,8 @@ DEPTHS = "of the power, once per turn of that shaft; 1/√2 and 1/√3 of it twi
 class NoiseModulation(Section):
     """Strength over time M = G exp(s U - s²/2) of noise: by the turning shafts, and by chance; of mean 1."""
 
-    pinion_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
-    gear_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
+    driver_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
+    driven_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description=DEPTHS)
     level_std: Annotated[Number, Within(least=0, most=2)] = Field(
         default=0.0, description="s of the random level; kurtosis of the noise 3 exp(s²)"
     )
@@ -113,7 +113,7 @@ class NoiseStrength:
         rng = draws.record("noise_spectrum.modulation")
         numbers = {
             name: at(getattr(section, name), draws.level(f"noise_spectrum.modulation.{name}", rng))
-            for name in ("pinion_depth", "gear_depth", "level_std")
+            for name in ("driver_depth", "driven_depth", "level_std")
         }
         time_ms = at(LEVEL_TIME_MS, draws.level("noise_spectrum.modulation.level_time_ms", rng))
         self._phasors = []

@@ -84,7 +84,7 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
         "manufacture": {
             "lead_misalignment_um": scales.face_width,
             "crowning_um": scales.face_width,
-            "crowning_gear_um": scales.face_width,
+            "crowning_driven_um": scales.face_width,
         },
         "variation": {"speed.rated_torque_nm": scales.torque},
         "housing": _housing(scales.size),

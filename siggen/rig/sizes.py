@@ -26,7 +26,7 @@ SPREAD = (0.75, 1.33)
 """Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
 DAMPING = (0.02, 0.04)
 """Of a shaft on its bearings, as a share of the critical one (assumed)."""
-OTHERS = ("machine", "stages", "planetary")
+OTHERS = ("machine", "planetary")
 
 
 def with_sizes(raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:

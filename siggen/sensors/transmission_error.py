@@ -42,8 +42,8 @@ class TransmissionError(SensorBase):
     axes: Annotated[tuple[Literal["line_of_action"], ...], Field(min_length=1)] = Field(
         default=("line_of_action",), description="what it measures, one channel each"
     )
-    pinion_encoder: str = Field(description=ENCODER)
-    gear_encoder: str = Field(description=ENCODER)
+    driver_encoder: str = Field(description=ENCODER)
+    driven_encoder: str = Field(description=ENCODER)
     bits: Bits = Field(default=None, description=BITS_TEXT)
 
     def model_problems(self, places: Places) -> Iterator[Problem]:  # noqa: ARG002
@@ -54,8 +54,8 @@ class TransmissionError(SensorBase):
         """Yield names that are none of encoders on both sides of one mesh, that of the pinion's encoder."""
         turning = {name: one.place for name, one in others.items() if isinstance(one, Encoder)}
         ends = places.ends_of_meshes
-        own = [end for end in ends if turning.get(self.pinion_encoder) in end[0]] or ends
-        for key, side, meshes in (("pinion_encoder", 0, ends), ("gear_encoder", 1, own)):
+        own = [end for end in ends if turning.get(self.driver_encoder) in end[0]] or ends
+        for key, side, meshes in (("driver_encoder", 0, ends), ("driven_encoder", 1, own)):
             name, shafts = getattr(self, key), tuple(shaft for end in meshes for shaft in end[side])
             fitting = [other for other, place in turning.items() if place in shafts]
             if name not in fitting:
@@ -70,7 +70,7 @@ class TransmissionError(SensorBase):
     @property
     def limit_key(self) -> str:
         """The key that its size follows from."""
-        return "pinion_encoder"
+        return "driver_encoder"
 
     def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:  # noqa: ARG002
         """Return nothing: it reads other sensors."""
@@ -78,7 +78,7 @@ class TransmissionError(SensorBase):
 
     def transducer(self, axis: str, draw: AxisDraws) -> Transducer:  # noqa: ARG002
         """Return the difference of both channels."""
-        return Difference(f"{self.pinion_encoder}_rotation", f"{self.gear_encoder}_rotation")
+        return Difference(f"{self.driver_encoder}_rotation", f"{self.driven_encoder}_rotation")
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,7 +77,7 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
     ----------
     config : Config
     record_id : int
-    gear, tooth : as damage names it, such as 'pinion' or 'slow.gear', of a machine by its own name, and an index; None:
+    gear, tooth : as damage names it, such as 'pinion', of a machine by its own name, and an index; None:
         the first damaged tooth, else tooth 0 of the first pinion
 
     Raises

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
 from siggen.checks.loading import load_config
 from siggen.dynamics.structure.free_rotation import static_solution
@@ -38,7 +36,7 @@ def told(raw: dict[str, Any]) -> Problem:
 def test_gears_of_one_shaft_need_one_and_a_half_times_their_faces_between_its_bearings() -> None:
     """20 and 30 mm wide, at a third and at two thirds: they touch at (20 + 30)/2 = span/3."""
     problem = told(one_more(span_mm=[74.9, 160]))
-    assert problem.path == "stages.0.span_mm"
+    assert problem.path == "machine.shafts.1.span_mm"
     assert problem.received == "74.9 mm for faces of 50 mm together"
     assert "at least 75 mm" in problem.allowed
     assert load_config(one_more(span_mm=75.0)).stages
@@ -49,7 +47,7 @@ def test_gears_of_one_shaft_need_one_and_a_half_times_their_faces_between_its_be
 )
 def test_axes_a_little_apart_are_refused(gears: dict[str, Any]) -> None:
     problem = told(one_more(direction_deg=180.0, gears=gears))
-    assert problem.path == "stages.0.direction_deg"
+    assert problem.path == "machine.meshes.1.direction_deg"
     apart_mm = abs(65.0 - 0.5 * gears["module_mm"] * (17 + gears["gear"]["teeth"]))
     assert f"the axis of slow_shaft stands {apart_mm:.4g} mm from that of pinion_shaft" in problem.received
     assert "at least 32 mm, the radii of both shafts" in problem.allowed
@@ -77,29 +75,3 @@ def test_a_coaxial_gearbox_stands_and_its_layshaft_alone_holds_the_casing_agains
     # The motor turns the shafts from x to y and the load back, as its shaft turns that way too.
     ratio = 47 * 35 / (18 * 17)
     assert 0.065 * forces["gear_bearing/vertical"] == pytest.approx(torque_nm * (1 - ratio), rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("name", "reason"),
-    [
-        ("pinion", "bearings and labels"), ("either", "drawn gear"), ("casing", "stand on the casing"),
-        ("load", "turns before or behind"), ("casing_a", "motions of sensors"), ("a_pair_1", "pairs of teeth"),
-    ],
-)  # fmt: skip
-def test_a_name_that_means_something_else_is_refused_with_the_reason(name: str, reason: str) -> None:
-    problem = told(one_more(name=name))
-    assert problem.path == "stages.0.name"
-    assert f"'{name}', but" in problem.received
-    assert reason in problem.received
-
-
-def test_two_stages_that_share_a_column_are_refused_and_the_line_is_told(tmp_path: Path) -> None:
-    stages = [{**SLOW, "name": "mesh_a"}, {**SLOW, "name": "a_shaft", "gears": EQUAL}]
-    file = tmp_path / "two.yaml"
-    file.write_text(yaml.safe_dump(staged(stages=stages, states=by_name(HEALTHY)), sort_keys=False), encoding="utf-8")
-    line = [i for i, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1) if "name: a_shaft" in text]
-    with pytest.raises(ConfigError) as refused:
-        load_config(file)
-    (problem,) = refused.value.problems
-    assert problem.received == "'a_shaft', whose column mesh_a_shaft_hz the stage mesh_a has too"
-    assert str(line[0]) in problem.where

@@ -70,7 +70,7 @@ def test_the_table_shows_identity_splits_and_size(path):
 
 def test_errors_of_the_teeth_are_named_by_their_class(tmp_path):
     assert plan_summary(config())["manufacture"] == "perfect gears"
-    override = ("--set", "manufacture={accuracy_class: 6, accuracy_class_gear: 7, draw: state}")
+    override = ("--set", "manufacture={accuracy_class: 6, accuracy_class_driven: 7, draw: state}")
     text = run("plan", Path("tests/configs/casing.yaml"), *override)
     assert "ISO 1328-1 class 6, gear 7; share of its tolerances: [0.3, 0.5]" in text
     assert "drawn anew for" in text

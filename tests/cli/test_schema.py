@@ -26,7 +26,10 @@ def resolved(schema, node):
 
 
 def test_the_schema_names_every_key_and_what_is_needed(schema):
-    assert list(schema["properties"]) == [*Config.model_fields, "extends"]
+    assert list(schema["properties"]) == [
+        *(name for name, field in Config.model_fields.items() if not field.exclude),
+        "extends",
+    ]
     assert set(schema["else"]["required"]) == {
         "name",
         "seed",

@@ -18,7 +18,7 @@ from siggen.errors import ConfigError
 from tests.command import Ended, command
 from tests.config.mill import mill
 from tests.config.minimal import by_name
-from tests.config.staged import SLOW, SPALL, staged
+from tests.config.staged import FAST, SLOW, SPALL, in_a_row, staged
 
 SENSORS = [
     {"name": "bearing"},
@@ -69,7 +69,7 @@ def test_channels_at_the_third_shaft_are_called_by_quantity_sensor_axis_and_unit
 def test_labels_name_the_stage_and_its_frequencies(made: Path) -> None:
     healthy, severe = sorted(rows(made, "metadata"), key=lambda row: row["record_id"])
     assert severe["status"] == healthy["status"] == "ok"
-    assert (healthy["faulty_gear"], severe["faulty_gear"]) == ("none", "slow.pinion")
+    assert (healthy["faulty_gear"], severe["faulty_gear"]) == ("none", "slow_pinion")
     assert severe["faulty_teeth_pinion"] == []
     assert len(severe["faulty_teeth_slow_pinion"]) == 1
     assert severe["mesh_stiffness_loss_as_simulated"] > healthy["mesh_stiffness_loss_as_simulated"] == 0.0
@@ -81,13 +81,14 @@ def test_labels_name_the_stage_and_its_frequencies(made: Path) -> None:
 
 def test_the_table_of_damage_names_gear_and_stage(made: Path) -> None:
     (row,) = rows(made, "damage")
-    assert row["gear"] == "slow.pinion"
+    assert row["gear"] == "slow_pinion"
     (severe,) = (row for row in rows(made, "metadata") if row["state"] == "severe")
     assert [row["tooth"]] == severe["faulty_teeth_slow_pinion"]
 
 
 def test_the_card_and_the_plan_name_every_mesh(made: Path) -> None:
-    assert "`slow` with 17 and 52" in (made / "README.md").read_text(encoding="utf-8")
+    card = " ".join((made / "README.md").read_text(encoding="utf-8").split())
+    assert "`slow`, in which slow_pinion with 17 teeth drives slow_gear with 52" in card
     told = run("plan", str(made / "config.yaml"), "--trial", "0")
     assert "mesh of slow" in told.stdout
     assert f"{30.0 * 18 / 47 * 17:.6g} Hz" in told.stdout
@@ -97,7 +98,7 @@ IRREGULAR = [
     {"name": "healthy"},
     {
         "name": "severe",
-        "damage": {"kind": "irregular", "gear": "slow.pinion", "profile_length_mm": 1.0, "face_share": 0.5},
+        "damage": {"kind": "irregular", "gear": "slow_pinion", "profile_length_mm": 1.0, "face_share": 0.5},
     },
 ]
 
@@ -105,24 +106,23 @@ IRREGULAR = [
 @pytest.mark.parametrize(
     ("changes", "path", "allowed"),
     [
-        ({"stages": [SLOW, SLOW]}, "stages.1.name", "does not have already"),
-        ({"stages": [SLOW, {**SLOW, "name": "gear"}]}, "stages.1.name", "another name than pinion, gear, either"),
+        ({"stages": [SLOW, SLOW]}, "machine.meshes.2.name", "every name once"),
         (
-            {"states": {"severe": {"damage": {**SPALL, "gear": "fast.pinion"}}}},
-            "states.severe.damage.gear", "slow.gear",
+            {"states": {"severe": {"damage": {**SPALL, "gear": "fast_pinion"}}}},
+            "states.severe.damage.gear", "slow_gear",
         ),
         (
-            {"states": {"severe": {"damage": {**SPALL, "gear": "slow.pinion", "teeth": [17]}}}},
-            "states.severe.damage.teeth", "slow.pinion has 17 teeth",
+            {"states": {"severe": {"damage": {**SPALL, "gear": "slow_pinion", "teeth": [17]}}}},
+            "states.severe.damage.teeth", "slow_pinion has 17 teeth",
         ),
         ({"operating_points": [{"speed_hz": 30.0, "torque_nm": -1.0}]}, "operating_points.0.torque_nm", "above 0"),
-        ({"stages": [{**SLOW, "direction_deg": 270.0}]}, "stages.0.direction_deg", "from -180 to 180"),
+        ({"stages": [{**SLOW, "direction_deg": 270.0}]}, "machine.meshes.1.direction_deg", "from -180 to 180"),
         (
             {"stages": [{**SLOW, "gears": {**SLOW["gears"], "pinion": {"teeth": 17, "bore_radius_mm": 35.0}}}]},
-            "stages.0.gears.pinion.bore_radius_mm", "below the root radius",
+            "machine.gears.2.bore_radius_mm", "below the root radius",
         ),
         ({"fs_hz": 2_560.0}, "fs_hz", "mesh harmonic"),
-        ({"stages": [], "states": by_name(IRREGULAR)}, "states.severe.damage.gear", "allowed: pinion, gear"),
+        ({"machine": {**in_a_row(FAST, []), "shafts": []}}, "machine.shafts", "2"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_with_its_path_and_what_is_allowed(
@@ -138,7 +138,7 @@ def test_what_cannot_be_is_refused_with_its_path_and_what_is_allowed(
 def test_the_plan_of_what_cannot_be_ends_with_the_path_and_no_traceback(tmp_path: Path) -> None:
     told = run("plan", written(tmp_path, stages=[SLOW, SLOW]))
     assert told.returncode == 2
-    assert "stages.1.name" in told.stderr
+    assert "machine.meshes.2.name" in told.stderr
     assert "Traceback" not in told.stderr
 
 
@@ -147,9 +147,9 @@ def test_a_stage_is_looked_at_by_its_name(tmp_path: Path, made: Path) -> None:
     done = run("inspect", "flank", file, "--stage", "slow", "--out", str(table))
     assert done.returncode == 0, done.stderr
     (row,) = pc.read_csv(table).to_pylist()
-    assert row["gear"] == "slow.pinion"
-    told = run("inspect", "flank", file, "--stage", "fast", "--out", str(table)).stderr
-    assert "allowed: slow" in told
+    assert row["gear"] == "slow_pinion"
+    told = run("inspect", "flank", file, "--stage", "third", "--out", str(table)).stderr
+    assert "allowed: fast, slow" in told
     curves = tmp_path / "tvms.csv"
     done = run("inspect", "tvms", str(made / "config.yaml"), "--stage", "slow", "--out", str(curves))
     assert done.returncode == 0, done.stderr
@@ -174,7 +174,7 @@ def test_the_preset_of_two_stages_is_generated_and_verified(tmp_path: Path) -> N
     done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"), "--engine", "serial")
     assert done.returncode == 0, done.stderr
     states = {row["state"]: row["faulty_gear"] for row in rows(tmp_path / "set", "metadata")}
-    expected = {"slight": "slow.pinion", "severe": "slow.pinion", "fast_severe": "pinion"}
+    expected = {"slight": "c", "severe": "c", "fast_severe": "a"}
     assert states == {"healthy": "none", **expected, "sham": "none"}
     done = run("verify", str(tmp_path / "set"), "--physics", "1")
     assert done.returncode == 0, done.stdout + done.stderr

@@ -68,7 +68,7 @@ def test_a_finished_set_gives_its_drivetrain_and_the_columns_about_its_parts(tmp
 def test_a_set_gives_the_sections_of_every_gear_but_a_ring_by_its_name(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     for raw, widths in (
-        (staged(), {"pinion": 20.0, "gear": 20.0, "slow.pinion": 30.0, "slow.gear": 30.0}),
+        (staged(), {"pinion": 20.0, "gear": 20.0, "slow_pinion": 30.0, "slow_gear": 30.0}),
         (mill(), {"ida": 20.0, "otto": 20.0, "eva": 30.0, "karl": 30.0}),
         (planets(), {"sun": 20.0, "planet": 20.0}),
         ({"name": "of another version"}, {}),

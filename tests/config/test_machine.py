@@ -16,14 +16,14 @@ from siggen.specimen.structure import structure
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler
 from tests.config.mill import MACHINE, mill, with_machine
-from tests.config.minimal import by_name
+from tests.config.minimal import by_name, minimal
 from tests.config.staged import SLOW, SPALL, staged
 
 WHEEL = {"teeth": 20, "bore_radius_mm": 12.0}
 MESH = {"module_mm": 2.0, "face_width_mm": 20.0}
 
 
-def test_a_machine_is_its_short_form_with_other_words() -> None:
+def test_other_names_and_another_order_make_the_same_gearbox() -> None:
     own, short = parse(mill()).config, parse(staged(
         stages=[{**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}], sensors={"bearing": {}}
     )).config  # fmt: skip
@@ -226,16 +226,37 @@ OTHERS: dict[str, tuple[dict[str, Any], str, str]] = {
         "karl",
     ),
     "place": ({"sensors": {"a": {"place": "pinion_bearing"}}}, "sensors.a.place", "input_bearing"),
-    "beside": ({"stages": [SLOW]}, "stages", "either this section or machine"),
+    "beside": ({"planetary": {"ring_teeth": 77}}, "planetary", "either this section or machine"),
     "rotor": ({"dynamics": {"model": "8dof", "gear": {"mass_kg": 1.0}}}, "dynamics.gear", "machine.shafts"),
     "casing": ({"dynamics": {"model": "6dof"}}, "dynamics.model", "8dof, casing"),
 }
 
 
 @pytest.mark.parametrize("case", OTHERS)
-def test_words_of_the_short_form_are_none_of_a_machine(case: str) -> None:
+def test_words_of_a_pair_are_none_of_a_machine(case: str) -> None:
     changes, path, words = OTHERS[case]
     found = {one.path: one for one in parse(mill(**changes)).problems}
     assert list(found) == [path]
     assert words in found[path].allowed
     assert "pinion" not in found[path].allowed
+
+
+def test_further_meshes_of_former_files_are_refused_with_the_word_for_them() -> None:
+    for raw in (minimal(stages=[SLOW]), mill(stages=[SLOW])):
+        (problem,) = parse(raw).problems
+        assert problem.path == "stages"
+        assert problem.allowed.startswith("write machine: with shafts, gears and meshes")
+
+
+BEHIND: dict[str, tuple[dict[str, Any], str]] = {
+    "balls": ({"bearing": {}}, "bearing"),
+    "a seat off its axis": ({"eccentricity_um": 5.0}, "eccentricity_um"),
+}
+
+
+@pytest.mark.parametrize("case", BEHIND)
+def test_what_only_the_first_two_shafts_can_have_is_refused_on_those_behind(case: str) -> None:
+    shaft, key = BEHIND[case]
+    (problem,) = parse(mill(machine=with_machine("shafts", 0, **shaft), manufacture={"accuracy_class": 6})).problems
+    assert problem.path == f"machine.shafts.0.{key}"
+    assert problem.allowed == "allowed: none on a shaft behind the second"

@@ -39,7 +39,7 @@ def test_null_is_the_set_without_the_section() -> None:
 
 def test_every_key_changes_the_identity() -> None:
     changes: list[dict[str, object]] = [
-        {}, {"accuracy_class": 7}, {"accuracy_class_gear": 7}, {"tolerance_share": 0.4},
+        {}, {"accuracy_class": 7}, {"accuracy_class_driven": 7}, {"tolerance_share": 0.4},
         {"draw": "state"},
     ]  # fmt: skip
     found = [parse(with_section(**({"accuracy_class": 6} | change))).config for change in changes]
@@ -54,7 +54,7 @@ def test_classes_that_do_not_exist_are_refused(accuracy_class: object) -> None:
 
 def test_classes_may_be_a_choice_and_differ_between_the_gears() -> None:
     choice = {"one_of": [5, 6, 7]}
-    parsed = parse(with_section(accuracy_class=choice, accuracy_class_gear=8)).config
+    parsed = parse(with_section(accuracy_class=choice, accuracy_class_driven=8)).config
     assert parsed is not None
     assert parsed.manufacture is not None
     assert parsed.manufacture.gear_class == 8.0

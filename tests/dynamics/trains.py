@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from siggen.dynamics.structure.gear_stage import Casing, GearStage, NextStage, PlanetaryStage, Shaft
 from siggen.dynamics.structure.makers import Housing, planetary_train, rigid_housing, shaft_places_m, train
 from siggen.dynamics.structure.structure import Structure, assembled
-from siggen.names import of_stages
+from siggen.names import PAIR, GearName, MeshName, ShaftName
 
 
 def eight_dof(stage: GearStage) -> Structure:
@@ -18,7 +19,13 @@ def eight_dof(stage: GearStage) -> Structure:
 def stages(first: GearStage, behind: Sequence[NextStage]) -> Structure:
     """Return meshes in a row on bearings on the ground; the only one behind the first is called slow."""
     names = ["slow"] if len(behind) == 1 else [f"mesh_{number}" for number in range(len(behind))]
-    return assembled(train(first, behind, names=of_stages(*names)))
+    meshes = [
+        MeshName(name, name, *(GearName(gear, gear, gear, gear) for gear in (f"{name}_pinion", f"{name}_gear")))
+        for name in names
+    ]
+    shafts = [ShaftName(name, name, name) for name in names]
+    own = replace(PAIR, meshes=(*PAIR.meshes, *meshes), shafts=(*PAIR.shafts, *shafts))
+    return assembled(train(first, behind, names=own))
 
 
 def casing_of(stage: GearStage, casing: Casing) -> Housing:

@@ -23,7 +23,7 @@ def depth(strength: np.ndarray, order: float) -> float:
 
 
 def test_the_strength_has_mean_one_and_the_depths_that_were_asked_for() -> None:
-    asked = NoiseModulation(pinion_depth=0.3, gear_depth=0.2, level_std=0.0)
+    asked = NoiseModulation(driver_depth=0.3, driven_depth=0.2, level_std=0.0)
     strength = NoiseStrength(asked, draws(), GEAR_ORDER, FS_HZ).take(ANGLE_RAD)
     # 500 turns of the pinion, 191.5 of the gear: what half a turn leaves is below 1/100
     assert strength.mean() == pytest.approx(1.0, abs=0.01)

@@ -44,8 +44,8 @@ def test_damage_grows_on_both_meshes_whatever_state_adds_to_which() -> None:
     states = [
         {"name": "healthy"},
         {"name": "slight", "damage": {**SPALL, "gear": "pinion", "teeth": 1}},
-        {"name": "moderate", "grows": "slight", "damage": {**SPALL, "gear": "slow.gear", "teeth": 1}},
-        {"name": "severe", "grows": "moderate", "damage": {**SPALL, "gear": "slow.gear", "teeth": 2}},
+        {"name": "moderate", "grows": "slight", "damage": {**SPALL, "gear": "slow_gear", "teeth": 1}},
+        {"name": "severe", "grows": "moderate", "damage": {**SPALL, "gear": "slow_gear", "teeth": 2}},
     ]
     config = config_of(states=by_name(states))
     specimen = draw_specimen(config, 0)

@@ -170,5 +170,5 @@ def test_the_header_has_the_features_that_datasets_would_write(kept: Path, publi
 
 def test_class_labels_name_the_gears_of_every_mesh_and_of_planetary_sets() -> None:
     named = [class_names(load_config(raw))["faulty_gear"] for raw in (staged(), planets())]
-    assert named[0] == ("none", "pinion", "gear", "slow.pinion", "slow.gear", "several")
+    assert named[0] == ("none", "pinion", "gear", "slow_pinion", "slow_gear", "several")
     assert named[1] == ("none", "sun", "planet", "ring", "several")

@@ -101,7 +101,7 @@ def test_it_takes_the_place_of_the_sizes_of_a_file_that_is_extended(tmp_path: Pa
     [
         (-5.0, {}, "-5.0", "above 0"),
         ("much", {}, "the text 'much'", "number"),
-        (60.0, {"stages": [{"name": "slow"}]}, "60.0, beside stages", "allowed with gears alone"),
+        (60.0, {"planetary": {"ring_teeth": 77}}, "60.0, beside planetary", "allowed with gears alone"),
     ],
 )
 def test_what_cannot_be_is_refused_at_its_key(rated: Any, changes: dict[str, Any], received: str, allowed: str) -> None:

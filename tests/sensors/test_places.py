@@ -105,8 +105,8 @@ def test_a_rigid_casing_moves_at_the_third_shaft_as_two_sensors_elsewhere_on_it_
 
 def test_unknown_places_are_refused_with_those_of_this_gearbox() -> None:
     found = refused(
-        {"name": "a", "place": "fast_bearing"}, {**WASHER, "name": "b", "place": "slow.gear"},
-        {**ENCODER, "name": "c", "place": "slow.gear"},
+        {"name": "a", "place": "fast_bearing"}, {**WASHER, "name": "b", "place": "slow_gear"},
+        {**ENCODER, "name": "c", "place": "slow_gaer"},
     )  # fmt: skip
     where = "(dynamics.model: 8dof)"
     assert found["sensors.a.place"].startswith(
@@ -114,17 +114,17 @@ def test_unknown_places_are_refused_with_those_of_this_gearbox() -> None:
     )
     assert "one of pinion_bearing, gear_bearing, slow_bearing" in found["sensors.b.place"]
     turning = "motor, pinion, gear, slow_pinion, slow_gear, load"
-    assert found["sensors.c.place"] == f"'slow.gear'; allowed: one of {turning} {where}; did you mean 'slow_gear'?"
-    one_mesh = refused({"name": "a", "place": "slow_bearing"}, stages=[], states={"healthy": {}})
+    assert found["sensors.c.place"] == f"'slow_gaer'; allowed: one of {turning} {where}; did you mean 'slow_gear'?"
+    one_mesh = refused({"name": "a", "place": "slow_bearing"}, stages=[])
     assert "one of pinion_bearing, gear_bearing (dynamics.model: 8dof)" in one_mesh["sensors.a.place"]
 
 
 def test_a_transmission_error_of_a_further_mesh_has_its_own_base_circles() -> None:
     """A disc off its axis leads by e/r sin of its angle: 1.5 turns, so both extremes are there."""
     inner, out = {**ENCODER, "name": "in", "place": "slow_pinion"}, {**ENCODER, "name": "out", "place": "slow_gear"}
-    error = {"kind": "transmission_error", "name": "of_out", "pinion_encoder": "in"}
+    error = {"kind": "transmission_error", "name": "of_out", "driver_encoder": "in"}
     off = {**out, "name": "off", "eccentricity": 1e-3}
-    pairs = {**error, "gear_encoder": "out"}, {**error, "name": "of_off", "gear_encoder": "off"}
+    pairs = {**error, "driven_encoder": "out"}, {**error, "name": "of_off", "driven_encoder": "off"}
     found = signals(loaded(inner, out, off, *pairs, duration_s=0.4))
     added = found["of_off_line_of_action"] - found["of_out_line_of_action"]
     radius_um = 1e6 * 0.5 * 3e-3 * 52 * cos(radians(20.0))
@@ -133,11 +133,11 @@ def test_a_transmission_error_of_a_further_mesh_has_its_own_base_circles() -> No
 
 
 def test_encoders_of_a_transmission_error_sit_on_both_sides_of_one_mesh() -> None:
-    error = {"kind": "transmission_error", "name": "te", "pinion_encoder": "in", "gear_encoder": "out"}
+    error = {"kind": "transmission_error", "name": "te", "driver_encoder": "in", "driven_encoder": "out"}
     places = {"in": "pinion", "out": "load", "middle": "slow_pinion"}
     encoders = [{**ENCODER, "name": name, "place": place} for name, place in places.items()]
     first = refused(*encoders, error)
-    assert first == {"sensors.te.gear_encoder": "'out'; allowed: an encoder at place gear: none there is; add one"}
-    assert loaded(*encoders, {**error, "pinion_encoder": "middle"}).sensors
-    other = refused(*encoders, {**error, "pinion_encoder": "out"})["sensors.te.pinion_encoder"]
+    assert first == {"sensors.te.driven_encoder": "'out'; allowed: an encoder at place gear: none there is; add one"}
+    assert loaded(*encoders, {**error, "driver_encoder": "middle"}).sensors
+    other = refused(*encoders, {**error, "driver_encoder": "out"})["sensors.te.driver_encoder"]
     assert other == "'out'; allowed: an encoder at place pinion or motor or slow_pinion: in, middle"

@@ -12,7 +12,7 @@ from siggen.record.specimen_state import specimen_state
 from tests.sensors.runs import loaded, problems, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION
 
-ERROR = {"kind": "transmission_error", "name": "error", "pinion_encoder": "first", "gear_encoder": "second"}
+ERROR = {"kind": "transmission_error", "name": "error", "driver_encoder": "first", "driven_encoder": "second"}
 SPALL = {"kind": "spall", "gear": "pinion", "teeth": 18, "face_length_mm": 15, "profile_length_mm": 2, "depth_mm": 0.2}
 SLOW: dict[str, Any] = {
     "dynamics__mesh": {"law": "pairs", "tip_relief_um": 15.0},
@@ -42,7 +42,7 @@ def test_at_low_speed_it_is_that_of_the_mesh_at_rest(state: int) -> None:
 
 def test_a_disc_off_its_axis_adds_its_eccentricity_at_the_base_circle() -> None:
     off = {**GEAR, "name": "off", "eccentricity": 1e-3}
-    of_off = {**ERROR, "name": "of_off", "gear_encoder": "off"}
+    of_off = {**ERROR, "name": "of_off", "driven_encoder": "off"}
     config = loaded(PINION, GEAR, ERROR, off, of_off, duration_s=0.4, **OFF)
     channels = record(config).channels
     added = channels["of_off_line_of_action"].astype(np.float64) - channels["error_line_of_action"]
@@ -52,9 +52,9 @@ def test_a_disc_off_its_axis_adds_its_eccentricity_at_the_base_circle() -> None:
 
 
 def test_encoders_that_are_not_there_or_on_the_other_shaft_are_refused() -> None:
-    found = problems(PINION, GEAR, {**ERROR, "gear_encoder": "first"})
-    assert found["sensors.error.gear_encoder"] == "'first'; allowed: an encoder at place gear or load: second"
-    found = problems(PINION, {**ERROR, "gear_encoder": "third"})
-    assert found["sensors.error.gear_encoder"].endswith("gear or load: none there is; add one")
+    found = problems(PINION, GEAR, {**ERROR, "driven_encoder": "first"})
+    assert found["sensors.error.driven_encoder"] == "'first'; allowed: an encoder at place gear or load: second"
+    found = problems(PINION, {**ERROR, "driven_encoder": "third"})
+    assert found["sensors.error.driven_encoder"].endswith("gear or load: none there is; add one")
     found = problems(PINION, {**GEAR, "pulses_per_turn": 0}, ERROR)
     assert list(found) == ["sensors.second.pulses_per_turn"]

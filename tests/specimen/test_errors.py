@@ -130,7 +130,7 @@ def with_helix(config: Config, **keys: object) -> Config:
 
 
 def test_helix_slopes_are_those_of_misaligned_by_the_standard_and_forms_are_one_per_gear() -> None:
-    config = with_helix(CLASS_6, helix="iso_1328", crowning_um=5.0, crowning_gear_um=0.0)
+    config = with_helix(CLASS_6, helix="iso_1328", crowning_um=5.0, crowning_driven_um=0.0)
     for specimen in range(5):
         one, before = errors_of(config, specimen), errors_of(misaligned("iso_1328"), specimen)
         # Slope and form shrink alike where their total passes its limit; the form was at its own before.
@@ -149,7 +149,7 @@ def test_helix_slopes_are_those_of_misaligned_by_the_standard_and_forms_are_one_
 def test_a_crowned_pair_at_rest_gives_way_by_up_to_the_mean_of_its_parabola() -> None:
     crown, approach = 8e-6, {}
     for crowning in (8.0, 0.0):
-        config = with_helix(CLASS_6, tolerance_share=0.0, crowning_um=crowning, crowning_gear_um=0.0)
+        config = with_helix(CLASS_6, tolerance_share=0.0, crowning_um=crowning, crowning_driven_um=0.0)
         state = specimen_state(draw_specimen(config, 0), 0)
         pair = state.pair
         alone = np.array([0.5 * (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m])

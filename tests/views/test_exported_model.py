@@ -169,7 +169,7 @@ that chooses its steps: the last bits decide where its steps pass those of the f
 under an impact of 250 N, by up to 5e-3 of the mesh force, with 1e-6 by 2e-4."""
 
 SLOW_SPALL = (
-    "states.sham.damage={kind: spall, gear: slow.pinion, teeth: 17, centre_height_mm: pitch, face_length_mm: 30.0, "
+    "states.sham.damage={kind: spall, gear: slow_pinion, teeth: 17, centre_height_mm: pitch, face_length_mm: 30.0, "
     "depth_mm: 0.2, profile_length_mm: 1.0}"
 )
 

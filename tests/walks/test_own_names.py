@@ -1,7 +1,7 @@
 """A machine of three shafts by command, its gears, shafts and meshes named by its user: nobody says pinion.
 
-The set is the one of the short form, renamed: signals are equal to the bit. Its state and its sensor have the program's
-own word in their names: these are data, which no table, document or page may rewrite.
+The set is that of `tests.config.staged`, renamed: signals are equal to the bit. Its state and its sensor have the
+program's own word in their names: these are data, which no table, document or page may rewrite.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def words_of(file: Path) -> str:
 
 
 def said(folder: Path) -> dict[str, list[str]]:
-    """Return file -> lines that call a gear as the short form does; data aside."""
+    """Return file -> lines that call a gear as a pair does; data aside."""
     files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".png"]
     assert files
     found = {
@@ -107,11 +107,11 @@ def test_plan_set_card_and_records_say_the_users_names_alone(made: Path) -> None
     assert f"* `{STATE}`: fault spalling" in card
 
 
-def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: Path) -> None:
+def test_columns_and_labels_of_other_names_hold_the_same(made: Path) -> None:
     sensors = [{"name": SENSOR, "place": "slow_bearing"}, {"kind": "encoder", "name": "out", "place": "slow_gear"}]
     stage = {**SLOW, "gear": {"mass_kg": 6.0}, "span_mm": 120.0}
     short = siggen.load_config(
-        staged(**COMMON, stages=[stage], sensors=by_name(sensors), states=by_name(states("slow.pinion")))
+        staged(**COMMON, stages=[stage], sensors=by_name(sensors), states=by_name(states("slow_pinion")))
     )
     (other,) = simulate(short, [1])
     assert isinstance(other, SimulatedRecord)
@@ -121,7 +121,7 @@ def test_columns_and_labels_are_those_of_the_short_form_under_other_names(made: 
         np.testing.assert_array_equal(record[column], signal)
     names = {
         "teeth_pinion": "teeth_ida", "teeth_slow_gear": "teeth_karl", "faulty_teeth_slow_pinion": "faulty_teeth_eva",
-        "pinion_shaft_hz": "input_shaft_hz", "slow_shaft_hz": "output_shaft_hz", "mesh_hz": "mesh_fast_hz",
+        "pinion_shaft_hz": "input_shaft_hz", "slow_shaft_hz": "output_shaft_hz", "mesh_fast_hz": "mesh_fast_hz",
         "mesh_slow_hz": "mesh_slow_hz", "runout_gear_um": "runout_otto_um", "ghost_orders_pinion": "ghost_orders_ida",
     }  # fmt: skip
     assert {short: record[own] for short, own in names.items()} == {short: other.labels[short] for short in names}

@@ -242,7 +242,7 @@ class PairMotion:
             self._refuse_tilt(m, static[TILT : TILT + 1], static[APPROACH : APPROACH + 1], "under the mean torque")
             shift = max(moved[f"{axis}{name.removeprefix('theta')}"] for name in mesh.turning for axis in "xy")
             if not shift <= allowed:
-                where = "stages" if len(self.meshes) > 1 else "dynamics.shafts"
+                where = "machine" if len(self.meshes) > 1 else "dynamics.shafts"
                 raise ValueError(
                     f"{where}: a gear moves by {1e3 * shift:.3g} mm under the mean torque; allowed: at most "
                     f"{1e3 * allowed:.3g} mm. Take thicker or shorter shafts, or a smaller torque"

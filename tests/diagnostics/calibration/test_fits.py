@@ -73,9 +73,9 @@ def test_noise_gives_back_its_density_depth_and_level() -> None:
     inside = (fit.frequency_hz > 100.0) & (fit.frequency_hz < 11_000.0)
     decibels = 20.0 * np.log10(fit.density[inside] / np.sqrt(2.0 / FS_HZ))
     assert abs(np.median(decibels)) < 0.3
-    assert fit.pinion_depth.value == pytest.approx(0.4, abs=0.05)
+    assert fit.driver_depth.value == pytest.approx(0.4, abs=0.05)
     # its kurtosis is that of the first line alone; the fit assumes three and leaves none for chance
-    assert fit.gear_depth.value < 0.06
+    assert fit.driven_depth.value < 0.06
     assert fit.level_std.value < 0.15
 
 

@@ -26,7 +26,7 @@ sensors:
   side: {kind: accelerometer}
   first: {kind: encoder, place: pinion, pulses_per_turn: 1800}
   second: {kind: encoder, place: gear, pulses_per_turn: 1800}
-  error: {kind: transmission_error, pinion_encoder: first, gear_encoder: second}
+  error: {kind: transmission_error, driver_encoder: first, driven_encoder: second}
 """
 
 

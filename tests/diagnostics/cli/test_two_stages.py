@@ -23,7 +23,7 @@ pytestmark = pytest.mark.slow
 
 STATES = [
     {"name": "healthy"},
-    {"name": "behind", "severity": "severe", "damage": {**SPALL, "gear": "slow.pinion", "teeth": 1}},
+    {"name": "behind", "severity": "severe", "damage": {**SPALL, "gear": "slow_pinion", "teeth": 1}},
 ]
 THIRD_SHAFT = [
     {"name": "end", "place": "slow_bearing"},
@@ -84,7 +84,7 @@ def test_a_slow_gear_of_four_turns_is_undefined_and_the_notes_say_so_once(made: 
     assert not np.isfinite(np.concatenate([ranked.column(name).to_numpy() for name in gear])).any()
     numbers = json.loads((made / "ranked/indicators.json").read_text(encoding="utf-8"))
     said = " ".join(numbers["notes"])
-    assert said.count("all slow.gear averages undefined, since they need 8 slow.gear revolutions") == 1
+    assert said.count("all slow_gear averages undefined, since they need 8 slow_gear revolutions") == 1
 
 
 def test_classifiers_take_features_of_both_meshes_and_predict_refuses_them(made: Path) -> None:
@@ -95,7 +95,7 @@ def test_classifiers_take_features_of_both_meshes_and_predict_refuses_them(made:
     assert "sideband_ratio_slow_pinion_h1_k3__lid_vertical" in json.dumps(names)
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "around mesh harmonic 1 of mesh slow" in page
-    assert "slow.pinion, mesh harmonic 1, sidebands 1 to 3" in page
+    assert "slow_pinion, mesh harmonic 1, sidebands 1 to 3" in page
     record = made / "record.csv"
     record.write_text("lid_vertical\n" + "\n".join(str(k % 7) for k in range(20_000)), encoding="utf-8")
     told = run("diagnostics", "predict", str(folder), str(record), "--fs", "12800", "--teeth", "18,47")
@@ -126,5 +126,5 @@ def test_audit_explorer_and_calibration_take_the_set_or_say_why_not(made: Path) 
     new = made / "mine.yaml"
     told = run("diagnostics", "calibrate", str(made / "two.yaml"), str(record), "--fs", "12800", "--out", str(new))
     assert told.returncode != 0
-    assert "stages: received slow" in told.stderr
+    assert "machine: received fast, slow" in told.stderr
     assert not new.exists()
