@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import TypeAlias, TypeVar
 
 from siggen.errors import Problem
@@ -114,18 +113,9 @@ class Names:
         """The first mesh."""
         return self.meshes[0]
 
-    def alone(self, number: int) -> Names:
-        """Return the names of one mesh as if there were no other."""
-        if not self.given:
-            return PAIR
-        mesh, (front, behind) = self.meshes[number], self.shafts[number : number + 2]
-        driver, driven = (replace(gear, inner=role) for gear, role in zip(mesh.gears, ROLES, strict=True))
-        shafts = replace(front, inner=DRIVER), replace(behind, inner=DRIVEN)
-        return replace(self, meshes=(MeshName("", mesh.word, driver, driven),), shafts=shafts)
-
     def gear(self, inner: str) -> str:
         """Return what damage and labels call a gear; words such as none stay."""
-        return _words(self).get(inner, inner)
+        return self.damaged.get(inner, inner)
 
     def mesh(self, inner: str) -> MeshName:
         """Return a mesh."""
@@ -195,9 +185,3 @@ PLANETARY = Names(
 
 def _in(mesh: str, gear: str) -> str:
     return f"{mesh}.{gear}" if mesh else gear
-
-
-@cache
-def _words(names: Names) -> dict[str, str]:
-    """Return what labels call gears."""
-    return names.damaged

@@ -270,8 +270,6 @@ def _torques(config: Config, pair: GearPair) -> Iterator[Quantity]:
     """Yield torques and ranges that belong to the largest torque of the operating points."""
     largest = max(max(map(abs, bounds(point.torque_nm))) for point in config.operating_points)
     rated: dict[str, Number] = {}
-    if bounds(config.variation.speed.slip)[1] > 0.0:
-        rated["variation.speed.rated_torque_nm"] = config.variation.speed.rated_torque_nm
     for sensor in config.sensors:
         if (torque := getattr(sensor, "rated_torque_nm", None)) is not None:
             rated[f"sensors.{sensor.name}.rated_torque_nm"] = torque

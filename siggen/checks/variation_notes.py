@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from siggen.config import Config
+from siggen.config.config import rated_nm
 from siggen.config.variation import RARE
 from siggen.dynamics.drive.slow_variation import SLOW_CORNER_HZ
 from siggen.keys.number import Number, bounds
@@ -31,7 +32,7 @@ def _speed(config: Config) -> Iterator[str]:
         if _some(number):
             yield f"speed ripple of {_percent(number)} {often} per revolution"
     if _some(speed.slip):
-        yield f"motor slip of {_percent(speed.slip)} at {_span(speed.rated_torque_nm)} N m"
+        yield f"motor slip of {_percent(speed.slip)} at {rated_nm(config.dynamics, config.operating_points):g} N m"
 
 
 def _torque(config: Config) -> Iterator[str]:

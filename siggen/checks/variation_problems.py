@@ -7,6 +7,7 @@ from math import pi
 from typing import Any
 
 from siggen.config import Dynamics, OperatingRange, Variation
+from siggen.config.config import rated_nm
 from siggen.dynamics.structure.steel_disc import disc_inertia_kg_m2
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
@@ -21,18 +22,20 @@ def variation_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -
         return []
     variation, points = sections["variation"], sections["operating_points"]
     return [
-        *_stalling(variation, points),
+        *_stalling(variation, points, rated_nm(sections["dynamics"], points)),
         *_driven_by_load(variation, points, _driven_inertias_kg_m2(sections, pairs), sections["duration_s"]),
     ]
 
 
-def _stalling(variation: Variation, points: Sequence[OperatingRange]) -> list[Problem]:
-    slip, rated_nm = bounds(variation.speed.slip)[1], bounds(variation.speed.rated_torque_nm)[0]
+def _stalling(variation: Variation, points: Sequence[OperatingRange], rated: float) -> list[Problem]:
+    slip = bounds(variation.speed.slip)[1]
     torque_nm = max(bounds(point.torque_nm)[1] for point in points)
-    if slip * torque_nm / rated_nm < 0.5:
+    if slip * torque_nm / rated < 0.5:
         return []
-    received = f"{slip:g} at {rated_nm:g} N m, which is {slip * torque_nm / rated_nm:.0%} at {torque_nm:g} N m"
-    allowed = "allowed: a slip below 50 % at the highest torque; lower slip or the torque, or raise rated_torque_nm"
+    received = f"{slip:g} at {rated:g} N m, which is {slip * torque_nm / rated:.0%} at {torque_nm:g} N m"
+    allowed = (
+        "allowed: a slip below 50 % at the highest torque; lower slip or the torque, or raise dynamics.rated_torque_nm"
+    )
     return [Problem("variation.speed.slip", received, allowed)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
@@ -30,7 +31,7 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.keys.by_name import ByName, written_by_name
 from siggen.keys.merging import in_keys
-from siggen.keys.number import Number, Within
+from siggen.keys.number import Number, Within, bounds
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.usual import Usual
@@ -76,6 +77,11 @@ class OperatingRange(Section):
     torque_nm: Annotated[Number, Within(least=-1e8, most=1e8)] = Field(
         description="torque on the input shaft; 0: idle, below 0: the load drives, on the back flanks"
     )
+
+
+def rated_nm(dynamics: Dynamics, points: Sequence[OperatingRange]) -> float:
+    """Return the torque of the motor's slip [N m]: as rated, or the largest of all; 1 without any, and then no slip."""
+    return dynamics.rated_torque_nm or max(abs(one) for point in points for one in bounds(point.torque_nm)) or 1.0
 
 
 VARIATION = AllowedText("a word of the catalogue, laboratory or plant, or a mapping with like, speed and torque")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from math import lcm
 
 from siggen.config.dynamics import Rotor
 from siggen.config.gears import Pair
@@ -47,11 +46,6 @@ def with_idlers(gears: Pair, stages: Iterable[Stage]) -> Iterator[Stage]:
             pair = pair.model_copy(update={**alike, "pinion": front.gear})
         front = pair
         yield stage.model_copy(update={"gears": pair}) if stage.idler else stage
-
-
-def hunting_turns(gears: Pair, stages: tuple[Stage, ...]) -> int:
-    """Return the turns of the first pinion after which all shafts stand again as they did."""
-    return lcm(*(one.denominator for one in turned(gears, stages)))
 
 
 def turned_teeth(gears: Pair, stages: tuple[Stage, ...]) -> tuple[Fraction, ...]:

@@ -35,9 +35,9 @@ class SpeedVariation(Section):
     )
     slip: Annotated[Number, Within(least=0, most=0.2), Usual(0.001, 0.2)] = Field(
         default=0.0,
-        description="share of the speed that the motor loses at its rated torque, in proportion to the torque",
+        description="share of the speed that the motor loses, in proportion to the torque, at dynamics.rated_torque_nm "
+        "or, where that is null, at the largest torque of the operating points",
     )
-    rated_torque_nm: Annotated[Number, Within(above=0)] = Field(default=60.0, description="of the motor, for the slip")
 
 
 class TorqueVariation(Section):

@@ -7,6 +7,7 @@ from functools import partial
 from math import radians
 
 from siggen.config import Config, Dynamics, Gears, Planetary, Rotor
+from siggen.config.config import rated_nm
 from siggen.config.planetary import RING
 from siggen.config.planetary_problems import set_of
 from siggen.config.stages import Stage, turned, with_idlers
@@ -124,5 +125,5 @@ def draw_operating_point(config: Config, specimen_id: int, operating_point_id: i
     return OperatingPoint(
         speed_hz=at(ranges.speed_hz, uniform("speed_hz")),
         torque_nm=at(ranges.torque_nm, uniform("torque_nm")),
-        variation=drawn_variation(own.variation, uniform),
+        variation=drawn_variation(own.variation, rated_nm(own.dynamics, own.operating_points), uniform),
     )

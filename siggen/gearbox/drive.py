@@ -42,15 +42,14 @@ class UnbalanceLevels:
     phases_rad: tuple[float, ...]
 
 
-def drawn_variation(law: Variation, uniform: Callable[[str], float]) -> PointVariation | None:
-    """Return the variation at an operating point; None where nothing varies."""
+def drawn_variation(law: Variation, rated_nm: float, uniform: Callable[[str], float]) -> PointVariation | None:
+    """Return the variation at an operating point, with slip by the rated torque [N m]; None where nothing varies."""
     if not law.active:
         return None
     section = draw(law, uniform, "variation")
     torque = in_si(section.torque)
-    return PointVariation(
-        SpeedLevels(**in_si(section.speed)), TorqueSettings(slow_rms=torque.pop("random_rms"), **torque)
-    )
+    speed = SpeedLevels(**in_si(section.speed), rated_torque_nm=rated_nm)
+    return PointVariation(speed, TorqueSettings(slow_rms=torque.pop("random_rms"), **torque))
 
 
 def drawn_unbalance(dynamics: Dynamics, names: Names, uniform: Callable[[str], float]) -> UnbalanceLevels | None:

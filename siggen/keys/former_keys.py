@@ -14,6 +14,7 @@ NOW = {
     ".grows_from": "write grows: NAME of the milder state; a state without it begins anew",
     ".sham": "write acts: false",
     "stages": "write machine: with shafts, gears and meshes of your own names, in place of gears and stages",
+    "variation.speed.rated_torque_nm": "leave it out: the slip belongs to dynamics.rated_torque_nm",
     **{f".{key}": f"write {now}" for key, now in RENAMED.items()},
 }
 """Former key -> the words of its refusal; behind a dot it is the last part of any path."""

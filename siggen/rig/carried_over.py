@@ -86,7 +86,6 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
             "crowning_um": scales.face_width,
             "crowning_driven_um": scales.face_width,
         },
-        "variation": {"speed.rated_torque_nm": scales.torque},
         "housing": _housing(scales.size),
         "background": {
             "base.mass_kg": mass,

@@ -35,9 +35,6 @@ SILENT = {
         )
     },
     ("states.list.damage.pits.0.face_mm", 1e-3): "a pit at the edge of the face",
-    ("variation.speed.rated_torque_nm", 1e-3): "not used without slip",
-    ("variation.speed.rated_torque_nm", 60.0): "not used without slip",
-    ("variation.speed.rated_torque_nm", 1e3): "not used without slip",
 }
 """Slips that nobody can see, and why."""
 FACTORS = (1e-3, 60.0, 1e3)

@@ -68,16 +68,6 @@ def test_states_change_shafts_by_their_place_in_the_machine() -> None:
     assert list(config.canonical()["states"]["soft"]["changes"]) == [key]
 
 
-def test_one_mesh_alone_is_a_machine_of_its_two_gears() -> None:
-    config = parse(mill()).config
-    assert config is not None
-    assert config.names.gear("pinion") == "ida"
-    assert [gear.word for gear in config.names.alone(0).gears] == ["ida", "otto"]
-    slow = config.names.alone(1)
-    assert [gear.word for gear in slow.gears] == ["eva", "karl"]
-    assert [shaft.word for shaft in slow.shafts] == ["middle", "output"]
-
-
 def loop(teeth: int) -> dict[str, Any]:
     """Return the machine with a mesh that drives the first shaft from the last one."""
     gears = [{**WHEEL, "name": "x", "shaft": "output"}, {**WHEEL, "name": "y", "shaft": "input", "teeth": teeth}]

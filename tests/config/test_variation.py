@@ -61,5 +61,5 @@ def test_a_run_down_that_the_load_would_drive_is_refused_by_name():
 
 
 def test_a_motor_that_its_slip_would_stall_is_refused_by_name():
-    (said,) = physical(variation={"speed": {"slip": 0.1, "rated_torque_nm": 6.0}})
+    (said,) = physical(variation={"speed": {"slip": 0.1}}, dynamics={"rated_torque_nm": 6.0})
     assert said.startswith("variation.speed.slip: received 0.1 at 6 N m, which is 100% at 60 N m")
