@@ -30,16 +30,16 @@ compiled = Compiled()
 event.register("numba:compile", compiled)
 import siggen
 from siggen.checks.physical_problems import physical_problems
-from siggen.record.compilation import CompilationPart, run_part
-from siggen.record.simulation import simulate_specimen
+from siggen.record.compilation import run_part
+from siggen.sets.drawn import compilation_parts, simulated
 
 begin = time.process_time()
 config = siggen.load_config(sys.argv[1], ["specimens=1", "duration_s=0.05"])
 if sys.argv[2] == "record":
     severest = max(i for i, state in enumerate(config.states) if state.damaged)
-    list(simulate_specimen(config, [severest * config.records_per_specimen // config.state_count]))
+    list(simulated(config, [severest * config.records_per_specimen // config.state_count]))
 elif sys.argv[2] != "check":
-    run_part(CompilationPart(config, sys.argv[2]))
+    run_part(next(part for part in compilation_parts(config) if part.name == sys.argv[2]))
 print(json.dumps([time.process_time() - begin, compiled.functions]))
 """
 

@@ -23,7 +23,7 @@ from siggen.columns.versions import SIMULATION_VERSION
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
-from siggen.record.simulation import simulate_specimen
+from siggen.sets.drawn import simulated
 
 KEPT = ROOT / "tests" / "golden.json"
 PRESETS = (
@@ -101,7 +101,7 @@ class Moved(NamedTuple):
 def records(preset: str) -> Iterator[SimulatedRecord]:
     """Yield a short record of every state of the first gearbox of a preset, at its first operating point."""
     config = shipped(_file(preset), f"duration_s={DURATION_S}")
-    found = simulate_specimen(config, [_first_record(config, state) for state in range(len(config.states))])
+    found = simulated(config, [_first_record(config, state) for state in range(len(config.states))])
     for record in found:
         if not isinstance(record, SimulatedRecord):
             raise RuntimeError(f"{preset}: {record.reason}")

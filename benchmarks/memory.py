@@ -17,10 +17,10 @@ GOAL_BYTES, GOAL_GROWTH_BYTES = 450e6, 50e6
 RECORD = """
 import json, pathlib, resource, sys
 import siggen
-from siggen.record.simulation import simulate_specimen
+from siggen.sets.drawn import simulated
 
 config = siggen.load_config(sys.argv[1], ["specimens=1", f"duration_s={sys.argv[2]}", *sys.argv[3:]])
-(record,) = simulate_specimen(config, [0])
+(record,) = simulated(config, [0])
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 status = pathlib.Path("/proc/self/status")
 if status.is_file():  # there ru_maxrss begins with the size of the process that started this one

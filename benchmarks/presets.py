@@ -13,8 +13,8 @@ from siggen.config import Config
 from siggen.dataset.shard import table_draft
 from siggen.dataset.storage import LocalFolder
 from siggen.planning.plan import planned_record, record_ids_of
-from siggen.record.simulation import simulate_specimen
 from siggen.record.stage_times import collected, stage
+from siggen.sets.drawn import set_columns, simulated
 
 GOALS_S = {"quickstart": 0.06, "bench": 0.06, "industrial": 0.045}
 RECORDS = 4
@@ -50,12 +50,13 @@ def _costs(config: Config, gearbox: int) -> dict[str, float]:
     chosen = [ids[round(k * (len(ids) - 1) / (RECORDS - 1))] for k in range(RECORDS)]
     states = {planned_record(config, i).state_id for i in ids}
     with collected("rest") as times:
-        results = list(simulate_specimen(config, chosen))
+        results = list(simulated(config, chosen))
         records = [result for result in results if isinstance(result, SimulatedRecord)]
         with stage("writing"), tempfile.TemporaryDirectory() as folder:
-            draft = table_draft(LocalFolder(Path(folder)), "data.parquet", record_schema(config), len(records))
+            columns = set_columns(config)
+            draft = table_draft(LocalFolder(Path(folder)), "data.parquet", record_schema(columns), len(records))
             with draft as data:
-                data.add(record_batch(config, records))
+                data.add(record_batch(columns, records))
                 data.finish()
     shared = {"plan": len(ids), "tables": RECORDS * len(ids) / len(states)}
     return {name: value / shared.get(name, RECORDS) / config.duration_s for name, value in times.seconds.items()}

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import pyarrow as pa
+
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
+from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.record.simulation import simulate_specimen
+from siggen.record.internals import internals_table as internals_of
+from siggen.sets.drawn import set_columns, simulated
 
 
 def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
@@ -18,6 +22,17 @@ def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord 
     done = {
         record_id: result
         for ids in by_specimen.values()
-        for record_id, result in zip(ids, simulate_specimen(config, ids), strict=True)
+        for record_id, result in zip(ids, simulated(config, ids), strict=True)
     }
     return [done[i] for i in record_ids]
+
+
+def internals_table(config: Config, record_id: int, *, internals: bool = True) -> pa.Table:
+    """Return what sensors and nobody saw of one record."""
+    planned = planned_record(config, record_id)
+    return internals_of(draw_specimen(config, planned.specimen_id), planned, internals=internals)
+
+
+def label_names(config: Config) -> tuple[str, ...]:
+    """Return the keys of the labels of a record."""
+    return ("state", *(column.name for column in set_columns(config).labels))

@@ -27,8 +27,6 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
 from diagnostics.calibration.path_draws import number_limits
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
-from siggen.columns.drivetrain import gear_train
-from siggen.columns.record import label_columns
 from siggen.errors import SolverFailure, UsageError
 from siggen.keys.column import Role
 
@@ -187,8 +185,9 @@ def _complete(rows: Sequence[dict[str, Any]], config: Any) -> None:
     torque_nm = 0.5 * sum(number_limits(torque))
     states = dict.fromkeys(["healthy", *(row["state"] for row in rows)])
     numbers = {state: number for number, state in enumerate(states)}
-    counts = {gear.name: gear.teeth for gear in gear_train(config).gears}
-    teeth = {column.name: counts[column.of] for column in label_columns(config) if column.quantity == "teeth"}
+    gearbox = siggen.draw(config)
+    counts = {gear.name: gear.teeth for gear in gearbox.drivetrain.gears}
+    teeth = {column.name: counts[column.of] for column in gearbox.columns if column.quantity == "teeth"}
     for row in rows:
         row["state_id"], row["torque_nm"] = numbers[row["state"]], float(torque_nm)
         row.update(teeth)

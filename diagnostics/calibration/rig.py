@@ -15,7 +15,6 @@ from diagnostics.calibration.healthy_blocks import Block
 from diagnostics.calibration.order_record import OrderRecord
 from diagnostics.calibration.path_draws import number_limits
 from diagnostics.recordings.taken import RecordingFacts, file_channels
-from siggen.columns.drivetrain import gear_train
 from siggen.errors import UsageError
 
 LINES, AROUND, LEAST_SHOWN = 10, 4, 0.25
@@ -89,7 +88,7 @@ def read_rig(file: Path) -> Rig:
         )
     if config.gears.pairs:
         raise UsageError(f"{file}: gears differ within the set; a calibration is of one machine of known teeth")
-    found = Rig(file, config.canonical(), drivetrain(gear_train(config)), config.places.pressed)
+    found = Rig(file, config.canonical(), drivetrain(siggen.draw(config).drivetrain), config.places.pressed)
     if not found.sensors:
         raise UsageError(f"{file}: sensors: received {', '.join(found.left_out)}; allowed: at least one accelerometer")
     return found

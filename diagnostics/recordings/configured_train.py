@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import siggen
-from siggen.columns.drivetrain import GearTrain, gear_train
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
 
 
@@ -28,4 +28,4 @@ def configured_train(file: Path) -> GearTrain:
     config = siggen.load_config(file)
     if config.gears.pairs:
         raise UsageError(f"{file}: gears: received gears that differ within a set; allowed: one pair of known teeth")
-    return gear_train(config)
+    return siggen.draw(config).drivetrain

@@ -14,10 +14,11 @@ import pyarrow as pa
 
 import siggen
 from siggen.checks.quantity_names import available_quantities
-from siggen.columns.gearbox_columns import HOUSING_COLUMNS
+from siggen.columns.common_columns import HOUSING_COLUMNS
 from siggen.columns.record import damage_schema, record_schema
 from siggen.names import PAIR as PAIR_NAMES
 from siggen.record.quantities import quantity_column
+from siggen.sets.drawn import set_columns
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL = CONFIGS / "industrial.yaml"
@@ -91,7 +92,7 @@ The manifest lists the roles (`columns`). A column that it does not list is a co
 def schema(overrides: Iterable[str] = (), without: str = "") -> pa.Schema:
     """Return the columns of the full configuration with overrides, or without one of the added sections."""
     added = [text for section, text in ADDED.items() if section != without]
-    return record_schema(siggen.load_config(FULL, [*BARE, *added, *overrides]))
+    return record_schema(set_columns(siggen.load_config(FULL, [*BARE, *added, *overrides])))
 
 
 def general(name: str, channels: Iterable[str]) -> str:
@@ -188,7 +189,7 @@ def page() -> str:
             "",
             "In `damage/*.parquet`: one row per pit or spall of a record.",
             "",
-            *rows(damage_schema(siggen.load_config(FULL)), {}, ()),
+            *rows(damage_schema(set_columns(siggen.load_config(FULL))), {}, ()),
             "",
             "## Internal quantities",
             "",

@@ -119,6 +119,8 @@ def compare(config, overrides, samples=600, record=0, rtol=1e-6):
     """Return times [s], then approach [m], mesh force [N] and tilt [rad] of every mesh by siggen and by scipy."""
     from siggen.checks.loading import load_config
     from siggen.config import by_reference
+    from siggen.gearbox.draw import draw_specimen
+    from siggen.planning.plan import planned_record
     from siggen.record.internals import internals_table
     from siggen.views.exported_model import exported_model, write_model
 
@@ -130,7 +132,8 @@ def compare(config, overrides, samples=600, record=0, rtol=1e-6):
         write_model(exported_model(loaded, record), Path(folder) / "model.npz")
         with np.load(Path(folder) / "model.npz") as file:
             model = {name: value[()] for name, value in file.items()}  # [()]: plain numbers instead of 0-d arrays
-    inner = internals_table(loaded, record)
+    planned = planned_record(loaded, record)
+    inner = internals_table(draw_specimen(loaded, planned.specimen_id), planned)
     times = np.arange(samples) / model["fs_hz"]
     own = tuple(inner[name].to_numpy() for mesh in meshes_of(model) for name in mesh.names)
     return times, own, integrate(model, times, rtol)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from siggen.checks.loading import load_config
-from siggen.record.simulation import simulate_specimen
+from siggen.sets.drawn import simulated
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 SHAFT_HZ, TEETH = 30, 18
@@ -29,7 +29,7 @@ def energies(lines: np.ndarray) -> dict[str, float]:
 def spectra(*overrides: str) -> dict[str, np.ndarray]:
     """Return the amplitudes [m/s²] of the vertical acceleration of the pinion at shaft orders, by state."""
     config = load_config("configs/paper_a.yaml", overrides)
-    records = simulate_specimen(config, range(config.records_per_specimen))
+    records = simulated(config, range(config.records_per_specimen))
     channel = "bearing_vertical"
     return {r.labels["state"]: line_amplitudes(r.channels[channel].astype(float), config.fs_hz) for r in records}
 

@@ -62,7 +62,7 @@ def _content(config: Config, specimen: int) -> dict[str, Any]:
         If the set has no lives, or not so many gearboxes.
     """
     from siggen.errors import UsageError
-    from siggen.record.life_rows import life_rows
+    from siggen.sets.drawn import life_rows
 
     if config.life is None:
         raise UsageError(f"{config.name} has no section life; allowed: a configuration with one, such as fleet")

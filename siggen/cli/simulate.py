@@ -32,8 +32,12 @@ def simulate(
     check_table_file(out)
     with working("simulating the record"):
         config = chosen_config(source, record, overrides or ())
+        from siggen.gearbox.draw import draw_specimen
+        from siggen.planning.plan import planned_record
         from siggen.record.internals import internals_table
 
-        table = internals_table(config, record, internals=internals)
+        planned = planned_record(config, record)
+        table = internals_table(draw_specimen(config, planned.specimen_id), planned, internals=internals)
+        table = table.replace_schema_metadata({**table.schema.metadata, "identity": config.identity})
     write_table_file(table, out)
     echo(str(out))

@@ -10,7 +10,7 @@ from siggen.columns.of_parts import of_gear, of_shaft
 from siggen.keys.column import Column, Role, in_role
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.specimen import Specimen
 
 F64 = pa.float64()
 
@@ -29,25 +29,24 @@ MACHINE = Column(
 )
 
 
-def background_columns(config: Config) -> tuple[Column, ...]:
-    """Return the columns of the parts that a configuration has; none without the section `background`."""
-    section = config.background
-    if section is None:
+def background_columns(gearbox: Specimen) -> tuple[Column, ...]:
+    """Return the columns of the parts that the background of a gearbox has; none without one."""
+    drawn = gearbox.background
+    if drawn is None:
         return ()
-    names, columns = config.names, list[Column]()
-    if section.bearings is not None:
+    names, columns = gearbox.names, list[Column]()
+    if drawn.bearings:
         columns += [of_shaft(VELOCITY, shaft) for shaft in names.shafts[:2]]
-    if section.machines is not None:
+    if drawn.machines is not None:
         columns.append(MACHINE)
-    if section.rubbing is not None:
+    if drawn.rubbing is not None:
         columns += [*RUBBING, *(of_gear(DEPTH, gear) for gear in names.first.gears)]
-    if section.shafts is not None:
+    if drawn.shafts:
         columns += [of_shaft(COUPLING, shaft) for shaft in names.shafts[:2]]
-    for name in ("second_stage", "auxiliary_drive"):
-        if getattr(section, name) is not None:
-            what = " ".join(name.split("_"))
-            columns.append(Column(f"{name}_order", F64, "", f"mesh of the {what}, per turn of the input shaft"))
-            columns.append(Column(f"{name}_force_n", F64, "N", f"first line of the {what}"))
-    if section.rubbing is not None and section.rubbing.bursts is not None:
+    for name in drawn.foreign:
+        what = " ".join(name.split("_"))
+        columns.append(Column(f"{name}_order", F64, "", f"mesh of the {what}, per turn of the input shaft"))
+        columns.append(Column(f"{name}_force_n", F64, "N", f"first line of the {what}"))
+    if drawn.rubbing is not None and drawn.rubbing.bursts is not None:
         columns.append(Column("burst_count", pa.int32(), "", "bursts of the rubbing that begin within the record"))
     return in_role(Role.PROVENANCE, *columns, section="background")

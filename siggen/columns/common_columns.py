@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.columns.of_parts import FAULTY_TEETH, TEETH, frequency_of, of_gear, of_shaft
 from siggen.columns.planetary_columns import SET_COLUMNS, manufacture_of_others, planetary_operating_columns
-from siggen.columns.state_columns import state_columns
 from siggen.keys.column import HERTZ, MILLIMETRE, Column, Role, in_role
 from siggen.names import Names
 from siggen.sensors.quantity import STILL_M_S2
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.specimen import Specimen
 
 STATE_COLUMNS = (
     Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
@@ -106,6 +104,13 @@ def columns_behind(names: Names) -> tuple[Column, ...]:
     return in_role(Role.CONDITION, *found, section="stages")
 
 
+HOUSING_COLUMNS = in_role(
+    Role.PROVENANCE,
+    Column("housing_mass_kg", pa.float64(), "kg", "mass of the housing, without gears and shafts"),
+    Column("housing_first_mode_hz", pa.float64(), "Hz", "lowest mode of the housing above the six on its bolts"),
+    section="housing",
+)
+"""Columns of sets whose housings are drawn from their geometry."""
 INTEGRATION_COLUMNS = in_role(
     Role.CONSEQUENCE,
     Column(
@@ -139,18 +144,19 @@ def variation_columns(names: Names) -> tuple[Column, ...]:
     )
 
 
-def common_columns(config: Config) -> tuple[Column, ...]:
+def common_columns(gearbox: Specimen) -> tuple[Column, ...]:
     """Return the columns of labels and operating conditions that belong to no channel."""
-    names, planetary = config.names, config.planetary is not None
+    names, planetary, made = gearbox.names, gearbox.planets is not None, gearbox.meshes[0].teeth.made
     return (
         *target_columns(names),
-        *state_columns(config),
+        *gearbox.states[0].labels,
         *(planetary_operating_columns() if planetary else operating_columns(names)),
-        *(INTEGRATION_COLUMNS if config.dynamics.method == "exponential" else ()),
-        *gearbox_columns(config),
+        *(INTEGRATION_COLUMNS if gearbox.law.method == "exponential" else ()),
+        *gearbox.labels,
+        *(HOUSING_COLUMNS if gearbox.boxed else ()),
         *(() if planetary else columns_behind(names)),
-        *(variation_columns(names) if config.variation.active else ()),
-        *manufacture_columns(config),
+        *(variation_columns(names) if gearbox.points[0].variation is not None else ()),
+        *manufacture_columns(gearbox),
         *(SET_COLUMNS if planetary else ()),
-        *(manufacture_of_others(config) if planetary else ()),
+        *(manufacture_of_others(made) if planetary and made is not None else ()),
     )

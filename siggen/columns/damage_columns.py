@@ -9,7 +9,7 @@ import pyarrow as pa
 from siggen.keys.column import MILLIMETRE, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.specimen import Specimen
 
 DAMAGE_COLUMNS = (
     Column("record_id", pa.int64(), "", "record that shows the damage", Role.KEY),
@@ -55,15 +55,15 @@ EDGE_COLUMNS = (
 """More columns of `damage/<split>.parquet` in sets whose damage has edges of its own."""
 
 
-def damage_columns(config: Config) -> tuple[Column, ...]:
+def damage_columns(gearbox: Specimen) -> tuple[Column, ...]:
     """Return the columns of `damage/*.parquet` of a set."""
-    edges = EDGE_COLUMNS if has_drawn_edges(config) else ()
-    return in_role(Role.TARGET, *DAMAGE_COLUMNS, *edges, *kind_columns(config))
+    edges = EDGE_COLUMNS if has_drawn_edges(gearbox) else ()
+    return in_role(Role.TARGET, *DAMAGE_COLUMNS, *edges, *kind_columns(gearbox))
 
 
-def kind_columns(config: Config) -> tuple[Column, ...]:
+def kind_columns(gearbox: Specimen) -> tuple[Column, ...]:
     """Return the columns that kinds of damage of a set have beyond those of all, each once."""
-    return tuple(dict.fromkeys(column for kind in config.damages for column in kind.columns))
+    return tuple(dict.fromkeys(column for kind in gearbox.damages for column in kind.columns))
 
 
 def nothing_of(column: Column) -> object:
@@ -73,6 +73,6 @@ def nothing_of(column: Column) -> object:
     return "" if pa.types.is_string(column.type) else pa.scalar(0).cast(column.type).as_py()
 
 
-def has_drawn_edges(config: Config) -> bool:
+def has_drawn_edges(gearbox: Specimen) -> bool:
     """Tell whether damage of a set has edges of its own, so that its rows have `EDGE_COLUMNS`."""
-    return any(section.own_edge_radius is not None for section in config.damages)
+    return any(section.own_edge_radius is not None for section in gearbox.damages)

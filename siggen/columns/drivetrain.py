@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.specimen import Specimen
 
 Ratio: TypeAlias = tuple[int, int]
 """Numerator and denominator of a number of turns; exact, since it follows from teeth."""
@@ -71,22 +71,18 @@ class GearTrain:
         return next(gear for gear in self.gears if gear.name == name)
 
 
-def gear_train(config: Config) -> GearTrain:
-    """Return what turns in the gearboxes of a configuration."""
-    names, planetary = config.names, config.planetary
-    places = () if planetary is None else tuple(float(place) / 360.0 for place in planetary.positions_deg)
-    drawn = bool(config.gears.pairs)
-    pairs = [(gears.pinion.teeth, gears.gear.teeth) for gears in (config.gears, *(s.gears for s in config.stages))]
-    turns = [Fraction(1)]
-    if planetary is None:
-        for driver, driven in pairs:
-            turns.append(turns[-1] * Fraction(driver, driven))
+def gear_train(gearbox: Specimen) -> GearTrain:
+    """Return what turns in the gearboxes of a set, of which one is given."""
+    names, planets = gearbox.names, gearbox.planets
+    drawn = any(column.name == "pair" for column in gearbox.labels)
+    pairs = [(mesh.pair.pinion.teeth, mesh.pair.gear.teeth) for mesh in gearbox.meshes]
+    places: tuple[float, ...] = ()
+    turns = list(gearbox.shaft_turns)
+    if planets is None:
         orders = [teeth[0] * turned for teeth, turned in zip(pairs, turns, strict=False)]
     else:
-        ((sun, planet),) = pairs
-        turns.append(Fraction(sun, sun + planetary.ring_teeth))
-        orders = [sun * (1 - turns[1])] * 2
-        pairs.append((planet, planetary.ring_teeth))
+        places, turns[1:] = tuple(map(float, planets.teeth.places)), [planets.teeth.carrier_turns]
+        orders = [planets.teeth.sun * (1 - turns[1])] * 2
     gears: dict[str, TrainGear] = {}
     for number, (mesh, teeth) in enumerate(zip(names.meshes, pairs, strict=True)):
         for gear, count, shaft in zip(mesh.gears, teeth, range(number, number + 2), strict=True):

@@ -10,7 +10,8 @@ from siggen.columns.of_parts import of_gear
 from siggen.keys.column import MICROMETRE, Column, Role, in_role, list_of
 
 if TYPE_CHECKING:
-    from siggen.config import Config, Manufacture
+    from siggen.gearbox.specimen import Specimen
+    from siggen.gearbox.tooth_errors import MadeWith
 
 GEAR_ERROR_COLUMNS = (
     Column("accuracy_class_{}", pa.int32(), "", "flank tolerance class of {} by ISO 1328-1:2013"),
@@ -44,13 +45,14 @@ WAVE_COLUMNS = (
 )
 
 
-def manufacture_columns(config: Config) -> tuple[Column, ...]:
+def manufacture_columns(gearbox: Specimen) -> tuple[Column, ...]:
     """Return the columns of manufacturing errors; none for sets of perfect gears."""
-    if config.manufacture is None:
+    made = gearbox.meshes[0].teeth.made
+    if made is None:
         return ()
-    gears = config.names.first.gears
-    of_gears = (of_gear(column, gear) for gear in gears for column in error_columns(config.manufacture))
-    waves = (of_gear(column, gear) for gear in gears for column in wave_columns(config.manufacture))
+    gears = gearbox.names.first.gears
+    of_gears = (of_gear(column, gear) for gear in gears for column in error_columns(made))
+    waves = (of_gear(column, gear) for gear in gears for column in wave_columns(made))
     lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"
     return in_role(
         Role.PROVENANCE,
@@ -62,15 +64,15 @@ def manufacture_columns(config: Config) -> tuple[Column, ...]:
     )
 
 
-def error_columns(section: Manufacture) -> tuple[Column, ...]:
+def error_columns(made: MadeWith) -> tuple[Column, ...]:
     """Return the columns of errors of one gear, which is left open."""
     return (
         *GEAR_ERROR_COLUMNS,
-        *(CROWNING_COLUMNS if section.has_crowning else ()),
-        *(HELIX_COLUMNS if section.has_helix else ()),
+        *(CROWNING_COLUMNS if made.crowned else ()),
+        *(HELIX_COLUMNS if made.helices else ()),
     )
 
 
-def wave_columns(section: Manufacture) -> tuple[Column, ...]:
+def wave_columns(made: MadeWith) -> tuple[Column, ...]:
     """Return the columns of waves of one gear, which is left open."""
-    return WAVE_COLUMNS if section.flank_waves == "on" else ()
+    return WAVE_COLUMNS if made.waves else ()

@@ -14,7 +14,7 @@ from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
 from siggen.names import PLANETARY
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.tooth_errors import MadeWith
 
 EACH = "each_planet"
 RING = PLANETARY.meshes[1].driven
@@ -52,13 +52,12 @@ def planetary_operating_columns() -> tuple[Column, ...]:
     )
 
 
-def manufacture_of_others(config: Config) -> Iterator[Column]:
+def manufacture_of_others(made: MadeWith) -> Iterator[Column]:
     """Yield the columns of errors of the ring and of all planets, as lists, of the flanks towards the sun."""
-    if config.manufacture is not None:
-        for column in (*error_columns(config.manufacture), *wave_columns(config.manufacture)):
-            yield _made(column, "ring", "the ring")
-        for column in error_columns(config.manufacture):
-            yield _made(replace(column, type=list_of(column.type)), EACH, "each planet")
+    for column in (*error_columns(made), *wave_columns(made)):
+        yield _made(column, "ring", "the ring")
+    for column in error_columns(made):
+        yield _made(replace(column, type=list_of(column.type)), EACH, "each planet")
 
 
 def _made(column: Column, word: str, called: str) -> Column:

@@ -10,18 +10,20 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.columns.background_columns import background_columns
+from siggen.columns.channel_columns import channel_columns
 from siggen.columns.common_columns import common_columns
 from siggen.columns.damage_columns import damage_columns
-from siggen.columns.instrument_columns import instrument_columns
+from siggen.columns.drivetrain import GearTrain, gear_train
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
-from siggen.keys.column import DECIBEL, Column, Role, in_role, list_of
+from siggen.keys.column import Column, Role, in_role, list_of
+from siggen.sensing.measurement import converter_step
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.dynamics.time.sampling import Sampling
+    from siggen.gearbox.specimen import Specimen
     from siggen.planning.plan import PlannedRecord
-    from siggen.sensors.quantity import Quantity
 
 BEFORE_QUANTITIES = "acceleration"
 """What channels hold in a set whose files do not say so."""
@@ -54,7 +56,7 @@ class SimulatedRecord:
     planned
         Its place in the plan; gives the id columns.
     labels
-        Exactly the names of `label_names(config)`: the state's name, and the columns of `label_columns(config)`.
+        The state's name, and exactly the columns of `label_columns`.
     channels
         Channel name (`<sensor>_<axis>`) to float32 signal (n,) in the unit of the channel.
     tacho_s
@@ -96,79 +98,89 @@ TACHO_COLUMN = Column(
 )
 
 
-def channels(config: Config) -> tuple[ChannelColumn, ...]:
-    """Return the channels of a configuration in the order of its sensors and their axes."""
+@dataclass(frozen=True, slots=True)
+class SetColumns:
+    """Columns of the tables of a set, as one of its gearboxes has them, and what every file says of the set.
+
+    Attributes
+    ----------
+    identity, sampling : of the set
+    channels : in the order of its sensors and their axes
+    steps : channel -> step of its converter
+    labels : what `SimulatedRecord.labels` holds beside the state's name
+    damage : of `damage/`
+    quantities : of `internals/`; none where the set stores none
+    drivetrain : what turns in its gearboxes
+    lives : whether it has tables of `life/`
+    """
+
+    identity: str
+    sampling: Sampling
+    channels: tuple[ChannelColumn, ...]
+    steps: Mapping[str, float]
+    labels: tuple[Column, ...]
+    damage: tuple[Column, ...]
+    quantities: tuple[Column, ...]
+    drivetrain: GearTrain
+    lives: bool
+
+
+def set_columns(gearbox: Specimen, identity: str, quantities: Sequence[Column] = ()) -> SetColumns:
+    """Return the columns of the set of an identity by one of its gearboxes, and by what it stores beside channels."""
+    return SetColumns(
+        identity,
+        gearbox.sampling,
+        channels(gearbox),
+        {one.name: converter_step(one.limit, one.bits) for one in gearbox.channels},
+        label_columns(gearbox),
+        damage_columns(gearbox),
+        tuple(quantities),
+        gear_train(gearbox),
+        gearbox.life is not None,
+    )
+
+
+def channels(gearbox: Specimen) -> tuple[ChannelColumn, ...]:
+    """Return the channels of a gearbox in the order of its sensors and their axes."""
     return tuple(
         ChannelColumn(
-            name=name,
-            sensor=sensor.name,
-            place=sensor.place,
-            axis=axis,
-            unit=sensor.quantity.unit,
-            column=sensor.quantity.column(name),
-            quantity=sensor.quantity.word,
+            *(one.name, one.sensor, one.place, one.axis),
+            unit=one.quantity.unit,
+            column=one.quantity.column(one.name),
+            quantity=one.quantity.word,
         )
-        for sensor in config.sensors
-        for name, axis in sensor.channels
+        for one in gearbox.channels
     )
 
 
-def channel_label_columns(channel: str, quantity: Quantity) -> tuple[Column, ...]:
-    """Return the columns that describe one channel of one record."""
-    floor = f"noise_floor_{channel}_{quantity.suffix}"
-    level = f"power of the signal over the white noise in {channel}"
-    return in_role(
-        Role.PROVENANCE,
-        Column(floor, pa.float64(), quantity.unit, f"RMS of the white noise in {channel}"),
-        Column(f"snr_{channel}_db", pa.float64(), DECIBEL, level, Role.CONSEQUENCE),
-        Column(f"clipped_share_{channel}", pa.float64(), "", f"share of clipped samples in {channel}", Role.MEASURED),
-        section="sensors",
-    )
-
-
-def label_columns(config: Config) -> tuple[Column, ...]:
+def label_columns(gearbox: Specimen) -> tuple[Column, ...]:
     """Return what `SimulatedRecord.labels` holds: labels, conditions, errors of the gears, labels of every channel."""
-    named = ((name, sensor.quantity) for sensor in config.sensors for name, _ in sensor.channels)
-    per_channel = (column for one in named for column in channel_label_columns(*one))
-    return (*common_columns(config), *per_channel, *instrument_columns(config), *background_columns(config))
+    return *common_columns(gearbox), *channel_columns(gearbox), *background_columns(gearbox)
 
 
-def named_labels(config: Config, labels: Mapping[str, object]) -> dict[str, object]:
-    """Return the labels of a record by the names of their columns."""
-    column_of = {column.filled_by: column.name for column in label_columns(config)}
-    named = {column_of.get(label, label): value for label, value in labels.items()}
-    return {**named, "faulty_gear": config.names.gear(str(labels["faulty_gear"]))}
-
-
-def label_names(config: Config) -> tuple[str, ...]:
-    """Return the keys of `SimulatedRecord.labels`."""
-    return ("state", *(column.name for column in label_columns(config)))
-
-
-def record_schema(config: Config) -> pa.Schema:
+def record_schema(columns: SetColumns) -> pa.Schema:
     """Return the schema of `data/*.parquet`: ids, labels, operating, per-channel labels, signals, tacho."""
-    signals = [_signal_field(config, channel) for channel in channels(config)]
-    labels = [column.field() for column in (*ID_COLUMNS, *label_columns(config))]
-    return pa.schema([*labels, *signals, TACHO_COLUMN.field()], metadata=schema_metadata(config))
+    signals = [_signal_field(columns, channel) for channel in columns.channels]
+    return pa.schema([*label_schema(columns), *signals, TACHO_COLUMN.field()], metadata=schema_metadata(columns))
 
 
-def label_schema(config: Config) -> pa.Schema:
+def label_schema(columns: SetColumns) -> pa.Schema:
     """Return the schema of `metadata/*.parquet`: the columns before the signals."""
-    labels = [column.field() for column in (*ID_COLUMNS, *label_columns(config))]
-    return pa.schema(labels, metadata=schema_metadata(config))
+    labels = [column.field() for column in (*ID_COLUMNS, *columns.labels)]
+    return pa.schema(labels, metadata=schema_metadata(columns))
 
 
-def damage_schema(config: Config) -> pa.Schema:
+def damage_schema(columns: SetColumns) -> pa.Schema:
     """Return the schema of `damage/*.parquet`."""
-    return pa.schema([column.field() for column in damage_columns(config)], metadata=schema_metadata(config))
+    return pa.schema([column.field() for column in columns.damage], metadata=schema_metadata(columns))
 
 
-def schema_metadata(config: Config) -> dict[str, str]:
+def schema_metadata(columns: SetColumns) -> dict[str, str]:
     """Return what every file of the set says about the set."""
     return {
-        "fs_hz": repr(float(config.fs_hz)),
-        "duration_s": repr(float(config.duration_s)),
-        "siggen.identity": config.identity,
+        "fs_hz": repr(float(columns.sampling.fs_hz)),
+        "duration_s": repr(float(columns.sampling.duration_s)),
+        "siggen.identity": columns.identity,
         "siggen.schema_version": SCHEMA_VERSION,
     }
 
@@ -185,10 +197,10 @@ def channel_metadata(channel: ChannelColumn, fs_hz: float) -> dict[str, str]:
     }
 
 
-def _signal_field(config: Config, channel: ChannelColumn) -> pa.Field:
-    step = next(sensor.converter_step for sensor in config.sensors if sensor.name == channel.sensor)
-    metadata = {**channel_metadata(channel, config.fs_hz), "converter_step": repr(step), "role": Role.SIGNAL}
-    signal = list_of(pa.float32(), config.samples)
+def _signal_field(columns: SetColumns, channel: ChannelColumn) -> pa.Field:
+    step, sampling = columns.steps[channel.name], columns.sampling
+    metadata = {**channel_metadata(channel, sampling.fs_hz), "converter_step": repr(step), "role": Role.SIGNAL}
+    signal = list_of(pa.float32(), sampling.samples)
     return pa.field(channel.column, signal, nullable=False, metadata=metadata)
 
 
@@ -215,27 +227,27 @@ def signal_channels(schema: pa.Schema) -> tuple[ChannelColumn, ...]:
     return tuple(found)
 
 
-def record_batch(config: Config, records: Sequence[SimulatedRecord]) -> pa.RecordBatch:
-    """Return records as rows of `record_schema(config)`.
+def record_batch(columns: SetColumns, records: Sequence[SimulatedRecord]) -> pa.RecordBatch:
+    """Return records as rows of `record_schema`.
 
     Raises
     ------
     DatasetError
         If a record lacks a column, has one too many, holds a null or NaN, or a signal of another length or type.
     """
-    schema = record_schema(config)
+    schema = record_schema(columns)
     for record in records:
-        _check_record(config, record)
-    columns: dict[str, pa.Array] = {}
-    for column in (*ID_COLUMNS, *label_columns(config)):
-        columns[column.name] = pa.array([record_value(record, column.name) for record in records], column.type)
-    for channel in channels(config):
+        _check_record(columns, record)
+    arrays: dict[str, pa.Array] = {}
+    for column in (*ID_COLUMNS, *columns.labels):
+        arrays[column.name] = pa.array([record_value(record, column.name) for record in records], column.type)
+    for channel in columns.channels:
         signals = [record.channels[channel.name] for record in records]
-        columns[channel.column] = _signal_array(signals, schema.field(channel.column).type)
+        arrays[channel.column] = signal_array(signals, schema.field(channel.column).type)
     tacho_s = [np.asarray(record.tacho_s, dtype=np.float64) for record in records]
-    columns[TACHO_COLUMN.name] = pa.array(tacho_s, TACHO_COLUMN.type)
-    _check_nulls(columns)
-    return pa.RecordBatch.from_arrays([columns[name] for name in schema.names], schema=schema)
+    arrays[TACHO_COLUMN.name] = pa.array(tacho_s, TACHO_COLUMN.type)
+    _check_nulls(arrays)
+    return pa.RecordBatch.from_arrays([arrays[name] for name in schema.names], schema=schema)
 
 
 def signal_matrix(column: pa.FixedSizeListArray | pa.ChunkedArray) -> np.ndarray:
@@ -245,7 +257,8 @@ def signal_matrix(column: pa.FixedSizeListArray | pa.ChunkedArray) -> np.ndarray
     return np.asarray(array.flatten().to_numpy(zero_copy_only=True).reshape(len(array), array.type.list_size))
 
 
-def _signal_array(signals: Sequence[np.ndarray], signal_type: pa.DataType) -> pa.FixedSizeListArray:
+def signal_array(signals: Sequence[np.ndarray], signal_type: pa.DataType) -> pa.FixedSizeListArray:
+    """Return signals of one length as a column; there may be none."""
     values = np.concatenate(signals) if signals else np.empty(0, dtype=np.float32)
     return pa.FixedSizeListArray.from_arrays(pa.array(values, pa.float32()), type=signal_type)
 
@@ -255,11 +268,11 @@ def record_value(record: SimulatedRecord, name: str) -> object:
     return record.labels[name] if name in record.labels else getattr(record.planned, name)
 
 
-def _check_record(config: Config, record: SimulatedRecord) -> None:
+def _check_record(columns: SetColumns, record: SimulatedRecord) -> None:
     where = f"record {record.planned.record_id}"
-    _check_names(where, "labels", record.labels, label_names(config))
-    _check_names(where, "channels", record.channels, [channel.name for channel in channels(config)])
-    samples = config.samples
+    _check_names(where, "labels", record.labels, ["state", *(column.name for column in columns.labels)])
+    _check_names(where, "channels", record.channels, [channel.name for channel in columns.channels])
+    samples = columns.sampling.samples
     for name, signal in record.channels.items():
         if signal.shape != (samples,) or signal.dtype != np.float32:
             received = f"{signal.dtype} of shape {signal.shape}"

@@ -9,13 +9,12 @@ import pyarrow as pa
 import yaml
 
 from siggen.columns.internals import internals_schema
-from siggen.columns.record import channels, damage_schema, record_schema
+from siggen.columns.record import ChannelColumn, SetColumns, damage_schema, record_schema
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.card_making import channels_text, making, quantities_text
 from siggen.dataset.manifest import SPLITS
 from siggen.dataset.sidecar import Sidecar
 from siggen.errors import counted
-from siggen.keys.column import Column
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -50,21 +49,21 @@ OWNERS = {
 }
 
 
-def card(config: Config, sidecars: Sequence[Sidecar], quantities: Sequence[Column] = ()) -> str:
+def card(config: Config, sidecars: Sequence[Sidecar], columns: SetColumns) -> str:
     """Return the card as Markdown with YAML front matter that Hugging Face reads; the same set gives the same bytes."""
     splits = [split for split in SPLITS if any(sidecar.split == split for sidecar in sidecars)]
     rows = sum(sidecar.data.rows for sidecar in sidecars)
     sections = (
-        _front_matter(config, splits, rows, with_internals=bool(quantities)),
-        _summary(config, rows),
+        _front_matter(config, splits, rows, with_internals=bool(columns.quantities)),
+        _summary(config, columns.channels, rows),
         _contents(config, sidecars, splits),
         making(config),
         _limits(config),
         _failures(sidecars),
-        _columns("Columns of `data/`", record_schema(config)),
-        _columns("Columns of `damage/`", damage_schema(config)),
-        _internals(config, quantities),
-        _loading(config, splits),
+        _columns("Columns of `data/`", record_schema(columns)),
+        _columns("Columns of `damage/`", damage_schema(columns)),
+        _internals(columns),
+        _loading(config, columns.channels[0].column, splits),
         _identity(config, sidecars),
     )
     return "\n".join(section for section in sections if section)
@@ -109,13 +108,13 @@ def _view(name: str, paths: dict[str, str], *, default: bool = False) -> dict[st
     return {"config_name": name, **({"default": True} if default else {}), "data_files": files}
 
 
-def _summary(config: Config, rows: int) -> str:
-    records = counted(rows, f"labelled {quantities_text(config)} record")
+def _summary(config: Config, channels: Sequence[ChannelColumn], rows: int) -> str:
+    records = counted(rows, f"labelled {quantities_text(channels)} record")
     what = "spur gear pair" if config.machine is None else "gearbox"
     return f"""# {config.name}
 
 {records} of a simulated {what}, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
-Channels: {channels_text(config)}. Every record is simulated from its own gearbox, state, speed, load and noise;
+Channels: {channels_text(channels)}. Every record is simulated from its own gearbox, state, speed, load and noise;
 none is a copy or a cut of another one. **The data are synthetic**: they were computed, not measured.
 """
 
@@ -176,11 +175,11 @@ def _failures(sidecars: Sequence[Sidecar]) -> str:
     return "\n".join([head, "| record | status | reason |", "|---|---|---|", *listed, *more, ""])
 
 
-def _internals(config: Config, quantities: Sequence[Column]) -> str:
+def _internals(columns: SetColumns) -> str:
     """Say which records have internal quantities, and how to join them."""
-    if config.internals is None or not quantities:
+    if not columns.quantities:
         return ""
-    table = _columns("Columns of `internals/`", internals_schema(config, quantities))
+    table = _columns("Columns of `internals/`", internals_schema(columns))
     return f"""{table}
 What no sensor sees, of every record, at the instants of the samples; join by `record_id`. Accelerations and bearing
 forces are low-passed like the signals, everything else is taken at the instant.
@@ -202,8 +201,8 @@ def _type_name(kind: pa.DataType) -> str:
     return f"list of {kind.value_type}" if isinstance(kind, pa.ListType) else str(kind)
 
 
-def _loading(config: Config, splits: Sequence[str]) -> str:
-    split, column = splits[0], channels(config)[0].column
+def _loading(config: Config, column: str, splits: Sequence[str]) -> str:
+    split = splits[0]
     return f"""## Loading
 
 ```python

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from siggen.columns.record import channels
+from siggen.columns.record import ChannelColumn
 from siggen.errors import counted
 
 if TYPE_CHECKING:
@@ -203,16 +203,16 @@ def _acts(config: Config) -> list[str]:
     return list(dict.fromkeys(one.acts for one in config.sensors if one.acts))
 
 
-def quantities_text(config: Config) -> str:
+def quantities_text(channels: Sequence[ChannelColumn]) -> str:
     """Return what the channels of a set hold."""
-    words = list(dict.fromkeys(channel.quantity for channel in channels(config)))
+    words = list(dict.fromkeys(channel.quantity for channel in channels))
     return " and ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
 
 
-def channels_text(config: Config) -> str:
+def channels_text(channels: Sequence[ChannelColumn]) -> str:
     """Return the channels with their places, by unit."""
     by_unit: dict[str, list[str]] = {}
-    for channel in channels(config):
+    for channel in channels:
         by_unit.setdefault(channel.unit, []).append(f"`{channel.name}` ({channel.place}, {channel.axis})")
     return "; ".join(f"{', '.join(named)}, in {unit}" for unit, named in by_unit.items())
 

@@ -13,16 +13,15 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 
 from siggen.columns.internals import internals_batch
-from siggen.columns.record import RecordFailure, SimulatedRecord, non_finite, record_batch
+from siggen.columns.record import RecordFailure, SetColumns, SimulatedRecord, non_finite, record_batch
 from siggen.errors import EngineError
-from siggen.keys.column import Column
 from siggen.record.stage_times import collected, stage
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 Simulate = Callable[["Config", Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
-"""(config, ids of one specimen's records) -> results in the same order, as `simulate_specimen` of siggen.record."""
+"""(config, ids of one specimen's records) -> results in the same order, as `siggen.sets.drawn.simulated`."""
 
 _PAUSED: dict[Any, Iterator[SimulatedRecord | RecordFailure]] = {}
 """The simulation of this process whose rest is to come, with the tables of its specimen; one at most."""
@@ -90,7 +89,7 @@ class ChunkSimulation:
 
     config: Config
     simulate: Simulate
-    quantities: tuple[Column, ...] = ()
+    columns: SetColumns
 
     def __call__(self, chunk: Chunk) -> ChunkResult:
         """Simulate a chunk; `part` without a limit."""
@@ -108,10 +107,8 @@ class ChunkSimulation:
         with collected("other") as times:
             done, records, failures = self._simulated(chunk, until_s)
             with stage("rows"):
-                rows = packed_batch(record_batch(self.config, records))
-                internals = (
-                    packed_batch(internals_batch(self.config, self.quantities, records)) if self.quantities else None
-                )
+                rows, columns = packed_batch(record_batch(self.columns, records)), self.columns
+                internals = packed_batch(internals_batch(columns, records)) if columns.quantities else None
         return ChunkResult(done, rows, tuple(failures), internals, times.seconds, f"{platform.node()} {os.getpid()}")
 
     def _simulated(self, chunk: Chunk, until_s: float) -> tuple[Chunk, list[SimulatedRecord], list[RecordFailure]]:

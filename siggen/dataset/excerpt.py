@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.life_columns import LIFE_TABLES, NULLABLE
-from siggen.columns.record import damage_schema, label_schema, schema_metadata
+from siggen.columns.record import SetColumns, damage_schema, label_schema, schema_metadata
 from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.chunk import packed_batch, unpacked_batch
 from siggen.dataset.manifest import DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER
@@ -43,20 +43,19 @@ def excerpt_name(shard: str) -> str:
     return f"{FOLDER}/{shard}"
 
 
-def excerpt_schemas(config: Config) -> dict[str, pa.Schema]:
+def excerpt_schemas(columns: SetColumns) -> dict[str, pa.Schema]:
     """Return folder -> schema of the tables that a set has for every split; those of `life/` only if it has lives."""
-    lives = () if config.life is None else LIFE_TABLES
     return {
-        METADATA_FOLDER: label_schema(config),
-        DAMAGE_FOLDER: damage_schema(config),
-        **{f"{LIFE_FOLDER}/{name}": life_schema(config, name) for name in lives},
+        METADATA_FOLDER: label_schema(columns),
+        DAMAGE_FOLDER: damage_schema(columns),
+        **{f"{LIFE_FOLDER}/{name}": life_schema(columns, name) for name in (LIFE_TABLES if columns.lives else ())},
     }
 
 
-def life_schema(config: Config, table: str) -> pa.Schema:
+def life_schema(columns: SetColumns, table: str) -> pa.Schema:
     """Return the schema of a table of `life/`."""
     fields = [column.field().with_nullable(column.name in NULLABLE) for column in LIFE_TABLES[table]]
-    return pa.schema(fields, metadata=schema_metadata(config))
+    return pa.schema(fields, metadata=schema_metadata(columns))
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +69,7 @@ class Excerpts:
     """
 
     config: Config
+    columns: SetColumns
     storage: Storage
     maker: Maker
     damage_rows: DamageRows
@@ -101,10 +101,10 @@ class Excerpts:
         self.storage.delete_below(FOLDER)
 
     def _made(self, sidecar: Sidecar) -> Excerpt:
-        schemas = excerpt_schemas(self.config)
+        schemas = excerpt_schemas(self.columns)
         facts = sidecar.data
         with parquet_file(self.storage, facts.name, facts.crc32_per_64_kib, facts.bytes) as file:
-            labels = file.read(label_schema(self.config).names)
+            labels = file.read(schemas[METADATA_FOLDER].names)
         specimens = [i for first, last in sidecar.specimens for i in range(first, last + 1)]
         records = labels.select(["record_id", "specimen_id", "state_id"]).to_pylist()
         rows = {DAMAGE_FOLDER: list(self._damage(records)), **self._lives(sidecar.split, specimens)}
@@ -122,7 +122,7 @@ class Excerpts:
             yield from ({**row, "record_id": record["record_id"]} for row in shared)
 
     def _lives(self, split: str, specimens: Sequence[int]) -> dict[str, list[dict[str, object]]]:
-        if self.config.life is None:
+        if not self.columns.lives:
             return {}
         rows: dict[str, list[dict[str, object]]] = {f"{LIFE_FOLDER}/{name}": [] for name in LIFE_TABLES}
         for specimen in specimens:
@@ -143,7 +143,7 @@ class Excerpts:
             found = dict(_batches(facts["tables"], streams))
         except UNUSABLE:
             return None
-        schemas = excerpt_schemas(self.config)
+        schemas = excerpt_schemas(self.columns)
         is_sound = set(found) == set(schemas) and all(found[name].schema.equals(schemas[name]) for name in schemas)
         return found if is_sound and found[METADATA_FOLDER].num_rows == sidecar.data.rows else None
 

@@ -8,37 +8,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyarrow as pa
 
 from siggen.columns.internals import internals_schema
-from siggen.columns.record import RecordFailure, record_schema
+from siggen.columns.record import RecordFailure, SetColumns, record_schema
 from siggen.dataset.chunk import Chunk, ChunkResult
 from siggen.dataset.sealed_streams import UNUSABLE, Maker, read_head, read_streams, sealed_streams
 from siggen.dataset.storage import Storage
-from siggen.keys.column import Column
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 FOLDER = "pieces"
 
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """The pieces of a set that is being made; `quantities` are the internal ones that it stores."""
+    """The pieces of a set that is being made."""
 
     storage: Storage
     maker: Maker
-    config: Config
-    quantities: tuple[Column, ...] = ()
+    columns: SetColumns
 
     @property
     def schemas(self) -> tuple[pa.Schema, pa.Schema | None]:
         """Of rows and of internal quantities; worked out anew, since pyarrow's do not survive the way to a worker."""
-        inner = internals_schema(self.config, self.quantities) if self.quantities else None
-        return record_schema(self.config), inner
+        return record_schema(self.columns), internals_schema(self.columns) if self.columns.quantities else None
 
     def put(self, results: Sequence[ChunkResult]) -> None:
         """Keep results of one shard, which follow each other."""

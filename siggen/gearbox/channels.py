@@ -16,6 +16,7 @@ from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.frequency_response import FrequencyResponse
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.path import MeasuredPath
+from siggen.sensors.quantity import Quantity
 from siggen.sensors.response_text import decoded_response
 from siggen.sensors.sensor import AxisDraws, SensorBase
 from siggen.sensors.transducer import Transducer
@@ -46,7 +47,8 @@ class DrawnChannel:
 
     Attributes
     ----------
-    name, sensor, place, suffix : of the channel, of its sensor, where that stands, and how its columns end
+    name, sensor, place, axis : of the channel, of its sensor, where that stands, and along which of its axes
+    quantity : what it holds
     gain : of the amplifier
     shown : what of the model it shows -> factor on it; what a path adds comes by itself
     response : frequencies (k,) -> what mounting, sensor and coupling do there (k,); None for nothing
@@ -61,7 +63,8 @@ class DrawnChannel:
     name: str
     sensor: str
     place: str
-    suffix: str
+    axis: str
+    quantity: Quantity
     gain: float
     shown: Mapping[Input, float]
     coupling_hz: float | None
@@ -91,7 +94,8 @@ def drawn_channels(config: Config, specimen_id: int, sensors: Sequence[SensorBas
                 name=sensor.channel_name(axis),
                 sensor=sensor.name,
                 place=sensor.place,
-                suffix=sensor.quantity.suffix,
+                axis=axis,
+                quantity=sensor.quantity,
                 gain=constant(gain),
                 shown=sensor.shows(axis, draw),
                 response=partial(sensor.response, draw),

@@ -14,9 +14,10 @@ from siggen.config.stages import Stage, turned, with_idlers
 from siggen.dynamics.time.sampling import Sampling
 from siggen.gearbox.background import drawn_background
 from siggen.gearbox.channels import drawn_channels
-from siggen.gearbox.configured import gearbox_config
+from siggen.gearbox.configured import gearbox_config, gearbox_life, state_config
 from siggen.gearbox.drive import drawn_unbalance, drawn_variation
 from siggen.gearbox.housing import drawn_housing
+from siggen.gearbox.labels import gearbox_labels, state_labels
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gearbox.planetary import planetary_stage, planetary_teeth
 from siggen.gearbox.specimen import DrawnState, OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
@@ -42,7 +43,15 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     ValueError
         If the ring of a planetary set cannot be made round its planets.
     """
-    own = gearbox_config(config, specimen_id)
+    return _drawn(config, gearbox_config(config, specimen_id), specimen_id)
+
+
+def _in_state(config: Config, specimen_id: int, state_id: int) -> Specimen:
+    return _drawn(config, state_config(config, specimen_id, state_id), specimen_id)
+
+
+def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
+    """Return a specimen of a set by its own configuration."""
     gears = named_uniforms(config.seed, Consumer.GEARS, specimen_id)
     supports = named_uniforms(config.seed, Consumer.SUPPORTS, specimen_id)
     first, stiffness = draw(own.gears, gears, "gears"), draw(own.stiffness, gears, "stiffness")
@@ -56,7 +65,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     else:
         planets = _planets(own, section, first, dynamics, specimen_id, drawing)
         meshes = ToothMesh("", planets.meshes[0]), ToothMesh(RING, planets.meshes[len(planets.pin_errors_m)])
-    balls = ball_bearings(dynamics)
+    balls, law = ball_bearings(dynamics), tooth_law(dynamics)
     sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
     sensors = tuple(one.drawn(sensor) for one in own.sensors)
     points = tuple(draw_operating_point(own, specimen_id, number) for number in range(len(own.operating_points)))
@@ -65,9 +74,9 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         seed=own.seed,
         names=own.names,
         sampling=Sampling(own.fs_hz, own.duration_s, own.samples),
-        states=tuple(DrawnState(one.name, one.fault, one.severity, one.sham) for one in own.states),
+        states=tuple(_state(config, own, specimen_id, number) for number in range(len(own.states))),
         meshes=meshes,
-        law=tooth_law(dynamics),
+        law=law,
         train=_train(dynamics, stages, meshes) if planets is None else None,
         planets=planets,
         housing=drawn_housing(own, specimen_id, dynamics, meshes[0].pair, sensors),
@@ -75,10 +84,18 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         background=drawn_background(own, specimen_id),
         channels=tuple(drawn_channels(own, specimen_id, sensors)),
         points=points,
-        sensor_places_mm={one.name: tuple(map(constant, one.place_on_casing_mm)) for one in sensors},
+        damages=config.damages,
+        labels=gearbox_labels(config, specimen_id, meshes[0].pair, law.friction.oil, sensors),
+        life=None if config.life is None else gearbox_life(config, specimen_id),
         stored=None if own.internals is None else own.internals.quantities,
         bearing_point=points[0] if balls else None,
     )
+
+
+def _state(config: Config, own: Config, specimen_id: int, number: int) -> DrawnState:
+    state = own.states[number]
+    changed = partial(_in_state, config, specimen_id, number) if own.changes_of(number) else None
+    return DrawnState(state.name, state.fault, state.severity, state.sham, state_labels(own, number), changed)
 
 
 def _rotors(dynamics: Dynamics) -> tuple[Rotor, Rotor]:

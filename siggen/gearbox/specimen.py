@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import lcm
 
@@ -12,10 +12,13 @@ from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
 from siggen.dynamics.time.sampling import Sampling
+from siggen.faults.fault import Fault
 from siggen.gearbox.background import DrawnBackground
 from siggen.gearbox.channels import DrawnChannel
 from siggen.gearbox.drive import PointVariation, UnbalanceLevels
-from siggen.gearbox.housing import Block, Housing
+from siggen.gearbox.housing import Block, Housing, Plates
+from siggen.gearbox.labels import Labels
+from siggen.gearbox.lived import Lived
 from siggen.gearbox.teeth import Teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair
@@ -38,12 +41,21 @@ class OperatingPoint:
 
 @dataclass(frozen=True, slots=True)
 class DrawnState:
-    """What a state is called; `sham`: its damage is drawn with nothing removed. Damage itself belongs to meshes."""
+    """What a state is called; damage itself belongs to meshes.
+
+    Attributes
+    ----------
+    sham : whether its damage is drawn with nothing removed
+    labels : what else its records say of it
+    changed : draws the gearbox in it; None where it has the numbers of the healthy one
+    """
 
     name: str
     fault: str
     severity: str
     sham: bool
+    labels: Labels
+    changed: Callable[[], Specimen] | None = field(compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +132,9 @@ class Specimen:
     background : what its machine does beside its meshing teeth
     channels : of its sensors
     points : at which it is measured
-    sensor_places_mm : sensor -> where it stands, as columns give it; of those that were put somewhere
+    damages : laws of the damage of all states of its set
+    labels : what its set says of it as a whole
+    life : how its teeth pitted, of a set that runs to failure
     stored : what no sensor sees and a record holds: names, or all; None: nothing
     bearing_point : the operating point under whose load its bearings stand; None where they have one stiffness
     """
@@ -139,7 +153,9 @@ class Specimen:
     background: DrawnBackground | None
     channels: tuple[DrawnChannel, ...]
     points: tuple[OperatingPoint, ...]
-    sensor_places_mm: Mapping[str, tuple[float, ...]]
+    damages: tuple[Fault, ...]
+    labels: Labels
+    life: Lived | None
     stored: tuple[str, ...] | None = None
     bearing_point: OperatingPoint | None = None
 
@@ -147,6 +163,11 @@ class Specimen:
     def housed(self) -> bool:
         """Whether a housing carries its bearings, not the ground."""
         return self.housing is not None
+
+    @property
+    def boxed(self) -> bool:
+        """Whether its housing is a box of plates of its own."""
+        return isinstance(self.housing, Plates)
 
     @property
     def passes_forces(self) -> bool:
@@ -190,6 +211,11 @@ class Specimen:
     def stores(self, quantity: str) -> bool:
         """Return whether a record holds a quantity that no sensor sees."""
         return self.stored is not None and (ALL in self.stored or quantity in self.stored)
+
+    def in_state(self, state_id: int) -> Specimen:
+        """Return the gearbox with the numbers that it has in a state; itself where the state changes none."""
+        changed = self.states[state_id].changed
+        return self if changed is None else changed()
 
     def under(self, point: OperatingPoint) -> Specimen:
         """Return the gearbox at an operating point; itself where its bearings have one stiffness."""

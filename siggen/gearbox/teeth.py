@@ -12,7 +12,7 @@ from siggen.config import Config, OperatingRange, Rotor
 from siggen.gearbox.flank_waves import SpecimenWaves, drawn_waves
 from siggen.gearbox.mesh_damage import LoadsAtRest, MeshDamage, mesh_state
 from siggen.gearbox.pair import mesh_options
-from siggen.gearbox.tooth_errors import SpecimenErrors, drawn_errors
+from siggen.gearbox.tooth_errors import MadeWith, SpecimenErrors, drawn_errors
 from siggen.gears.contact.table_options import reference_force_n
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
@@ -33,6 +33,7 @@ class Teeth:
     pair : its gears
     options : how they bend
     largest_force_n : up to which contacts are tabulated
+    made : which errors they have; None for perfect gears
     redrawn : whether every state has errors and waves of its own; otherwise all have those of state 0
     errors, waves : state -> those of both gears; None for perfect gears
     damage : state, and what tells how the teeth share a force -> damage of that state
@@ -41,6 +42,7 @@ class Teeth:
     pair: GearPair
     options: StiffnessOptions
     largest_force_n: float
+    made: MadeWith | None
     redrawn: bool
     errors: Errors = field(compare=False)
     waves: Waves = field(compare=False)
@@ -79,20 +81,22 @@ def draw_teeth(
     turning : turns of its pinion per turn of the first one
     """
     section = config.manufacture
-    eccentricities_um = [one.eccentricity_um for one in rotors]
+    eccentricities_um, made = [one.eccentricity_um for one in rotors], None
+    if section is not None:
+        made = MadeWith(section.has_crowning, section.has_helix, section.flank_waves == "on")
 
     def errors(state: int) -> SpecimenErrors | None:
         owner = specimen_id, state
         return None if section is None else drawn_errors(section, eccentricities_um, seed, owner, pair)
 
     def waves(state: int) -> SpecimenWaves | None:
-        off = section is None or section.flank_waves == "off"
-        return None if off else drawn_waves(seed, (specimen_id, state), pair)
+        return None if made is None or not made.waves else drawn_waves(seed, (specimen_id, state), pair)
 
     return Teeth(
         pair,
         mesh_options(pair, bending),
         largest_force_n(config.operating_points, pair, turning),
+        made,
         redrawn=section is not None and section.draw == "state",
         errors=cache(errors),
         waves=cache(waves),

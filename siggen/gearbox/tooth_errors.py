@@ -47,18 +47,24 @@ class MadeGear:
 
 
 @dataclass(frozen=True, slots=True)
+class MadeWith:
+    """Whether gears of a set have crownings, slopes and forms of helices, and waves beside their other errors."""
+
+    crowned: bool
+    helices: bool
+    waves: bool
+
+
+@dataclass(frozen=True, slots=True)
 class SpecimenErrors:
     """Both gears, and how far their flanks are apart at the far end of the face when they touch at the near one [m].
 
-    `shafts_m` is the part of that distance that no helix slope of `MadeGear.helix` has; `crowned` and `with_helices`
-    tell whether the set draws crownings, and slopes and forms of helices.
+    `shafts_m` is the part of that distance that no helix slope of `MadeGear.helix` has.
     """
 
     pinion: MadeGear
     gear: MadeGear
     shafts_m: float
-    crowned: bool
-    with_helices: bool
 
     @property
     def lead_misalignment_m(self) -> float:
@@ -113,7 +119,7 @@ def drawn_errors(
     ]
     pinion, gear = (_made(section, pair, which, seat, draws) for which, seat in zip(ROLES, seats, strict=True))
     shafts_m = _shafts_m(section, (pinion, gear), draws)
-    return SpecimenErrors(pinion, gear, shafts_m, section.has_crowning, section.has_helix)
+    return SpecimenErrors(pinion, gear, shafts_m)
 
 
 def erroneous_teeth(

@@ -9,12 +9,15 @@ from functools import cached_property
 from typing import Any
 
 from siggen.checks.loading import load_config
+from siggen.columns.drivetrain import GearTrain, gear_train
+from siggen.columns.record import label_columns
 from siggen.config import Config
 from siggen.config.planetary import RING
 from siggen.errors import UsageError
 from siggen.gearbox.configured import inspection_count
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.gearbox.specimen import Specimen
+from siggen.keys.column import Column
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
@@ -128,9 +131,19 @@ class Gearbox:
         return tuple(Case(state.name, point, k) for state in self.states for point in points for k in repeats)
 
     @property
+    def drivetrain(self) -> GearTrain:
+        """What turns in it, as `siggen.open(...).drivetrain` has it of a set."""
+        return gear_train(self._specimen)
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """What the tables of a set say of its records, beside the signals."""
+        return label_columns(self._specimen)
+
+    @property
     def labels(self) -> Mapping[str, object]:
         """What the tables of a set say of it as a whole, such as its pair, oil and housing."""
-        return gearbox_labels(self._config, self._specimen)
+        return gearbox_labels(self._specimen)
 
     def state(self, name: str) -> State:
         """Return a state by its name.

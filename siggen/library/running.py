@@ -15,9 +15,11 @@ from siggen.config import Config
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
 from siggen.config.stage_problems import most_teeth_per_turn
 from siggen.errors import SolverFailure
+from siggen.gearbox.draw import draw_specimen
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.gearbox import Case, Gearbox, Point
 from siggen.library.record import LineOrders, Record
+from siggen.planning.plan import PlannedRecord
 from siggen.record.simulation import simulate_specimen
 from siggen.rig.rating import bearable_torque_nm
 
@@ -182,15 +184,13 @@ def _rate_hz(gearbox: Gearbox, fs_hz: float | None, teeth: float, highest_hz: fl
 
 def _records(gearbox: Gearbox, config: Config, cases: Sequence[Case]) -> Iterator[Record]:
     """Yield the records of cases, all at points of a configuration."""
-    names, each, allowed = [one.name for one in gearbox.states], len(config.operating_points), "0, 1, 2 and so on"
-    repeats = 1 + max(int(finite("repeat", of_kind("repeat", c.repeat, int, allowed), allowed, 0)) for c in cases)
-    ids = []
+    names, allowed, planned = [one.name for one in gearbox.states], "0, 1, 2 and so on", []
     for case in cases:
-        index = gearbox.number * config.state_count + names.index(one_of("state", case.state, names))
-        place = case.point if isinstance(case.point, int) else 0
-        ids.append((index * each + place) * repeats + case.repeat)
+        repeat = int(finite("repeat", of_kind("repeat", case.repeat, int, allowed), allowed, 0))
+        state, place = one_of("state", case.state, names), case.point if isinstance(case.point, int) else 0
+        planned.append(PlannedRecord(0, gearbox.number, names.index(state), place, repeat, ""))
     with saying(KEYS):
-        for found in simulate_specimen(config.model_copy(update={"repeats": repeats}), ids):
+        for found in simulate_specimen(draw_specimen(config, gearbox.number), planned):
             if isinstance(found, RecordFailure):
                 raise SolverFailure(found.status, found.reason)
             yield _record(gearbox, config, found)

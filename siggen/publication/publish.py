@@ -190,7 +190,7 @@ def _config(dataset: Dataset) -> Config:
 
 def _texts(dataset: Dataset, config: Config, facts: PublicationFacts, audit: Path | None) -> dict[str, bytes]:
     rows = dataset.inventory.rows
-    records = counted(rows, f"labelled {quantities_text(config)} record")
+    records = counted(rows, f"labelled {quantities_text(dataset.channels)} record")
     description = (
         f"{records} of a simulated spur gear pair, {faults_text(config)}, "
         f"{config.duration_s:g} s each at {config.fs_hz:g} Hz, of {counted(config.specimens, 'gearbox', 'gearboxes')}. "

@@ -47,7 +47,7 @@ def _level(levels: Callable[[str], float], channel: str, name: str) -> float:
 def channel_labels(channel: ChannelInstrument, measured: Measurement) -> dict[str, object]:
     """Return the labels of a channel's measurement and of its path."""
     labels: dict[str, object] = {
-        f"noise_floor_{channel.name}_{channel.drawn.suffix}": measured.noise_floor,
+        f"noise_floor_{channel.name}_{channel.drawn.quantity.suffix}": measured.noise_floor,
         f"snr_{channel.name}_db": measured.snr_db,
         f"clipped_share_{channel.name}": measured.clipped_share,
     }

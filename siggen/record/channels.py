@@ -30,7 +30,9 @@ class ChannelDisturbance:
     """What the sources of a channel add to it behind its amplifier, part after part, and the labels of it."""
 
     def __init__(self, channel: DrawnChannel, about: NoisyChannel, draws: Draws) -> None:
-        self._parts = {one.column(channel.name, channel.suffix): one.part(about, draws) for one in channel.sources}
+        self._parts = {
+            one.column(channel.name, channel.quantity.suffix): one.part(about, draws) for one in channel.sources
+        }
         self.follows_angle = any(one.follows_angle for one in channel.sources)
 
     def take(self, first: int, angle_rad: FloatArray) -> FloatArray | None:

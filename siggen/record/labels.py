@@ -3,18 +3,7 @@
 from __future__ import annotations
 
 from siggen.arrays import FloatArray
-from siggen.columns.gearbox_columns import drawn_places, draws_oil
-from siggen.columns.state_columns import (
-    CHANGED_COLUMN,
-    PRIMARY_COLUMN,
-    combined_words,
-    has_changes,
-    has_sham,
-    shown_words,
-)
-from siggen.config import Config
 from siggen.dynamics.time.sampling import Sampling
-from siggen.gearbox.configured import pair_of
 from siggen.gearbox.specimen import DrawnState, OperatingPoint, Specimen
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.part import Parts, teeth_of
@@ -65,47 +54,13 @@ def damage_labels(
     }
 
 
-def state_labels(config: Config, state_id: int) -> dict[str, object]:
-    """Return the labels of `siggen.columns.state_columns`."""
-    sham = {"sham": config.states[state_id].sham} if has_sham(config) else {}
-    paths = [config.names.own_path(one.path) for _, one in config.changes_of(state_id)]
-    keys = {CHANGED_COLUMN.name: paths} if has_changes(config) else {}
-    words = combined_words(config)
-    shown = shown_words(config, state_id) if words else ()
-    primary = {PRIMARY_COLUMN.name: config.states[state_id].primary_fault} if words else {}
-    return {**sham, **keys, **primary, **{f"has_{word}": word in shown for word in words}}
-
-
-def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
+def gearbox_labels(specimen: Specimen) -> dict[str, object]:
     """Return what a gearbox draws as a whole: pair, oil, housing, places of sensors; nothing that all share."""
-    oil = {"oil": specimen.law.friction.oil} if draws_oil(config) else {}
-    drawn = drawn_places(config)
-    places = {name: specimen.sensor_places_mm[config.sensors[i].name][axis] for i, axis, name in drawn}
-    return {**_pair_labels(config, specimen), **oil, **_housing_labels(specimen), **places}
-
-
-def _housing_labels(specimen: Specimen) -> dict[str, object]:
-    housing = specimen_housing(specimen)
+    labels, housing = {column.name: value for column, value in specimen.labels.items()}, specimen_housing(specimen)
     if housing is None or housing.box is None:
-        return {}
-    return {
-        "housing_mass_kg": housing.box.mass_kg,
-        "housing_first_mode_hz": float(housing.modes.frequency_hz[MODES_ON_BOLTS]),
-    }
-
-
-def _pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
-    index = pair_of(config, specimen.specimen_id)
-    if index is None:
-        return {}
-    pair = specimen.pair
-    return {
-        "pair": index,
-        "module_mm": 1e3 * pair.pinion.module_m,
-        "face_width_mm": 1e3 * pair.face_width_m,
-        "centre_distance_mm": 1e3 * pair.working_centre_distance_m,
-        "contact_ratio": (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m,
-    }
+        return labels
+    first_hz = float(housing.modes.frequency_hz[MODES_ON_BOLTS])
+    return {**labels, "housing_mass_kg": housing.box.mass_kg, "housing_first_mode_hz": first_hz}
 
 
 def operating_labels(

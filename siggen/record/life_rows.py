@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
 import numpy as np
 
-from siggen.config import Config
-from siggen.gearbox.configured import gearbox_life
 from siggen.gearbox.lived import Lived
 
 Row = dict[str, object]
@@ -16,14 +14,13 @@ RUNS = 200
 """Continuations of an outlook."""
 
 
-def life_rows(config: Config, specimen_id: int) -> dict[str, list[Row]]:
-    """Return the rows of one gearbox by table, without their split; lengths in mm, ages in hours and turns."""
-    found = gearbox_life(config, specimen_id)
-    stride = len(config.operating_points) * config.repeats
-    first = specimen_id * config.records_per_specimen
+def life_rows(found: Lived, specimen_id: int, firsts: Sequence[int]) -> dict[str, list[Row]]:
+    """Return the rows of one gearbox by table, without their split; lengths in mm, ages in hours and turns.
+
+    `firsts` are the first records of its inspections.
+    """
     heads: list[Row] = [
-        {"record_id": first + number * stride, "specimen_id": specimen_id, "inspection": number}
-        for number in range(len(found.ages_h))
+        {"record_id": first, "specimen_id": specimen_id, "inspection": number} for number, first in enumerate(firsts)
     ]
     seen = list(zip(heads, found.ages_h, strict=True))
     return {

@@ -8,12 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
-from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
-from siggen.gearbox.configured import gearbox_config, state_config
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.specimen import Specimen
 from siggen.record.labels import gearbox_labels
 from siggen.record.specimen_state import refused_as
@@ -25,9 +22,8 @@ from siggen.specimen.structure import structure
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """Configuration of a gearbox, its numbers, its teeth, structure and instrument, and the labels of all records."""
+    """A gearbox, its teeth, structure and instrument, and the labels of all records."""
 
-    config: Config
     specimen: Specimen
     teeth: Sequence[MeshTeeth]
     structure: Structure
@@ -43,17 +39,17 @@ class Machine:
             return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
 
 
-def machines(whole: Config, specimen_id: int) -> Callable[[int], Machine]:
+def machines(gearbox: Specimen) -> Callable[[int], Machine]:
     """Return state -> the machine of a gearbox in that state; the healthy one is kept, and the last changed one."""
-    shared = lru_cache(maxsize=1)(lambda: _machine(whole, gearbox_config(whole, specimen_id), specimen_id))
-    changed = lru_cache(maxsize=1)(lambda state: _machine(whole, state_config(whole, specimen_id, state), specimen_id))
-    return lambda state: changed(state) if whole.changes_of(state) else shared()
+    shared = lru_cache(maxsize=1)(lambda: _machine(lambda: gearbox))
+    changed = lru_cache(maxsize=1)(lambda state: _machine(partial(gearbox.in_state, state)))
+    return lambda state: shared() if gearbox.states[state].changed is None else changed(state)
 
 
-def _machine(whole: Config, config: Config, specimen_id: int) -> Machine:
+def _machine(drawn: Callable[[], Specimen]) -> Machine:
     with refused_as("outside_model"), stage("plan"):
-        specimen = draw_specimen(config, specimen_id)
-        labels, assembled = gearbox_labels(whole, specimen), structure(specimen)
+        specimen = drawn()
+        labels, assembled = gearbox_labels(specimen), structure(specimen)
     with stage("sensing"):
         instrument = specimen_instrument(specimen)
-    return Machine(config, specimen, all_teeth(specimen), assembled, instrument, labels)
+    return Machine(specimen, all_teeth(specimen), assembled, instrument, labels)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from siggen.config.planetary import RING
 from siggen.gearbox.specimen import Specimen
-from siggen.names import SEVERAL
+from siggen.names import PLANETARY, SEVERAL
 from siggen.record.stage_labels import ADDED, LARGEST, LOSS
 from siggen.specimen.static_mesh import StaticMesh
 
@@ -18,7 +17,7 @@ def with_ring_labels(first: Mapping[str, Any], ring: Mapping[str, Any]) -> dict[
     Counts and areas add up; of shares, lengths and losses the largest counts.
     """
     gears = [str(one) for one in (first["faulty_gear"],) if one != "none"]
-    gears += [RING] * (ring["faulty_gear"] != "none")
+    gears += [PLANETARY.meshes[1].driven.word] * (ring["faulty_gear"] != "none")
     return {
         **first,
         **{key: first[key] + ring[key] for key in ADDED},

@@ -9,18 +9,16 @@ from functools import lru_cache
 import numpy as np
 
 from siggen.checks.quantity_names import acceleration_name
-from siggen.columns.record import RecordFailure, SimulatedRecord, named_labels
-from siggen.config import Config
+from siggen.columns.record import RecordFailure, SimulatedRecord, label_columns
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.dynamics.time.transient import both_settled_s
 from siggen.errors import SolverFailure
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.planning.plan import PlannedRecord, planned_record
+from siggen.planning.plan import PlannedRecord
 from siggen.record.channels import measured_channels
-from siggen.record.damage_rows import damage_rows
-from siggen.record.labels import operating_labels, state_labels
+from siggen.record.labels import operating_labels
 from siggen.record.machine import Machine, machines
 from siggen.record.planetary_state import planetary_labels
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
@@ -33,8 +31,6 @@ from siggen.specimen.drive import RecordDrive, record_drive, variation_labels
 from siggen.specimen.instrument import Instrument, history_s
 from siggen.specimen.step_choice import stepped_motion
 from siggen.specimen.structure import structure
-
-__all__ = ["damage_rows", "record_response", "simulate_specimen", "simulated"]
 
 
 def record_response(
@@ -189,17 +185,20 @@ class _RefusedPieces:
             yield piece
 
 
-def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[SimulatedRecord | RecordFailure]:
-    machine_of = machines(whole, records[0].specimen_id)
+def simulate_specimen(gearbox: Specimen, records: Sequence[PlannedRecord]) -> Iterator[SimulatedRecord | RecordFailure]:
+    """Yield records of one gearbox in their order, simulated or failed; stiffness tables are built once per state."""
+    machine_of, columns = machines(gearbox), label_columns(gearbox)
+    named = {column.label: column.name for column in columns if column.label}
     state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(machine_of(state_id), state_id))
     loaded = lru_cache(maxsize=2)(lambda state_id, point_id: machine_of(state_id).at_point(point_id))
     for record in records:
         try:
-            machine = loaded(record.state_id if whole.changes_of(record.state_id) else 0, record.operating_point_id)
-            state = state_of(record.state_id)
-            made = simulated(machine.specimen, machine.instrument, state, record)
-            labels = {**made.labels, **machine.labels, **state_labels(whole, record.state_id)}
-            yield replace(made, labels=named_labels(whole, labels))
+            drawn = gearbox.states[record.state_id]
+            machine = loaded(0 if drawn.changed is None else record.state_id, record.operating_point_id)
+            made = simulated(machine.specimen, machine.instrument, state_of(record.state_id), record)
+            labels = {**made.labels, **machine.labels, **{one.name: value for one, value in drawn.labels.items()}}
+            labels |= {"faulty_gear": gearbox.names.gear(str(labels["faulty_gear"]))}
+            yield replace(made, labels={named.get(label, label): value for label, value in labels.items()})
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
 
@@ -207,29 +206,3 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Simula
 def _staged_state(machine: Machine, state_id: int) -> SpecimenState:
     with stage("tables"):
         return specimen_state(machine.specimen, state_id, (machine.teeth, machine.structure))
-
-
-def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[SimulatedRecord | RecordFailure]:
-    """Simulate records of one specimen, each when it is asked for; stiffness tables are built once per state.
-
-    Parameters
-    ----------
-    config : Config
-    record_ids : sequence of int, all of one specimen, ascending
-
-    Returns
-    -------
-    iterator of SimulatedRecord or RecordFailure, in the order of `record_ids`
-
-    Raises
-    ------
-    ValueError
-        At once if the records belong to more than one specimen.
-    """
-    with stage("plan"):
-        records = [planned_record(config, i) for i in record_ids]
-    if len({r.specimen_id for r in records}) != 1:
-        raise ValueError(
-            f"records of one specimen expected, received specimens {sorted({r.specimen_id for r in records})}"
-        )
-    return _results(config, records)

@@ -20,7 +20,7 @@ def tooth_labels(teeth: MeshTeeth, state_id: int) -> Labels:
     if errors is None:
         return {}
     drawn: Labels = {"manufacture_draw": "state" if teeth.teeth.redrawn else "specimen"}
-    of_gears = (_errors(errors, which, which) | _waves(teeth, state_id, which, which) for which in ROLES)
+    of_gears = (_errors(errors, teeth, which, which) | _waves(teeth, state_id, which, which) for which in ROLES)
     for labels in of_gears:
         drawn |= labels
     return drawn | {"lead_misalignment_um": 1e6 * errors.lead_misalignment_m}
@@ -31,16 +31,17 @@ def ring_and_planet_labels(suns: Sequence[MeshTeeth], ring: MeshTeeth, state_id:
     of_ring = ring.errors(state_id)
     if of_ring is None:
         return {}
-    planets = [_errors(errors, DRIVEN, each) for sun in suns if (errors := sun.errors(state_id)) is not None]
+    planets = [_errors(errors, sun, DRIVEN, each) for sun in suns if (errors := sun.errors(state_id)) is not None]
     return {
-        **_errors(of_ring, DRIVEN, "ring"),
+        **_errors(of_ring, ring, DRIVEN, "ring"),
         **_waves(ring, state_id, DRIVEN, "ring"),
         **{name: [one[name] for one in planets] for name in planets[0]},
     }
 
 
-def _errors(errors: SpecimenErrors, which: str, word: str) -> Labels:
+def _errors(errors: SpecimenErrors, teeth: MeshTeeth, which: str, word: str) -> Labels:
     made: MadeGear = {DRIVER: errors.pinion, DRIVEN: errors.gear}[which]
+    kinds = teeth.teeth.made
     largest, helix = made.found.largest, made.helix
     labels: Labels = {
         f"accuracy_class_{word}": made.accuracy_class,
@@ -52,9 +53,9 @@ def _errors(errors: SpecimenErrors, which: str, word: str) -> Labels:
         f"profile_form_{word}_um": 1e6 * largest["profile_form_m"],
         f"profile_deviation_{word}_um": 1e6 * largest["profile_m"],
     }
-    if errors.crowned:
+    if kinds is not None and kinds.crowned:
         labels[f"crowning_{word}_um"] = 1e6 * helix.crowning_m
-    if errors.with_helices:
+    if kinds is not None and kinds.helices:
         labels[f"helix_slope_{word}_um"] = 1e6 * helix.slope_m
         labels[f"helix_form_{word}_um"] = 1e6 * float(np.ptp(helix.form_m))
     return labels

@@ -17,7 +17,7 @@ LARGER_SHARE = 0.6
 
 def compilation_text(config: Config, workers: int) -> str:
     """Return a sentence for whoever waits for the first record on a machine; empty where nothing is to be compiled."""
-    if is_compiled(config):
+    if is_compiled(config.dynamics.method):
         return ""
     wait_s = COMPILED_S * (LARGER_SHARE if workers > 1 else 1.0)
     machine = f"about {wait_s:.0f} s on an idle machine"

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from siggen.columns.record import SetColumns
 from siggen.dataset.chunk import Simulate
 from siggen.dataset.excerpt import DamageRows, LifeRows
 from siggen.keys.column import Column
@@ -54,18 +55,16 @@ class Physics:
     life_rows: LifeRows = _no_life
     damage_sizes: Callable[[Config, int], Mapping[str, Mapping[str, object]]] = _no_sizes
 
-    def stored(self, config: Config) -> tuple[Column, ...]:
-        """Return the columns of `internals/` of a set; none where it stores none."""
-        return () if config.internals is None else tuple(self.quantities(config))
+    def columns(self, config: Config) -> SetColumns:
+        """Return the columns of a set, of `internals/` too where it stores some."""
+        from siggen.sets.drawn import set_columns
+
+        return set_columns(config, () if config.internals is None else self.quantities(config))
 
 
 def physics() -> Physics:
     """Return the physics of this version; compiled code is imported here and not before."""
-    from siggen.record.compilation import to_compile
-    from siggen.record.damage_rows import damage_rows
-    from siggen.record.damage_sizes import damage_sizes
-    from siggen.record.internals import stored_quantities
-    from siggen.record.life_rows import life_rows
-    from siggen.record.simulation import simulate_specimen
+    from siggen.sets import drawn
 
-    return Physics(simulate_specimen, damage_rows, stored_quantities, to_compile, life_rows, damage_sizes)
+    makers = (drawn.simulated, drawn.damage_rows, drawn.stored_quantities, drawn.to_compile)
+    return Physics(*makers, drawn.life_rows, drawn.damage_sizes)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from siggen.columns.record import channels
+from siggen.columns.record import ChannelColumn
 from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.dataset.manifest import PHYSICS, read_manifest
@@ -136,8 +136,8 @@ def measure_precision(
     own = engine_of(engine, 0 if engine is None and workers is None else workers)
     delivered = dict(_again(own, unrounded(config), ids))
     compared = []
-    for done, fine in enumerate(_references(own, unrounded(config), ids), start=1):
-        compared.append(_compared(config, chosen[fine.record_id], delivered.pop(fine.record_id), fine))
+    for done, fine in enumerate(_references(own, unrounded(config), ids, dataset.channels), start=1):
+        compared.append(_compared(dataset.channels, chosen[fine.record_id], delivered.pop(fine.record_id), fine))
         if show is not None:
             show(done, len(ids))
     found = _found(config, ids, compared)
@@ -165,7 +165,9 @@ class _Compared(NamedTuple):
     apart: float
 
 
-def _references(engine: Engine, config: Config, ids: Sequence[int]) -> Iterator[_Reference]:
+def _references(
+    engine: Engine, config: Config, ids: Sequence[int], channels: Sequence[ChannelColumn]
+) -> Iterator[_Reference]:
     """Yield every record by a reference that agrees with one of half the steps, or by the finest."""
     steps, left = FIRST_STEPS, list(ids)
     coarse = dict(_again(engine, reference_config(config, steps), left))
@@ -174,7 +176,7 @@ def _references(engine: Engine, config: Config, ids: Sequence[int]) -> Iterator[
         steps *= 2
         done = set()
         for record_id, fine in _again(engine, reference_config(config, steps), left):
-            apart = record_error(config, coarse[record_id], fine)
+            apart = record_error(channels, coarse[record_id], fine)
             coarse[record_id] = fine
             if apart <= agreeing or steps >= MOST_STEPS:
                 done.add(record_id)
@@ -182,10 +184,12 @@ def _references(engine: Engine, config: Config, ids: Sequence[int]) -> Iterator[
         left = [record_id for record_id in left if record_id not in done]
 
 
-def _compared(config: Config, state: str, delivered: Mapping[str, Any], fine: _Reference) -> _Compared:
+def _compared(
+    channels: Sequence[ChannelColumn], state: str, delivered: Mapping[str, Any], fine: _Reference
+) -> _Compared:
     rattles = delivered.get(LABEL_OF) == "levels"  # samples that depend on every rounding
     label = np.inf if rattles else float(delivered.get(LABEL, np.nan))
-    return _Compared(state, record_error(config, delivered, fine.record), label, fine.steps, fine.apart)
+    return _Compared(state, record_error(channels, delivered, fine.record), label, fine.steps, fine.apart)
 
 
 def _found(config: Config, ids: Sequence[int], compared: Sequence[_Compared]) -> Precision:
@@ -204,7 +208,8 @@ def _found(config: Config, ids: Sequence[int], compared: Sequence[_Compared]) ->
 def _again(engine: Engine, config: Config, ids: Sequence[int]) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Yield record after record of a configuration, as they are done."""
     tasks = [Chunk("precision", range(record_id, record_id + 1)) for record_id in ids]
-    with running(engine, ChunkSimulation(config, contents.physics().simulate), tasks) as results:
+    physics = contents.physics()
+    with running(engine, ChunkSimulation(config, physics.simulate, physics.columns(config)), tasks) as results:
         for index, result in results:
             if result.failures:
                 failure = result.failures[0]
@@ -235,10 +240,10 @@ def chosen_records(dataset: Dataset, states: Sequence[str], count: int) -> dict[
     return dict(in_turn[:count])
 
 
-def record_error(config: Config, delivered: Mapping[str, Any], again: Mapping[str, Any]) -> float:
+def record_error(channels: Sequence[ChannelColumn], delivered: Mapping[str, Any], again: Mapping[str, Any]) -> float:
     """Return the relative rms difference of the worst channel; accelerations count as STILL_M_S2 at least."""
     worst = 0.0
-    for channel in channels(config):
+    for channel in channels:
         wanted = again[channel.column].astype(float)
         least = STILL_M_S2**2 if channel.quantity == ACCELERATION.word else np.finfo(float).tiny
         apart = delivered[channel.column].astype(float) - wanted

@@ -17,10 +17,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from siggen.columns.drivetrain import gear_train
 from siggen.columns.record import (
     TACHO_COLUMN,
-    channels,
+    SetColumns,
     damage_schema,
     listed_columns,
     record_schema,
@@ -48,6 +47,7 @@ from siggen.dataset.sidecar import Sidecar, put_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 from siggen.keys.column import list_of
+from siggen.sets.drawn import set_columns
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -105,12 +105,13 @@ def write_recorded_set(
         raise DatasetError(f"{folder}: is not empty; give a new folder")
     samples = min(len(signal) for row in rows for signal in row["signals"])
     identity, heard, own_facts = _identity(rows, config.identity), measured or config, BLIND if measured else INJECTED
-    schema = _schema(config, heard, origin, samples)
+    own, others = set_columns(config), set_columns(heard)
+    schema = _schema(own, others, origin, samples)
     shares = {split: [row for row in rows if row["split"] == split] for split in SPLITS}
     sidecars = [_write_rows(storage, schema, split, identity, own) for split, own in shares.items() if own]
-    tables = [table for sidecar in sidecars for table in _write_tables(storage, config, schema, sidecar, shares)]
+    tables = [table for sidecar in sidecars for table in _write_tables(storage, own, schema, sidecar, shares)]
     tables += [
-        _write_life(storage, config, name, table, sidecar.split)
+        _write_life(storage, own, name, table, sidecar.split)
         for sidecar in sidecars
         for name, table in (life or {}).items()
     ]
@@ -125,9 +126,9 @@ def write_recorded_set(
         "fs_hz": float(config.fs_hz),
         "duration_s": samples / float(config.fs_hz),
         "rows_per_group": GROUP_ROWS,
-        "channels": [asdict(channel) for channel in channels(heard)],
+        "channels": [asdict(channel) for channel in others.channels],
         "columns": listed_columns(schema),
-        "drivetrain": asdict(gear_train(config)),
+        "drivetrain": asdict(own.drivetrain),
     }
     storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, own_facts])))
     return folder
@@ -141,11 +142,11 @@ def _identity(rows: Sequence[Row], configuration: str) -> str:
     return digest.hexdigest()
 
 
-def _schema(config: Config, heard: Config, origin: pa.Schema, samples: int) -> pa.Schema:
+def _schema(columns: SetColumns, heard: SetColumns, origin: pa.Schema, samples: int) -> pa.Schema:
     """Return the columns, those that a generated set has too as they are there; signals as the other one's."""
-    own, others = record_schema(config), record_schema(heard)
-    signals = [others.field(channel.column).with_type(list_of(pa.float32(), samples)) for channel in channels(heard)]
-    metadata = {**schema_metadata(config), "duration_s": repr(samples / float(config.fs_hz))}
+    own, others = record_schema(columns), record_schema(heard)
+    signals = [others.field(channel.column).with_type(list_of(pa.float32(), samples)) for channel in heard.channels]
+    metadata = {**schema_metadata(columns), "duration_s": repr(samples / columns.sampling.fs_hz)}
     teeth = (field.name for field in own if (field.metadata or {}).get(b"quantity") == b"teeth")
     labels = [own.field(name) for name in (*IDS, *LABELS, *teeth)]
     return pa.schema([*labels, *origin, *signals, TACHO_COLUMN.field()], metadata=metadata)
@@ -180,7 +181,7 @@ def _batches(rows: Sequence[Row], schema: pa.Schema) -> Iterator[pa.RecordBatch]
 
 
 def _write_tables(
-    storage: LocalFolder, config: Config, schema: pa.Schema, sidecar: Sidecar, shares: Mapping[str, Sequence[Row]]
+    storage: LocalFolder, columns: SetColumns, schema: pa.Schema, sidecar: Sidecar, shares: Mapping[str, Sequence[Row]]
 ) -> Iterable[FileFacts]:
     """Write the labels of a split, and its table of damage, which is empty: labels say what was simulated."""
     fields = [field for field in schema if not pa.types.is_list(field.type) | pa.types.is_fixed_size_list(field.type)]
@@ -189,12 +190,12 @@ def _write_tables(
     batch = pa.RecordBatch.from_pylist(labels, schema=names)
     yield write_table(storage, f"{METADATA_FOLDER}/{sidecar.split}.parquet", names, [batch], GROUP_ROWS)
     name = f"{DAMAGE_FOLDER}/{sidecar.split}.parquet"
-    yield write_table(storage, name, damage_schema(config), [], GROUP_ROWS)
+    yield write_table(storage, name, damage_schema(columns), [], GROUP_ROWS)
 
 
-def _write_life(storage: LocalFolder, config: Config, name: str, table: pa.Table, split: str) -> FileFacts:
+def _write_life(storage: LocalFolder, columns: SetColumns, name: str, table: pa.Table, split: str) -> FileFacts:
     """Write the rows of a split of a table of `life/`."""
     own = table.filter(pc.equal(table.column("split"), split))
-    schema = own.schema.with_metadata(schema_metadata(config))
+    schema = own.schema.with_metadata(schema_metadata(columns))
     batches = own.replace_schema_metadata(schema.metadata).to_batches()
     return write_table(storage, f"{LIFE_FOLDER}/{name}/{split}.parquet", schema, batches, GROUP_ROWS)

@@ -8,8 +8,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from siggen.columns.drivetrain import gear_train
-from siggen.columns.record import RecordFailure, channels, listed_columns, record_schema
+from siggen.columns.record import RecordFailure, SetColumns, listed_columns, record_schema
 from siggen.dataset.card import card
 from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.environment import environment, fingerprint
@@ -26,7 +25,6 @@ from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
-from siggen.keys.column import Column
 from siggen.planning.plan import ShardPlan, rows_per_group, shards
 from siggen.sets import physics as contents
 from siggen.sets.committed_shards import usable_shards
@@ -40,9 +38,9 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 
-def manifest_facts(config: Config, quantities: Sequence[Column]) -> dict[str, Any]:
-    """Return the facts; `quantities` are the columns of `internals/`, none where a set stores none."""
-    internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in quantities]
+def manifest_facts(config: Config, columns: SetColumns) -> dict[str, Any]:
+    """Return what the manifest says of a set beside its files."""
+    internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in columns.quantities]
     return {
         **({"internals": internals} if internals else {}),
         "name": config.name,
@@ -52,9 +50,9 @@ def manifest_facts(config: Config, quantities: Sequence[Column]) -> dict[str, An
         "fs_hz": float(config.fs_hz),
         "duration_s": float(config.duration_s),
         "rows_per_group": rows_per_group(config),
-        "channels": [asdict(channel) for channel in channels(config)],
-        "columns": listed_columns(record_schema(config)),
-        "drivetrain": asdict(gear_train(config)),
+        "channels": [asdict(channel) for channel in columns.channels],
+        "columns": listed_columns(record_schema(columns)),
+        "drivetrain": asdict(columns.drivetrain),
         **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
     }
 
@@ -113,9 +111,9 @@ def set_run(
     journal = RunJournal(events, limit=limit)
     with journal.driver.during("planning"):
         physics = contents.physics()
-        quantities = physics.stored(config)
+        columns = physics.columns(config)
         planned = planned_shards(config, earlier)
-    run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned, journal)
+    run = SetRun(config, storage, engine, physics, columns, progress or _silent, interruption, planned, journal)
     run.trusted = frozenset({fingerprint(run.environment)})
     run.total = sum(shard.record_count for shard in planned)
     journal.start(config, str(storage.location), engine, run.total, len(planned))
@@ -145,7 +143,7 @@ class SetRun:
     storage: Storage
     engine: Engine
     physics: contents.Physics
-    quantities: tuple[Column, ...]
+    columns: SetColumns
     progress: Progress
     interruption: Interruption
     planned: Sequence[ShardPlan]
@@ -164,10 +162,10 @@ class SetRun:
 
     def __post_init__(self) -> None:
         maker = Maker(self.config.identity, fingerprint(self.environment), self.environment)
-        self.pieces = Pieces(self.storage, maker, self.config, self.quantities)
+        self.pieces = Pieces(self.storage, maker, self.columns)
         makers = (self.physics.damage_rows, self.physics.life_rows)
-        self.excerpts = Excerpts(self.config, self.storage, maker, *makers)
-        shared = (self.config, self.storage, self.engine, self.physics, self.quantities, self.interruption)
+        self.excerpts = Excerpts(self.config, self.columns, self.storage, maker, *makers)
+        shared = (self.config, self.storage, self.engine, self.physics, self.columns, self.interruption)
         self.making = ShardMaking(*shared, self.journal, self.pieces, self.excerpts, self._advance)
 
     def finish(self) -> Generation:
@@ -253,11 +251,11 @@ class SetRun:
         for split in SPLITS:
             of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
             if of_split:
-                tables += write_tables(self.storage, self.config, split, self._excerpts(of_split))
+                tables += write_tables(self.storage, self.columns, split, self._excerpts(of_split))
             self.interruption.check()
-        self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
+        self.storage.put(CARD, card(self.config, sidecars, self.columns).encode())
         written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
-        manifest = build_manifest(self.storage, manifest_facts(self.config, self.quantities), sidecars, tables, written)
+        manifest = build_manifest(self.storage, manifest_facts(self.config, self.columns), sidecars, tables, written)
         counts = {"made": self.made, "taken_over": taken_over}
         facts = run_facts(self.config, self.engine, sidecars, self.journal, **counts, environment=self.environment)
         self.pieces.clear()

@@ -11,6 +11,7 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Se
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from siggen.columns.record import SetColumns
 from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.dataset.excerpt import Excerpts
 from siggen.dataset.object_name import SIDECAR_FOLDER, sidecar_name
@@ -21,7 +22,6 @@ from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import DrainingEngine, Engine, Unfinished
 from siggen.engines.registry import running
 from siggen.errors import EngineError
-from siggen.keys.column import Column
 from siggen.planning.plan import ShardPlan
 from siggen.record.compilation import run_part
 from siggen.sets import physics as contents
@@ -66,7 +66,7 @@ class ShardMaking:
     storage: Storage
     engine: Engine
     physics: contents.Physics
-    quantities: tuple[Column, ...]
+    columns: SetColumns
     interruption: Interruption
     journal: RunJournal
     pieces: Pieces
@@ -131,7 +131,7 @@ class ShardMaking:
                 self.storage.delete(name)
 
     def _work(self) -> ShardWork:
-        simulation = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
+        simulation = ChunkSimulation(self.config, self.physics.simulate, self.columns)
         is_parted = isinstance(self.engine, DrainingEngine)
         return ShardWork(simulation, self.pieces, self.excerpts, planned_rows(simulation), is_parted)
 

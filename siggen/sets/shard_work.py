@@ -275,20 +275,20 @@ class ShardWork:
         return sidecar.without_bulk((), ())
 
     def _data(self, shard: ShardPlan) -> AbstractContextManager[TableFile]:
-        schema = record_schema(self.simulation.config)
+        schema = record_schema(self.simulation.columns)
         return table_draft(self.pieces.storage, data_name(shard.key), schema, self.group_rows.records)
 
     def _internals(self, shard: ShardPlan) -> AbstractContextManager[TableFile | None]:
-        if not self.simulation.quantities:
+        if not self.simulation.columns.quantities:
             return nullcontext()
-        schema = internals_schema(self.simulation.config, self.simulation.quantities)
+        schema = internals_schema(self.simulation.columns)
         return table_draft(self.pieces.storage, internals_name(shard.key), schema, self.group_rows.internals)
 
 
 def planned_rows(simulation: ChunkSimulation) -> GroupRows:
     """Return the rows of row groups."""
-    config, quantities = simulation.config, simulation.quantities
-    return GroupRows(rows_per_group(config), internals_group_rows(config, quantities) if quantities else 0)
+    columns = simulation.columns
+    return GroupRows(rows_per_group(simulation.config), internals_group_rows(columns) if columns.quantities else 0)
 
 
 def shard_chunks(simulation: ChunkSimulation, shard: ShardPlan, group_rows: GroupRows) -> Iterator[Chunk]:

@@ -244,7 +244,8 @@ def _simulate_again(
     exact = {record_id: fingerprint(_environment(dataset, record_id)) == here for record_id in ids}
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
-    function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
+    physics = contents.physics()
+    function = ChunkSimulation(config, physics.simulate, physics.columns(config))
     chosen = engine_of(engine, 0 if engine is None and workers is None else workers)
     with running(chosen, function, tasks) as results:
         for index, result in results:

@@ -102,7 +102,7 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
             f"record {record_id} has a torque of {torque_nm:g} N m, under which the back flanks carry; allowed: a "
             "record with a torque from 0, which loads the drive flanks, where damage is"
         )
-    state, point, angle_rad, found = record_internals(config, record)
+    state, point, angle_rad, found = record_internals(specimen, record)
     meshes = list(_meshes(specimen, state, point, angle_rad))
     mesh, which, tooth = _looked_at(meshes, called, tooth)
     engagement = _engagement(mesh, which, tooth)

@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
-from siggen.columns.record import damage_schema
+from siggen.columns.damage_columns import damage_columns
 from siggen.config import Config
 from siggen.errors import UsageError
 from siggen.gearbox.draw import draw_specimen
@@ -22,7 +22,7 @@ from siggen.gears.stiffness.damage_summary import flank_arc_m
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.keys.problems import nearest
 from siggen.names import ROLES
-from siggen.planning.plan import record_ids_of
+from siggen.planning.plan import PlannedRecord
 from siggen.record.damage_rows import damage_rows
 from siggen.specimen.mesh_teeth import MeshTeeth
 
@@ -117,14 +117,14 @@ def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None =
     UsageError
         If there is no such state.
     """
-    schema = damage_schema(config).remove_metadata()
+    specimen = draw_specimen(config, specimen_id)
+    schema = pa.schema([column.field() for column in damage_columns(specimen)])
     fields = [pa.field("state", pa.string(), nullable=False), *(f for f in schema if f.name != "record_id")]
-    # Operating points and repeats of a state share its damage: the first record of each state stands for all.
-    first, per_state = record_ids_of(config, specimen_id)[0], len(config.operating_points) * config.repeats
+    # operating points and repeats of a state share its damage
     rows = [
         {"state": config.states[index].name, **row}
         for index in _state_ids(config, state)
-        for row in damage_rows(config, first + index * per_state, mesh)
+        for row in damage_rows(specimen, PlannedRecord(0, specimen_id, index, 0, 0, ""), mesh)
     ]
     return pa.Table.from_pylist(rows, schema=pa.schema(fields))
 

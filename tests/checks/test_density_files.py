@@ -9,11 +9,11 @@ import pytest
 import yaml
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import SimulatedRecord, label_names
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from tests.config.minimal import by_name, minimal
-from tests.simulated import simulate
+from tests.simulated import label_names, simulate
 
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 

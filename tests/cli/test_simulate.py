@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.record.simulation import simulate_specimen
+from siggen.sets.drawn import simulated
 
 SET = ["--set", "duration_s=0.05", "--set", "specimens=1"]
 runner = CliRunner()
@@ -29,7 +29,7 @@ def test_the_table_holds_the_stored_signal_and_what_no_sensor_sees(tmp_path: Pat
     run("tests/configs/linear_pits.yaml", "--record", 6, "--out", tmp_path / "record.parquet")
     table = pyarrow.parquet.read_table(tmp_path / "record.parquet")
     config = load_config("tests/configs/linear_pits.yaml", SET[1::2])
-    record = next(simulate_specimen(config, [6]))
+    record = next(simulated(config, [6]))
     for channel, signal in record.channels.items():
         assert np.array_equal(table[f"accel_{channel}_m_s2"].to_numpy(), signal)
     assert table.num_rows == config.samples

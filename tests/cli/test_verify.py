@@ -16,7 +16,7 @@ from tests.dataset.fake_set import FAKE_FILES, simulate, write_fake_set
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate)
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", simulate)
     write_fake_set(tmp_path / "set")
     return tmp_path / "set"
 

@@ -9,10 +9,10 @@ import pytest
 
 import siggen
 from siggen.columns.record import damage_schema, listed_columns, record_schema
-from siggen.columns.state_columns import has_sham
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
 from siggen.keys.column import Role
+from siggen.sets.drawn import set_columns
 from tests.dataset.fake_set import fake_config, write_fake_set
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,7 +26,7 @@ def role(schema: pa.Schema, name: str) -> str:
 @pytest.mark.parametrize("preset", PRESETS)
 def test_every_column_of_records_and_of_damage_has_a_role(preset: str) -> None:
     config = siggen.load_config(ROOT / "configs" / preset)
-    for schema in (record_schema(config), damage_schema(config)):
+    for schema in (record_schema(set_columns(config)), damage_schema(set_columns(config))):
         assert {name for name in schema.names if role(schema, name) not in set(Role)} == set()
 
 
@@ -36,11 +36,11 @@ NEVER_FOR_SCORES = {"paper_a.yaml", "paper_b.yaml"}
 @pytest.mark.parametrize("preset", [name for name in PRESETS if name not in NEVER_FOR_SCORES])
 def test_every_preset_for_scores_has_a_sham_unless_it_runs_to_failure(preset: str) -> None:
     config = siggen.load_config(ROOT / "configs" / preset)
-    assert has_sham(config) != bool(config.life)
+    assert any(state.sham for state in config.states) != bool(config.life)
 
 
 def test_what_the_simulation_alone_knows_is_neither_condition_nor_measured() -> None:
-    schema = record_schema(siggen.load_config(ROOT / "configs" / "bench.yaml"))
+    schema = record_schema(set_columns(siggen.load_config(ROOT / "configs" / "bench.yaml")))
     usable = {name for name in schema.names if role(schema, name) in {Role.CONDITION, Role.MEASURED}}
     assert {"speed_hz", "torque_nm", "teeth_pinion", "clipped_share_lid_vertical"} <= usable
     hidden = {"fault", "sham", "damaged_area_mm2", "mesh_stiffness_loss", "snr_lid_vertical_db", "start_angle_rad"}
@@ -50,7 +50,7 @@ def test_what_the_simulation_alone_knows_is_neither_condition_nor_measured() -> 
 def test_a_finished_set_says_the_roles_of_its_columns(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     dataset = siggen.open(tmp_path)
-    listed = {one["name"]: one for one in listed_columns(record_schema(fake_config()))}
+    listed = {one["name"]: one for one in listed_columns(record_schema(set_columns(fake_config())))}
     schema = next(dataset.records()).schema
     assert set(listed) == set(schema.names)
     assert {name: str(dataset.role(name)) for name in listed} == {name: role(schema, name) for name in listed}

@@ -6,10 +6,10 @@ from pydantic_core import PydanticCustomError
 
 import siggen
 from siggen.checks.state_problems import _columns
-from siggen.columns.record import label_columns
 from siggen.config import Config
 from siggen.config.changes import Change, _paths, changed_sections
 from siggen.keys.distributions import Uniform
+from siggen.sets.drawn import set_columns
 
 OVERRIDES = (
     "manufacture={accuracy_class: 6}",
@@ -33,7 +33,7 @@ def test_columns_follow_from_the_healthy_gearbox_alone() -> None:
             except PydanticCustomError:
                 continue
             tried += 1
-            if label_columns(config.model_copy(update=changed)) != label_columns(config):
+            if set_columns(config.model_copy(update=changed)).labels != set_columns(config).labels:
                 after = _columns({**sections, **changed})
                 told |= {name for name, present in _columns(sections).items() if present != after[name]}
                 assert after != _columns(sections), path

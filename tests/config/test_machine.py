@@ -8,16 +8,17 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import label_columns, label_names
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
+from siggen.sets.drawn import set_columns
 from siggen.specimen.structure import structure
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler
 from tests.config.mill import MACHINE, mill, with_machine
 from tests.config.minimal import by_name, minimal
 from tests.config.staged import SLOW, SPALL, staged
+from tests.simulated import label_names
 
 WHEEL = {"teeth": 20, "bore_radius_mm": 12.0}
 MESH = {"module_mm": 2.0, "face_width_mm": 20.0}
@@ -44,7 +45,7 @@ def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and
     damage = {**SPALL, "gear": "gear", "teeth": [3]}
     states = by_name([{"name": "healthy"}, {"name": "severe", "damage": damage}])
     config = load_config(mill(machine=renamed, sensors={"at": {"place": "gear_bearing"}}, states=states))
-    of = {(column.quantity, column.of): column for column in label_columns(config) if column.of}
+    of = {(column.quantity, column.of): column for column in set_columns(config).labels if column.of}
     assert of["teeth", "gear"].name == "teeth_gear"
     assert of["teeth", "gear"].filled_by == "teeth_pinion"  # which the driver of a mesh is inside
     assert of["shaft_hz", "pinion"].name == "pinion_shaft_hz"

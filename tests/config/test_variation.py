@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import label_names
 from siggen.config import parse
 from siggen.errors import ConfigError
 from tests.config.minimal import config, minimal
+from tests.simulated import label_names
 
 RANDOM = {"speed": {"random_rms": 0.003}}
 

@@ -113,7 +113,7 @@ QUANTITIES = (
 
 
 def quantities(config: Config) -> tuple[Column, ...]:
-    """Stand in for `siggen.record.internals.stored_quantities`."""
+    """Stand in for `siggen.sets.drawn.stored_quantities`."""
     return QUANTITIES
 
 
@@ -129,7 +129,7 @@ def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarr
 
 
 def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
-    """Stand in for `siggen.record.simulation.simulate_specimen`."""
+    """Stand in for `siggen.sets.drawn.simulated`."""
     return [fake_record(config, planned_record(config, i)) for i in record_ids]
 
 
@@ -199,7 +199,7 @@ def simulate_and_die(config: Config, record_ids: Sequence[int]) -> list[Simulate
 
 
 def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
-    """Stand in for `siggen.record.simulation.damage_rows`: one ellipse per pit."""
+    """Stand in for `siggen.sets.drawn.damage_rows`: one ellipse per pit."""
     planned = planned_record(config, record_id)
     damage = config.states[planned.state_id].damage
     ellipse = {

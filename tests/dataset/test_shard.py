@@ -14,11 +14,12 @@ from hypothesis import strategies as st
 from siggen.columns.record import record_batch, record_schema, signal_matrix
 from siggen.dataset.shard import write_table
 from siggen.dataset.storage import LocalFolder
+from siggen.sets.drawn import set_columns
 from tests.dataset.fake_set import fake_config, simulate
 
 CONFIG = fake_config()
-SCHEMA = record_schema(CONFIG)
-ROWS = record_batch(CONFIG, simulate(CONFIG, range(11)))
+SCHEMA = record_schema(set_columns(CONFIG))
+ROWS = record_batch(set_columns(CONFIG), simulate(CONFIG, range(11)))
 SERIES = {
     "accel_bearing_vertical_m_s2.list.element", "accel_bearing_horizontal_m_s2.list.element", "tacho_s.list.element",
 }  # fmt: skip

@@ -9,8 +9,8 @@ import pyarrow as pa
 from diagnostics.records.gear_train import pair_train
 from siggen.columns.common_columns import INTEGRATION_COLUMNS, operating_columns, target_columns, variation_columns
 from siggen.columns.record import ID_COLUMNS
-from siggen.columns.state_columns import SHAM_COLUMN
-from siggen.keys.column import Column, Role, in_role
+from siggen.gearbox.labels import SHAM
+from siggen.keys.column import Column, Role
 from siggen.names import PAIR
 
 OF_CHANNELS = (
@@ -26,7 +26,7 @@ COLUMNS = (
     *INTEGRATION_COLUMNS,
     *OF_CHANNELS,
 )
-LISTED = {column.name: column for column in (*COLUMNS, *in_role(Role.TARGET, SHAM_COLUMN))}
+LISTED = {column.name: column for column in (*COLUMNS, SHAM)}
 
 
 class ListedRoles:

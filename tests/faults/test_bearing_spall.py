@@ -17,9 +17,9 @@ from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
 from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.record.damage_rows import damage_rows
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
+from siggen.sets.drawn import damage_rows
 from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
 from siggen.specimen.drive import record_rotation
 from siggen.specimen.structure import structure

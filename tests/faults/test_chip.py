@@ -13,8 +13,8 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.chip import WholeChip
-from siggen.record.damage_rows import damage_rows
 from siggen.record.specimen_state import specimen_state
+from siggen.sets.drawn import damage_rows
 from tests.faults.test_damage import config_with, damage_of
 from tests.simulated import simulate
 

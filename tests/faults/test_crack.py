@@ -11,7 +11,7 @@ from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.crack import RootCrack
 from siggen.gears.geometry.root_chord import root_chord
-from siggen.record.damage_rows import damage_rows
+from siggen.sets.drawn import damage_rows
 from tests.faults.test_damage import config_with, damage_of
 
 UNIFORM = [0.1, 0.2]

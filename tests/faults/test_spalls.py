@@ -14,7 +14,7 @@ from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import profile_arc_m
 from siggen.gears.stiffness.sections import contact_length_loss
-from siggen.record.damage_rows import damage_rows
+from siggen.sets.drawn import damage_rows
 from tests.faults.test_damage import config_with, damage_of
 
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.1}

@@ -105,8 +105,8 @@ def test_a_gearbox_draws_gear_teeth_and_oil_once_for_all_of_its_states_and_place
         assert gearbox_config(own, specimen_id) == own
         slight, severe = (state.damage for state in own.states[1:])
         assert (slight.gear, slight.teeth) == (severe.gear, severe.teeth)  # type: ignore[union-attr]
-        horizontal, vertical = draw_specimen(made, specimen_id).sensor_places_mm["lid"]
-        assert vertical == 5.0
+        oil, horizontal = draw_specimen(made, specimen_id).labels.values()
+        assert oil == own.dynamics.friction.oil
         assert 20.0 <= float(str(horizontal)) <= 60.0
         seen.update((slight.gear, slight.teeth, own.dynamics.friction.oil))  # type: ignore[union-attr]
     assert all(10 <= seen[value] <= 30 for value in ("pinion", "gear", 1, 3)), seen

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import SimulatedRecord, label_names
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
@@ -25,15 +25,15 @@ from siggen.record.background_course import Course, course_at
 from siggen.record.bearing_noise import velocity_density
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.rubbing import RubbingForce, force_spectrum
-from siggen.record.simulation import simulate_specimen
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import resonance_response
 from siggen.sensing.spectral_filter import frequencies
+from siggen.sets.drawn import simulated
 from siggen.specimen.background import ChannelWay, SpecimenBackground, specimen_background
 from siggen.specimen.drive import record_rotation
 from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.minimal import by_name, minimal
-from tests.simulated import simulate
+from tests.simulated import label_names, simulate
 from tests.specimen.fixed_numbers import fix
 
 ON_LID = {"name": "lid", "place": "lid", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
@@ -188,7 +188,7 @@ def test_a_second_stage_turns_the_housing_and_pushes_it_nowhere() -> None:
 
 def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
     config = loaded(background=ALL)
-    for record_id, found in zip([0, 1], simulate_specimen(config, [0, 1]), strict=True):
+    for record_id, found in zip([0, 1], simulated(config, [0, 1]), strict=True):
         assert isinstance(found, SimulatedRecord)
         for name, signal in record(config, record_id).channels.items():
             assert signal.tobytes() == found.channels[name].tobytes()

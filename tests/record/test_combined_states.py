@@ -11,7 +11,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.record.simulation import damage_rows
+from siggen.sets.drawn import damage_rows, set_columns
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
@@ -84,7 +84,7 @@ def test_labels_say_each_kind() -> None:
     assert (slight["fault"], slight["has_pitting"], slight["has_spalling"]) == ("pitting", True, False)
     assert (labels["primary_fault"], slight["primary_fault"]) == ("spalling", "pitting")
     assert record(chosen, 0).labels["primary_fault"] == "healthy"
-    alone = record_schema(config(state(PITS))).names
+    alone = record_schema(set_columns(config(state(PITS)))).names
     assert not [name for name in alone if name.startswith("has_") or name == "primary_fault"]
 
 

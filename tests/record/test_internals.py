@@ -15,12 +15,12 @@ from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.record.internals import internals_table, stored_quantities
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
+from siggen.sets.drawn import stored_quantities
 from siggen.specimen.structure import structure
-from tests.simulated import simulate
+from tests.simulated import internals_table, simulate
 
 SHORT = ["duration_s=0.05", "specimens=2"]
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import SimulatedRecord, label_names
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
@@ -19,7 +19,7 @@ from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.housing import specimen_housing
 from tests.config.minimal import by_name, minimal
-from tests.simulated import simulate
+from tests.simulated import label_names, simulate
 
 INPUTS = seats_of(PAIR)
 

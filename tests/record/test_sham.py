@@ -12,8 +12,8 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.faults.registry import BY_WORD
 from siggen.gearbox.draw import draw_specimen
-from siggen.record.simulation import damage_rows
 from siggen.record.specimen_state import specimen_state
+from siggen.sets.drawn import damage_rows, set_columns
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
@@ -110,5 +110,5 @@ def test_what_a_sham_cannot_be_is_refused_by_name(state: dict[str, Any], path: s
 
 
 def test_sets_without_one_have_no_column_of_it() -> None:
-    assert "sham" not in record_schema(config({"name": "again"})).names
-    assert "sham" in record_schema(config(sham_of("spall"))).names
+    assert "sham" not in record_schema(set_columns(config({"name": "again"}))).names
+    assert "sham" in record_schema(set_columns(config(sham_of("spall")))).names

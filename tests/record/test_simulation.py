@@ -9,10 +9,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.gearbox.configured import pair_config, pair_of
-from siggen.record.damage_rows import damage_rows
-from siggen.record.internals import internals_table
-from siggen.record.simulation import simulate_specimen
-from tests.simulated import simulate
+from siggen.sets.drawn import damage_rows, simulated
+from tests.simulated import internals_table, simulate
 
 SMALL = ["specimens=2", "duration_s=0.1", "dynamics.input_coupling.damping_nm_s_per_rad=2.0"]
 
@@ -24,7 +22,7 @@ def config() -> Config:
 
 @pytest.fixture(scope="module")
 def specimen(config: Config) -> list[SimulatedRecord]:
-    results = list(simulate_specimen(config, range(config.records_per_specimen)))
+    results = list(simulated(config, range(config.records_per_specimen)))
     assert all(isinstance(r, SimulatedRecord) for r in results)
     return results  # type: ignore[return-value]
 
@@ -38,7 +36,7 @@ def test_a_record_is_a_function_of_configuration_and_index_alone(
     config: Config, specimen: list[SimulatedRecord]
 ) -> None:
     for index in (5, 0, 3):
-        alone = next(simulate_specimen(config, [index]))
+        alone = next(simulated(config, [index]))
         assert isinstance(alone, SimulatedRecord)
         assert same(alone, specimen[index])
 
@@ -51,7 +49,7 @@ def test_records_of_several_specimens_come_back_in_the_order_asked_for(config: C
 
 def test_simulating_two_specimens_as_one_is_refused(config: Config) -> None:
     with pytest.raises(ValueError, match="specimens \\[0, 1\\]"):
-        simulate_specimen(config, [0, config.records_per_specimen])
+        simulated(config, [0, config.records_per_specimen])
 
 
 def test_states_of_a_specimen_share_speed_and_torque_but_not_noise_or_phase(specimen: list[SimulatedRecord]) -> None:
@@ -81,7 +79,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
         "tests/configs/linear_pits.yaml",
         [*SMALL, "states.severe.damage.semi_axis_face_mm=6.0"],
     )
-    results = list(simulate_specimen(config, range(config.records_per_specimen)))
+    results = list(simulated(config, range(config.records_per_specimen)))
     assert [type(r) for r in results[:6]] == [SimulatedRecord] * 6
     for failure in results[6:]:
         assert isinstance(failure, RecordFailure)
@@ -91,7 +89,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
 
 def test_a_torque_that_no_teeth_carry_is_a_failure_of_the_records_with_the_reason() -> None:
     law = ["dynamics.mesh.law=pairs", *(f"operating_points.{i}.torque_nm=2.0e+4" for i in range(2))]
-    results = list(simulate_specimen(load_config("tests/configs/linear_pits.yaml", [*SMALL, *law]), [0, 2]))
+    results = list(simulated(load_config("tests/configs/linear_pits.yaml", [*SMALL, *law]), [0, 2]))
     assert [r.status for r in results if isinstance(r, RecordFailure)] == ["outside_model"] * 2
     assert all("forces that teeth carry" in r.reason for r in results if isinstance(r, RecordFailure))
 
@@ -102,7 +100,7 @@ def test_a_fault_of_the_program_is_no_failure_of_a_record(config: Config, monkey
 
     monkeypatch.setattr("siggen.record.simulation.measured_channels", broken)
     with pytest.raises(ValueError, match="broadcast"):
-        list(simulate_specimen(config, [0]))
+        list(simulated(config, [0]))
 
 
 PAIRS = (

@@ -14,6 +14,7 @@ from siggen.config import Config
 from siggen.gearbox.configured import state_config
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.converter import MOST_BITS, bits_of_noise
+from siggen.sets.drawn import set_columns
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
@@ -75,7 +76,9 @@ def test_every_record_of_a_set_has_one_step_whatever_its_state_does_to_the_noise
         == 3
     )
     assert {state_config(own, 1, state).sensors[0].converter_step for state in (0, 1)} == {STEP}
-    assert float(record_schema(own).field("accel_bearing_vertical_m_s2").metadata[b"converter_step"]) == STEP
+    assert (
+        float(record_schema(set_columns(own)).field("accel_bearing_vertical_m_s2").metadata[b"converter_step"]) == STEP
+    )
 
 
 def test_the_step_is_part_of_the_identity() -> None:

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import SimulatedRecord, channels
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
+from siggen.sets.drawn import set_columns
 from siggen.specimen.staged_structure import axis_places_m
 from tests.config.minimal import by_name
 from tests.config.staged import SLOW, staged
@@ -75,7 +76,7 @@ def test_bearings_carry_the_mesh_forces_of_their_shaft_and_couplings_and_encoder
     for shaft, turns in TURNS.items():
         # Sampled speeds hold the vibration of both ends of the record: the angle of a mesh of 10 µm, of 200 rad.
         assert found[f"{shaft.replace('.', '_')}_rotation"].mean() == pytest.approx(60.0 * pi * turns, rel=1e-6)
-    assert [(one.column, one.unit, one.place) for one in channels(config)][4:6] == [
+    assert [(one.column, one.unit, one.place) for one in set_columns(config).channels][4:6] == [
         ("force_slow_bearing_vertical_n", "N", "slow_bearing"), ("force_slow_bearing_horizontal_n", "N", "slow_bearing")
     ]  # fmt: skip
 

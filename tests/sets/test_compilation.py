@@ -15,9 +15,10 @@ from siggen.dynamics.time import exponential_step
 from siggen.engines.processes import ProcessEngine
 from siggen.gears.damage import whole_loss
 from siggen.record import compilation
-from siggen.record.compilation import CompilationPart, is_compiled, run_part, to_compile
-from siggen.record.simulation import simulate_specimen
+from siggen.record.compilation import is_compiled, run_part
+from siggen.sets import drawn
 from siggen.sets.compilation import compilation_text
+from siggen.sets.drawn import compilation_parts, simulated, to_compile
 from siggen.sets.interruption import Interruption
 from siggen.sets.set_run import set_run
 
@@ -28,8 +29,8 @@ def short() -> Config:
 
 
 def test_the_parts_compile_all_that_a_record_needs(short: Config, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in (compilation.TEETH, compilation.MOTION):
-        run_part(CompilationPart(short, name))
+    for part in compilation_parts(short):
+        run_part(part)
     later = []
     known = Dispatcher._compile_for_args
 
@@ -38,7 +39,7 @@ def test_the_parts_compile_all_that_a_record_needs(short: Config, monkeypatch: p
         return known(dispatcher, *arguments, **named)
 
     monkeypatch.setattr(Dispatcher, "_compile_for_args", noted)
-    list(simulate_specimen(short, range(short.records_per_specimen)))
+    list(simulated(short, range(short.records_per_specimen)))
     assert later == []
 
 
@@ -51,8 +52,8 @@ def test_a_configuration_is_checked_without_what_looks_for_lost_contacts(monkeyp
 
 
 def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: Config, monkeypatch: pytest.MonkeyPatch) -> None:
-    run_part(CompilationPart(short, compilation.MOTION))
-    assert is_compiled(short)
+    run_part(compilation_parts(short)[1])
+    assert is_compiled(short.dynamics.method)
     assert (compilation_text(short, 2), to_compile(short)) == ("", ())
     older = SimpleNamespace(_cache=SimpleNamespace(_cache_file=SimpleNamespace(_load_index=dict)))
     monkeypatch.setattr(exponential_step, "advance", older)
@@ -69,7 +70,7 @@ def test_a_run_compiles_before_its_first_record(short: Config, monkeypatch: pyte
                 mapped.append(type(task))
                 yield index, function(task)
 
-    monkeypatch.setattr(compilation, "is_compiled", lambda config: False)
+    monkeypatch.setattr(drawn, "is_compiled", lambda method: False)
     storage = LocalFolder(tmp_path / "set")
     with storage.writing(), Interruption() as interruption:
         set_run(short, storage, Noting(1), None, interruption).finish()

@@ -118,7 +118,7 @@ def test_before_the_first_pit_records_are_those_of_a_healthy_gearbox(tmp_path: P
 
 
 def test_taken_out_gearboxes_have_no_remaining_life_but_a_least_one() -> None:
-    from siggen.record.life_rows import life_rows
+    from siggen.sets.drawn import life_rows
 
     config = load_config({**lives({"removed_share": 1.0}), "specimens": 14})
     units = [life_rows(config, number) for number in range(14)]
@@ -131,7 +131,7 @@ def test_taken_out_gearboxes_have_no_remaining_life_but_a_least_one() -> None:
 
 @pytest.mark.parametrize("gear", ["pinion", "gear"])
 def test_pits_begin_where_flanks_slide_against_their_rolling(gear: str) -> None:
-    from siggen.record.life_rows import life_rows
+    from siggen.sets.drawn import life_rows
 
     config = load_config({**lives(), "specimens": 6})
     pair = draw_specimen(config, 0).pair

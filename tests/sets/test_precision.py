@@ -67,7 +67,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def measured(folder: Path, monkeypatch: pytest.MonkeyPatch, error: float, *options: str):
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", partial(simulate_off_by, error=error))
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", partial(simulate_off_by, error=error))
     return CliRunner().invoke(app, ["verify", str(folder), "--sample", "0", "--physics", "7", *options])
 
 
@@ -92,7 +92,7 @@ def test_the_error_is_found_in_every_state_and_the_set_stays_as_it_is(
 def test_codes_of_a_converter_that_differ_are_no_error_of_integration(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate_rounded)
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", simulate_rounded)
     assert measure_precision(folder, 3, workers=0).largest == pytest.approx(1e-4, rel=1e-2)
 
 
@@ -107,7 +107,7 @@ def test_an_error_above_the_stated_one_ends_with_4(folder: Path, monkeypatch: py
 
 
 def test_the_reference_halves_its_steps_until_two_agree(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate_converging)
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", simulate_converging)
     found = measure_precision(folder, 3, workers=0)
     assert found.reference == f"runge_kutta, up to {16 * FIRST_STEPS} steps per sample"
     assert found.apart == pytest.approx(1e-3 / 16, rel=1e-2)
@@ -115,20 +115,20 @@ def test_the_reference_halves_its_steps_until_two_agree(folder: Path, monkeypatc
 
 
 def test_a_reference_that_never_agrees_ends_and_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate_astray)
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", simulate_astray)
     found = measure_precision(folder, 3, workers=0)
     assert found.reference == f"runge_kutta, up to {MOST_STEPS} steps per sample"
     assert found.apart == pytest.approx(0.5e-5 * MOST_STEPS, rel=1e-2)
 
 
 def test_an_error_that_its_label_tells_is_no_fault(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate_told)
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", simulate_told)
     found = measure_precision(folder, 3, workers=0)
     assert (found.told, found.untold, found.within) == (3, 0, True)
 
 
 def test_the_same_records_are_chosen_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", partial(simulate_off_by, error=0.0))
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", partial(simulate_off_by, error=0.0))
     first, second = (measure_precision(folder, 7, workers=0) for _ in range(2))
     assert first == second
     assert all(state.largest == 0.0 for state in first.states)
@@ -138,7 +138,7 @@ def test_a_set_of_the_linear_law_is_measured_and_states_no_tolerance(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write_fake_set(tmp_path / "set", fake_config(dynamics={"mesh": {"law": "linear"}}))
-    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", partial(simulate_off_by, error=2e-3))
+    monkeypatch.setattr(siggen.sets.drawn, "simulated", partial(simulate_off_by, error=2e-3))
     found = measure_precision(tmp_path / "set", 3, workers=0)
     assert found.tolerance is None
     assert found.within

@@ -7,10 +7,9 @@ import numpy as np
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.gearbox.draw import draw_specimen
-from siggen.record.internals import internals_table
 from siggen.views.natural_modes import specimen_modes
 from tests.config.minimal import minimal
-from tests.simulated import simulate
+from tests.simulated import internals_table, simulate
 
 
 def test_the_default_gearbox_shakes_its_casing_without_losing_contact() -> None:

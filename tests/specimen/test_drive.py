@@ -13,7 +13,7 @@ from siggen.config import Config
 from siggen.dynamics.drive.drive import Drive
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.record.simulation import simulate_specimen
+from siggen.sets.drawn import simulated
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.structure import structure
 from tests.simulated import simulate
@@ -52,7 +52,7 @@ def record(varying: Config) -> SimulatedRecord:
 def test_a_varying_record_is_a_function_of_configuration_and_index_alone(
     varying: Config, record: SimulatedRecord
 ) -> None:
-    again = list(simulate_specimen(varying, [0, 2]))[1]
+    again = list(simulated(varying, [0, 2]))[1]
     assert isinstance(again, SimulatedRecord)
     assert again.labels == record.labels
     assert all(np.array_equal(again.channels[name], record.channels[name]) for name in record.channels)

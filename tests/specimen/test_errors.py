@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import SimulatedRecord, label_names
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config, parse
 from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.tooth_errors import SpecimenErrors
 from siggen.record.specimen_state import specimen_state
-from tests.simulated import simulate
+from tests.simulated import label_names, simulate
 
 SHORT = ["specimens=20", "duration_s=0.1", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
 

@@ -16,6 +16,7 @@ from siggen.config import Config
 from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import SpecimenState, specimen_state
+from siggen.sets.drawn import set_columns
 from siggen.sets.precision import record_error, reference_config, unrounded
 from siggen.specimen.drive import record_drive
 from siggen.specimen.motion import specimen_motion
@@ -117,7 +118,7 @@ def channel_error(config: Config, record_id: int) -> float:
     unrounding = unrounded(config)
     delivered = delivered_channels(unrounding, record_id)
     fine = delivered_channels(reference_config(unrounding, CHANNEL_STEPS), record_id)
-    return record_error(config, delivered, fine)
+    return record_error(set_columns(config).channels, delivered, fine)
 
 
 def delivered_channels(config: Config, record_id: int) -> dict[str, np.ndarray]:

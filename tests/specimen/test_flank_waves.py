@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import SimulatedRecord, label_names
+from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.gearbox import flank_waves
 from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.flank_waves import CLAMPING, SpecimenWaves
-from tests.simulated import simulate
+from tests.simulated import label_names, simulate
 
 
 class Fixed(NamedTuple):

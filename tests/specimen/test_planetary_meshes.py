@@ -10,7 +10,6 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.columns.planetary_columns import manufacture_of_others
-from siggen.columns.record import label_names
 from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.errors.gear_errors import eccentric_m
@@ -19,6 +18,7 @@ from siggen.record.specimen_state import specimen_state
 from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from tests.config.planets import planets
 from tests.dynamics.trains import planetary_structure
+from tests.simulated import label_names
 
 COUNT = 3
 
@@ -54,7 +54,7 @@ def test_sun_and_ring_are_the_same_in_all_of_their_meshes_and_every_flank_of_pla
 def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_made(
     specimen: Specimen, meshes: Sequence[MeshTeeth]
 ) -> None:
-    config = load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"}))
+    config, made = load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"})), meshes[0].teeth.made
     labels = specimen_state(specimen, 0).labels
     errors = [one.errors(0) for one in meshes]
     runouts = [1e6 * one.gear.found.largest["runout_m"] for one in errors if one is not None]
@@ -63,7 +63,8 @@ def test_labels_tell_the_errors_of_the_ring_and_of_every_planet_as_they_were_mad
     assert labels["runout_each_planet_um"][0] == labels["runout_gear_um"]
     assert len(set(runouts[:COUNT])) == COUNT
     assert len(labels["ghost_orders_ring"]) == len(labels["ghost_amplitudes_ring_um"]) > 0
-    assert {column.name for column in manufacture_of_others(config)} <= set(label_names(config)) & set(labels)
+    assert made is not None
+    assert {column.name for column in manufacture_of_others(made)} <= set(label_names(config)) & set(labels)
 
 
 def missing_m(made: MeshTeeth, which: str, pitches: FloatArray) -> FloatArray:

@@ -27,7 +27,6 @@ from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
-from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive, start_angle_rad
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
@@ -35,6 +34,7 @@ from siggen.specimen.shaft_forces import force_sources
 from siggen.specimen.structure import structure
 from tests.config.minimal import by_name
 from tests.config.staged import in_a_row
+from tests.simulated import internals_table
 
 ROOT = Path(__file__).resolve().parents[2]
 

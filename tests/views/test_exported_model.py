@@ -22,7 +22,6 @@ from siggen.errors import UsageError
 from siggen.gearbox.configured import state_config
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.planning.plan import planned_record
-from siggen.record.internals import internals_table
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive
 from siggen.specimen.motion import specimen_motion
@@ -30,6 +29,7 @@ from siggen.views.exported_model import FORMAT_VERSION, exported_model
 from tests.config.minimal import by_name
 from tests.config.planets import SPALL as PLANET_SPALL
 from tests.config.planets import planets
+from tests.simulated import internals_table
 from tests.specimen.test_two_stages import two_stages
 
 ROOT = Path(__file__).resolve().parents[2]

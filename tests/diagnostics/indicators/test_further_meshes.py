@@ -13,13 +13,14 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.gear_train import PAIR, Mesh, MeshNames, gear_names, meshes_of, with_teeth
 from diagnostics.signal.order_domain import angle_grid, shaft_grid
 from siggen import load_config
-from siggen.columns.drivetrain import GearTrain, gear_train
+from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
+from siggen.sets.drawn import set_columns
 from tests.config.idler import idler
 from tests.config.mill import mill
 from tests.config.staged import SLOW, staged
 
-TRAIN = gear_train(load_config(staged()))
+TRAIN = set_columns(load_config(staged())).drivetrain
 FS_HZ, SPEED_HZ = 12_800.0, 30.0
 DEPTH = 0.2
 
@@ -49,7 +50,7 @@ def taken(modulation: str, front: float = 0.7, duration_s: float = 4.0) -> Recor
 
 
 def three() -> GearTrain:
-    return gear_train(load_config(staged(stages=[SLOW, {**SLOW, "name": "last_one"}])))
+    return set_columns(load_config(staged(stages=[SLOW, {**SLOW, "name": "last_one"}]))).drivetrain
 
 
 def test_a_gear_train_has_exact_turns_and_the_gears_that_share_a_shaft() -> None:
@@ -62,7 +63,7 @@ def test_a_gear_train_has_exact_turns_and_the_gears_that_share_a_shaft() -> None
 
 def test_orders_and_turns_of_every_mesh_are_those_that_the_set_stores() -> None:
     """Of two meshes, of three, and of an idler."""
-    for train in (three(), gear_train(load_config(mill())), gear_train(load_config(idler()))):
+    for train in (three(), set_columns(load_config(mill())).drivetrain, set_columns(load_config(idler())).drivetrain):
         turns = {shaft.name: shaft.turns for shaft in train.shafts}
         for mesh, stored in zip(meshes_of(train), train.meshes, strict=True):
             assert (mesh.turns * mesh.teeth[0]).as_integer_ratio() == stored.order
@@ -70,7 +71,7 @@ def test_orders_and_turns_of_every_mesh_are_those_that_the_set_stores() -> None:
 
 
 def test_teeth_of_a_record_take_the_place_of_those_that_differ_within_a_set() -> None:
-    drawn = gear_train(load_config("families"))
+    drawn = set_columns(load_config("families")).drivetrain
     (mesh,) = meshes_of(with_teeth(drawn, {"pinion": 23, "gear": 61}))
     assert (mesh.names, mesh.teeth) == (PAIR[0], (23, 61))
 
@@ -138,7 +139,7 @@ def test_a_shaft_of_fewer_than_eight_turns_has_no_averages_and_says_so_once() ->
 
 
 def test_columns_are_called_after_the_gears_of_their_mesh_and_say_what_they_hold() -> None:
-    settings, named = IndicatorSettings(), gear_names(gear_train(load_config(mill())))
+    settings, named = IndicatorSettings(), gear_names(set_columns(load_config(mill())).drivetrain)
     alone, both, known = columns(settings), columns(settings, named=named), indicator_columns(settings, named)
     first = [name for name in both if known[name].of_first]
     assert len(first) == len(alone)

@@ -19,7 +19,8 @@ from diagnostics.records.gear_train import Planets, gear_names, meshes_of, with_
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, geared_pulses, resample_to_angle
 from diagnostics.signal.synchronous_average import synchronous_average
 from siggen import load_config
-from siggen.columns.drivetrain import GearTrain, gear_train
+from siggen.columns.drivetrain import GearTrain
+from siggen.sets.drawn import set_columns
 from tests.config.planets import planets
 
 FS_HZ, CARRIER_HZ, DURATION_S = 12_800.0, 6.0, 4.0
@@ -81,7 +82,7 @@ def taken(
 
 
 def train_of_set(teeth: tuple[int, int, int]) -> GearTrain:
-    return with_teeth(gear_train(load_config(planets())), dict(zip(MEMBERS, teeth, strict=True)))
+    return with_teeth(set_columns(load_config(planets())).drivetrain, dict(zip(MEMBERS, teeth, strict=True)))
 
 
 def against_carrier(pulses: np.ndarray, teeth: tuple[int, int, int]) -> np.ndarray:
