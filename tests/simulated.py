@@ -9,7 +9,8 @@ import pyarrow as pa
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.gearbox.draw import draw_specimen
-from siggen.planning.plan import planned_record
+from siggen.gearbox.specimen import Specimen
+from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.record.internals import internals_table as internals_of
 from siggen.sets.drawn import set_columns, simulated
 
@@ -27,10 +28,15 @@ def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord 
     return [done[i] for i in record_ids]
 
 
+def drawn_record(config: Config, record_id: int) -> tuple[Specimen, PlannedRecord]:
+    """Return the gearbox of a record, and where the record stands."""
+    planned = planned_record(config, record_id)
+    return draw_specimen(config, planned.specimen_id), planned
+
+
 def internals_table(config: Config, record_id: int, *, internals: bool = True) -> pa.Table:
     """Return what sensors and nobody saw of one record."""
-    planned = planned_record(config, record_id)
-    return internals_of(draw_specimen(config, planned.specimen_id), planned, internals=internals)
+    return internals_of(*drawn_record(config, record_id), internals=internals)
 
 
 def label_names(config: Config) -> tuple[str, ...]:

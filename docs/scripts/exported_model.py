@@ -128,12 +128,13 @@ def compare(config, overrides, samples=600, record=0, rtol=1e-6):
     loaded = load_config(config, [*overrides, f"duration_s={samples / fs_hz}"])
     if loaded.dynamics.mesh.law == "pairs":  # the same steps in both: Runge-Kutta
         loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
+    planned = planned_record(loaded, record)
+    drawn = draw_specimen(loaded, planned.specimen_id), planned
     with tempfile.TemporaryDirectory() as folder:
-        write_model(exported_model(loaded, record), Path(folder) / "model.npz")
+        write_model(exported_model(*drawn), Path(folder) / "model.npz")
         with np.load(Path(folder) / "model.npz") as file:
             model = {name: value[()] for name, value in file.items()}  # [()]: plain numbers instead of 0-d arrays
-    planned = planned_record(loaded, record)
-    inner = internals_table(draw_specimen(loaded, planned.specimen_id), planned)
+    inner = internals_table(*drawn)
     times = np.arange(samples) / model["fs_hz"]
     own = tuple(inner[name].to_numpy() for mesh in meshes_of(model) for name in mesh.names)
     return times, own, integrate(model, times, rtol)

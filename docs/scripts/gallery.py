@@ -54,7 +54,7 @@ GROUPS: dict[str, Cases] = {
 
 def curves(config: Config, state: str) -> tuple[StiffnessCurve, StiffnessCurve]:
     """Return the healthy curve and that of a state, 1/200 degree apart."""
-    found = {c.state: c for c in stiffness_curves(config, points_per_pitch=4000)}
+    found = {c.state: c for c in stiffness_curves(draw_specimen(config, 0), points_per_pitch=4000)}
     return found["healthy"], found[state]
 
 
@@ -77,12 +77,12 @@ def row(name: str, config: Config, state: str) -> str:
     loss = healthy.mesh_stiffness_n_per_m - pitted.mesh_stiffness_n_per_m
     degrees = np.degrees(healthy.angle_rad)
     first, last, length = contact_extent(config, state)
-    area = flank_views(config, state=state)[0].area_mm2
+    area = flank_views(draw_specimen(config, 0), state=state)[0].area_mm2
     behind = loss[(degrees > last + 0.01) & (degrees < 32.7)].max(initial=0.0)
     softer = np.nanmax(pitted.parts_m_per_n["contact"] - healthy.parts_m_per_n["contact"])
     relative = 100 * (loss / healthy.mesh_stiffness_n_per_m).max()
     cells = (
-        f"{flank_damage_table(config, state=state).num_rows}",
+        f"{flank_damage_table(draw_specimen(config, 0), state=state).num_rows}",
         f"{area:.2f}",
         f"{length:.2f}",
         f"{loss.max() / 1e6:.2f}",
@@ -127,7 +127,7 @@ def main() -> None:
     FIGURES.mkdir(exist_ok=True)
     for group, cases in GROUPS.items():
         draw(cases, FIGURES / f"gallery_{group}.png")
-    save_flank_figure(flank_views(load_config(PAPER)), FIGURES / "gallery_flanks.png")
+    save_flank_figure(flank_views(draw_specimen(load_config(PAPER), 0)), FIGURES / "gallery_flanks.png")
     print(
         "| case | pits | area [mm²] | largest lost contact length [mm] | largest ΔK [10⁶ N/m] | largest ΔK/K [%] "
         "| largest ΔK at [°] | contact on pits [°] | largest ΔK behind them [10⁶ N/m] "

@@ -45,8 +45,8 @@ def errors(
     png = picture.place("errors")
     check_wanted(out, png, "errors")
     with working("drawing the errors of the teeth"):
-        usable = load_config(config, overrides or ())
-        charts = gear_charts(usable, gearbox.specimen, state, gearbox.mesh(usable))
+        drawn, mesh = gearbox.drawn(load_config(config, overrides or ()))
+        charts = gear_charts(drawn, state, mesh)
     if out is not None:
         write_table_file(deviation_table(charts), out)
         echo(str(out))

@@ -25,11 +25,15 @@ def export_model(
 
     Example: siggen export-model configs/paper_a.yaml --record 1 --out model.npz
     """
-    from siggen.cli.record_choice import chosen_config
+    import json
+
+    from siggen.cli.record_choice import chosen_record
     from siggen.views.exported_model import check_model_file, exported_model, write_model
 
     check_model_file(out)
     with working("simulating the record"):
-        model = exported_model(chosen_config(source, record, overrides or ()), record)
+        config, drawn, planned = chosen_record(source, record, overrides or ())
+        text = json.dumps(config.canonical(), sort_keys=True)
+        model = exported_model(drawn, planned, identity=config.identity, configuration=text)
     write_model(model, out)
     echo(str(out))

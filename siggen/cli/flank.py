@@ -45,10 +45,9 @@ def flank(
     png = picture.place("flank")
     check_wanted(out, png, "flank")
     with working("drawing damage"):
-        usable = load_config(config, overrides or ())
-        of = usable, gearbox.specimen, state, gearbox.mesh(usable)
-        table = flank_damage_table(*of)
-        views = flank_views(*of) if png is not None else []
+        drawn, mesh = gearbox.drawn(load_config(config, overrides or ()))
+        table = flank_damage_table(drawn, state, mesh)
+        views = flank_views(drawn, state, mesh) if png is not None else []
     if png is not None and not views:
         raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png and --open")
     if out is not None:

@@ -9,6 +9,7 @@ import typer
 
 if TYPE_CHECKING:
     from siggen.config import Config
+    from siggen.gearbox.specimen import Specimen
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,14 +21,16 @@ class GearboxChoice:
         str | None, typer.Option("--stage", help="Which mesh: the name of a further stage; by default the first one.")
     ] = None
 
-    def mesh(self, config: Config) -> int:
-        """Return the number of the chosen mesh, 0 for the first one.
+    def drawn(self, config: Config) -> tuple[Specimen, int]:
+        """Return the gearbox, and the number of the chosen mesh, 0 for the first one.
 
         Raises
         ------
         UsageError
             If the gearbox has no stage of that name.
         """
+        from siggen.gearbox.draw import draw_specimen
         from siggen.views.chosen_mesh import chosen_mesh
 
-        return chosen_mesh(config, self.stage, "--stage")
+        gearbox = draw_specimen(config, self.specimen)
+        return gearbox, chosen_mesh(gearbox, self.stage, "--stage")

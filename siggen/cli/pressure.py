@@ -40,7 +40,7 @@ def pressure(
 
     Example: siggen inspect pressure configs/quickstart.yaml --record 2 --out pressure.parquet --png pressure.png
     """
-    from siggen.cli.record_choice import chosen_config
+    from siggen.cli.record_choice import chosen_record
     from siggen.dataset.table_file import write_table_file
     from siggen.views.face_pressure import face_pressure, pressure_table
     from siggen.views.pressure_figure import chosen_positions, largest_text, save_pressure_figure
@@ -48,7 +48,8 @@ def pressure(
     png = picture.place("pressure")
     check_wanted(out, png, "pressure")
     with working("simulating the record and solving the pressure across the face"):
-        found = face_pressure(chosen_config(source, record, overrides or ()), record, gear, tooth)
+        _, drawn, planned = chosen_record(source, record, overrides or ())
+        found = face_pressure(drawn, planned, gear, tooth)
     positions = chosen_positions(found)
     if out is not None:
         write_table_file(pressure_table(found), out)

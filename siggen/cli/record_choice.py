@@ -1,4 +1,4 @@
-"""The configuration behind a YAML file or a set's folder, checked to have the record that a command asks for."""
+"""The record that a command asks for of a YAML file or a set's folder, and its gearbox."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from siggen.config import Config
+    from siggen.gearbox.specimen import Specimen
+    from siggen.planning.plan import PlannedRecord
 
 
-def chosen_config(source: Path, record: int, overrides: Sequence[str]) -> Config:
-    """Return the configuration of a file or folder.
+def chosen_record(source: Path, record: int, overrides: Sequence[str]) -> tuple[Config, Specimen, PlannedRecord]:
+    """Return the configuration of a file or folder, the gearbox of a record, and where that stands.
 
     Raises
     ------
@@ -20,7 +22,8 @@ def chosen_config(source: Path, record: int, overrides: Sequence[str]) -> Config
     """
     from siggen.checks.loading import load_config
     from siggen.errors import UsageError, counted
-    from siggen.planning.plan import record_ids_of
+    from siggen.gearbox.draw import draw_specimen
+    from siggen.planning.plan import planned_record, record_ids_of
 
     config = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
     count = config.specimens * config.records_per_specimen
@@ -31,4 +34,5 @@ def chosen_config(source: Path, record: int, overrides: Sequence[str]) -> Config
             f"--record {record}: this gearbox fails, or is taken out, before; allowed: {ids[0]} to {ids[-1]}, or those "
             "of another one"
         )
-    return config
+    planned = planned_record(config, record)
+    return config, draw_specimen(config, planned.specimen_id), planned

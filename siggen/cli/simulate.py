@@ -26,18 +26,15 @@ def simulate(
 
     Example: siggen simulate configs/paper_a.yaml --record 3 --out record.parquet
     """
-    from siggen.cli.record_choice import chosen_config
+    from siggen.cli.record_choice import chosen_record
     from siggen.dataset.table_file import check_table_file, write_table_file
 
     check_table_file(out)
     with working("simulating the record"):
-        config = chosen_config(source, record, overrides or ())
-        from siggen.gearbox.draw import draw_specimen
-        from siggen.planning.plan import planned_record
+        config, drawn, planned = chosen_record(source, record, overrides or ())
         from siggen.record.internals import internals_table
 
-        planned = planned_record(config, record)
-        table = internals_table(draw_specimen(config, planned.specimen_id), planned, internals=internals)
+        table = internals_table(drawn, planned, internals=internals)
         table = table.replace_schema_metadata({**table.schema.metadata, "identity": config.identity})
     write_table_file(table, out)
     echo(str(out))

@@ -82,9 +82,9 @@ def tvms(
     Example: siggen inspect tvms paper_a --vary states.moderate.damage.first_height_mm=1,1.9,2.8 --png heights.png
     """
     from siggen.checks.loading import load_config
+    from siggen.cli.key_variation import varied, varied_curves
     from siggen.dataset.table_file import write_table_file
     from siggen.gearbox.pair import model_notes
-    from siggen.views.key_variation import varied, varied_curves
     from siggen.views.stiffness_curves import (
         curve_table,
         static_torque_nm,
@@ -97,8 +97,8 @@ def tvms(
     check_wanted(out, png, "tvms")
     with working("computing the mesh stiffness of every state"):
         usable = load_config(config, overrides or ())
-        mesh = gearbox.mesh(usable)
-        torque = static_torque_nm(usable, gearbox.specimen, mesh) if torque_nm is None else torque_nm
+        drawn, mesh = gearbox.drawn(usable)
+        torque = static_torque_nm(drawn, mesh) if torque_nm is None else torque_nm
         if study.vary:
             loaded = (
                 (label, load_config(config, [*(overrides or ()), *changes]), state)
@@ -106,8 +106,8 @@ def tvms(
             )
             curves = varied_curves(loaded, gearbox.specimen, torque, mesh)
         else:
-            curves = stiffness_curves(usable, gearbox.specimen, torque_nm=torque, mesh=mesh)
-        meaning = stiffness_meaning(across_the_face=usable.dynamics.mesh.law == "pairs", torque_nm=torque)
+            curves = stiffness_curves(drawn, torque_nm=torque, mesh=mesh)
+        meaning = stiffness_meaning(across_the_face=drawn.law.across_the_face, torque_nm=torque)
     if out is not None:
         table = curve_table(curves, **asdict(further))
         write_table_file(table, out)

@@ -17,6 +17,7 @@ from siggen.config.states import StateSection
 from siggen.errors import ConfigError, Problem
 from siggen.faults.growth import Growth
 from siggen.faults.registry import DamageSections
+from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.tooth_law import tooth_law
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.heights import flank_heights
@@ -151,16 +152,15 @@ def _of_gearbox(
     name = one_of("damages", state, [one.name for one in gearbox.states])
     config = gearbox._with_passed(gearbox._config)
     with saying({"torque": "torque_nm"}):
-        number = chosen_mesh(config, mesh, "mesh")
-        torque = static_torque_nm(config, gearbox.number, number)
+        specimen = draw_specimen(config, gearbox.number)
+        number = chosen_mesh(specimen, mesh, "mesh")
+        torque = static_torque_nm(specimen, number)
         torque = torque if torque_nm is None else finite("torque_nm", torque_nm, "a number above 0", 1e-9)
-        (curve,) = stiffness_curves(
-            config, gearbox.number, points_per_pitch, torque_nm=torque, states=(name,), mesh=number
-        )
+        (curve,) = stiffness_curves(specimen, points_per_pitch, torque_nm=torque, states=(name,), mesh=number)
     return Curve(
         curve.angle_rad,
         curve.mesh_stiffness_n_per_m,
-        stiffness_meaning(across_the_face=config.dynamics.mesh.law == "pairs", torque_nm=torque),
+        stiffness_meaning(across_the_face=specimen.law.across_the_face, torque_nm=torque),
     )
 
 

@@ -6,14 +6,12 @@ in the order of power; numbers and tables of its law under `mesh.0.law.`.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from siggen.config import Config
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -25,10 +23,8 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.transient import both_settled_s, settling_steps
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
-from siggen.gearbox.configured import state_config
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.specimen import Specimen
-from siggen.planning.plan import planned_record
+from siggen.planning.plan import PlannedRecord
 from siggen.record.simulation import at_point, state_drive
 from siggen.record.specimen_state import refused_as, specimen_state
 from siggen.sources import installed_version
@@ -45,38 +41,36 @@ Model = Mapping[str, Any]
 """Key -> array or plain value, see docs/reference/exported_model.md."""
 
 
-def exported_model(whole: Config, record_id: int) -> Model:
+def exported_model(gearbox: Specimen, record: PlannedRecord, **of_set: str) -> Model:
     """Return the model of one record: structure, mesh law, static state, start state and time grid.
 
     Parameters
     ----------
-    whole : Config, of the set
-    record_id : int
+    gearbox : Specimen
+    record : PlannedRecord
+    of_set : what else it says of its set
 
     Raises
     ------
     SolverFailure
         If what was drawn cannot be built; says why.
     """
-    record = planned_record(whole, record_id)
-    config = state_config(whole, record.specimen_id, record.state_id)
-    specimen = draw_specimen(config, record.specimen_id)
+    specimen = gearbox.in_state(record.state_id)
     state = specimen_state(specimen, record.state_id)
     point = specimen.points[record.operating_point_id]
     with refused_as("outside_model"):
         specimen, state = at_point(specimen, state, record)
         driven = state_drive(specimen, state, record)
         (steps, _), motion, *_ = stepped_motion(specimen.sampling, specimen.law, state.mesh, point, driven)
-        grid = _time_grid(config, specimen, motion, steps)
+        grid = _time_grid(specimen, motion, steps)
         start = motion.start(_first_pitches(motion, driven.rotation, grid["start_s"]))
     return {
         "format": "siggen exported model",
         "format_version": FORMAT_VERSION,
         "siggen_version": installed_version(),
-        "identity": whole.identity,
-        "configuration": json.dumps(whole.canonical(), sort_keys=True),
-        "record_id": record_id,
-        "state": config.states[record.state_id].name,
+        **of_set,
+        "record_id": record.record_id,
+        "state": specimen.states[record.state_id].name,
         **_structure(motion.structure),
         "static_deflection": motion.equations.static_deflection,
         "torque_nm": point.torque_nm,
@@ -196,16 +190,17 @@ def _first_pitches(motion: Motion, rotation: Rotation, time_s: float) -> float:
     return turned + motion.structure.mesh.flanks.ahead_pitches
 
 
-def _time_grid(config: Config, specimen: Specimen, motion: Motion, steps: int) -> dict[str, Any]:
+def _time_grid(specimen: Specimen, motion: Motion, steps: int) -> dict[str, Any]:
     """Return rate and steps; the transient lies before time 0, as long as that of the record (`response_stream`)."""
-    step_s = 1.0 / (config.fs_hz * steps)
+    sampling = specimen.sampling
+    step_s = 1.0 / (sampling.fs_hz * steps)
     settle_s = both_settled_s(motion.transient_s, history_s(specimen))
-    settling = half_length(steps) + settling_steps(motion.transient_s, settle_s, config.fs_hz * steps)
+    settling = half_length(steps) + settling_steps(motion.transient_s, settle_s, sampling.fs_hz * steps)
     if motion.starts_settled:
-        settling = steps * (half_length(1) + settling_steps(motion.transient_s, settle_s, config.fs_hz))
+        settling = steps * (half_length(1) + settling_steps(motion.transient_s, settle_s, sampling.fs_hz))
     return {
-        "fs_hz": config.fs_hz,
-        "samples": config.samples,
+        "fs_hz": sampling.fs_hz,
+        "samples": sampling.samples,
         "steps_per_sample": steps,
         "step_s": step_s,
         "start_s": -settling * step_s,

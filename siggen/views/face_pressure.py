@@ -10,12 +10,9 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.errors import UsageError
-from siggen.gearbox.configured import state_config
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.contact.kind_row import KindRow, kind_row
 from siggen.gears.contact.loads_under_force import loads_under_force
@@ -24,14 +21,13 @@ from siggen.gears.contact.table_columns import TableSolver, row_faces, table_sol
 from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
 from siggen.keys.problems import nearest
-from siggen.names import ROLES, MeshName
-from siggen.planning.plan import planned_record
+from siggen.names import ROLES, MeshName, Names
+from siggen.planning.plan import PlannedRecord
 from siggen.record.internals import record_internals
 from siggen.record.specimen_state import SpecimenState, refused_as
 from siggen.specimen.contact import face_options
 from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
 from siggen.views.flank_views import FlankView, flank_view
-from siggen.views.pairs_alone import refuse_planetary
 
 POSITIONS = 161
 """Along the path of contact: every 0.09 mm of arc on the flanks of a module of 3 mm."""
@@ -67,7 +63,9 @@ class FacePressure:
     edge_radius_mm: float
 
 
-def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth: int | None = None) -> FacePressure:
+def face_pressure(
+    gearbox: Specimen, record: PlannedRecord, gear: str | None = None, tooth: int | None = None
+) -> FacePressure:
     """Return load and pressure over a flank while its tooth goes through mesh, first in a record.
 
     Force of the pair and tilt are those of the motion; how they spread is solved across the face, with damage,
@@ -75,8 +73,8 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
 
     Parameters
     ----------
-    config : Config
-    record_id : int
+    gearbox : Specimen
+    record : PlannedRecord
     gear, tooth : as damage names it, such as 'pinion', of a machine by its own name, and an index; None:
         the first damaged tooth, else tooth 0 of the first pinion
 
@@ -87,20 +85,22 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
     SolverFailure
         If the record cannot be simulated, or a contact cannot be solved.
     """
-    if config.dynamics.mesh.law != "pairs":
+    if not gearbox.law.across_the_face:
         raise UsageError(
             "dynamics.mesh.law: received linear; allowed: pairs, whose tooth pairs have forces of their own"
         )
-    refuse_planetary(config, "pressures of a flank")
-    called = None if gear is None else _gear_called(config, gear)
-    record = planned_record(config, record_id)
-    config = state_config(config, record.specimen_id, record.state_id)
-    specimen = draw_specimen(config, record.specimen_id)
+    if gearbox.planets is not None:
+        raise UsageError(
+            "planetary: received a section; allowed: null for pressures of a flank, which knows no carrier. `siggen "
+            "simulate` writes the forces of all meshes of a record"
+        )
+    called = None if gear is None else _gear_called(gearbox.names, gear)
+    specimen = gearbox.in_state(record.state_id)
     torque_nm = specimen.points[record.operating_point_id].torque_nm
     if torque_nm < 0.0:
         raise UsageError(
-            f"record {record_id} has a torque of {torque_nm:g} N m, under which the back flanks carry; allowed: a "
-            "record with a torque from 0, which loads the drive flanks, where damage is"
+            f"record {record.record_id} has a torque of {torque_nm:g} N m, under which the back flanks carry; allowed: "
+            "a record with a torque from 0, which loads the drive flanks, where damage is"
         )
     state, point, angle_rad, found = record_internals(specimen, record)
     meshes = list(_meshes(specimen, state, point, angle_rad))
@@ -155,9 +155,9 @@ def _words(mesh: MeshName) -> Mapping[str, str]:
     return dict(zip(ROLES, (gear.word for gear in mesh.gears), strict=True))
 
 
-def _gear_called(config: Config, gear: str) -> str:
+def _gear_called(names: Names, gear: str) -> str:
     """Return what a user calls a gear if there is one of that name."""
-    called = [one.word for one in config.names.gears]
+    called = [one.word for one in names.gears]
     if gear not in called:
         raise UsageError(f"--gear {gear}; allowed: {', '.join(called)}{nearest(gear, called)}")
     return gear

@@ -10,9 +10,8 @@ import pyarrow as pa
 
 from siggen.arrays import FloatArray
 from siggen.columns.damage_columns import damage_columns
-from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
@@ -78,13 +77,12 @@ class FlankView:
     area_share: float
 
 
-def flank_views(config: Config, specimen_id: int = 0, state: str | None = None, mesh: int = 0) -> list[FlankView]:
+def flank_views(specimen: Specimen, state: str | None = None, mesh: int = 0) -> list[FlankView]:
     """Return all damaged flanks of a mesh of a specimen, state by state; of one state if it is named.
 
     Parameters
     ----------
-    config : Config
-    specimen_id : int
+    specimen : Specimen
     state : name of a state, or None for all
     mesh : int, from 0 in the order of power
 
@@ -97,17 +95,16 @@ def flank_views(config: Config, specimen_id: int = 0, state: str | None = None, 
 
     Source: outlines as in paper A, section 2.1; arcs R_b psi^2/2, derived.
     """
-    specimen = draw_specimen(config, specimen_id)
     teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
     words = dict(zip(ROLES, (gear.word for gear in specimen.names.meshes[mesh].gears), strict=True))
     return [
         replace(view, gear=words[view.gear])
-        for index in _state_ids(config, state)
-        for view in _views(teeth.pair, config.states[index].name, on_teeth(teeth.damage(index)))
+        for index in _state_ids(specimen, state)
+        for view in _views(teeth.pair, specimen.states[index].name, on_teeth(teeth.damage(index)))
     ]
 
 
-def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None = None, mesh: int = 0) -> pa.Table:
+def flank_damage_table(specimen: Specimen, state: str | None = None, mesh: int = 0) -> pa.Table:
     """Return one row per damage of a mesh, state by state: the state's name, then the columns of `damage/`.
 
     Lengths are in mm. Parameters as in `flank_views`.
@@ -117,20 +114,19 @@ def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None =
     UsageError
         If there is no such state.
     """
-    specimen = draw_specimen(config, specimen_id)
     schema = pa.schema([column.field() for column in damage_columns(specimen)])
     fields = [pa.field("state", pa.string(), nullable=False), *(f for f in schema if f.name != "record_id")]
     # operating points and repeats of a state share its damage
     rows = [
-        {"state": config.states[index].name, **row}
-        for index in _state_ids(config, state)
-        for row in damage_rows(specimen, PlannedRecord(0, specimen_id, index, 0, 0, ""), mesh)
+        {"state": specimen.states[index].name, **row}
+        for index in _state_ids(specimen, state)
+        for row in damage_rows(specimen, PlannedRecord(0, specimen.specimen_id, index, 0, 0, ""), mesh)
     ]
     return pa.Table.from_pylist(rows, schema=pa.schema(fields))
 
 
-def _state_ids(config: Config, state: str | None) -> list[int]:
-    names = [s.name for s in config.states]
+def _state_ids(specimen: Specimen, state: str | None) -> list[int]:
+    names = [one.name for one in specimen.states]
     if state is not None and state not in names:
         raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}{nearest(state, names)}")
     return [index for index, name in enumerate(names) if state in (None, name)]

@@ -11,10 +11,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gearbox.configured import gearbox_config, state_config
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
@@ -76,8 +74,7 @@ def pitches_shown(engagements: tuple[int, int], points_per_pitch: int, pitches: 
 
 
 def stiffness_curves(
-    config: Config,
-    specimen_id: int = 0,
+    specimen: Specimen,
     points_per_pitch: int = POINTS_PER_PITCH,
     pitches: int | None = None,
     torque_nm: float | None = None,
@@ -88,8 +85,7 @@ def stiffness_curves(
 
     Parameters
     ----------
-    config : Config
-    specimen_id : int
+    specimen : Specimen
     points_per_pitch : int, samples over one angular pitch of the pinion
     pitches : int, angular pitches from one before the damage on; None: to two pitches behind the last damaged tooth
     torque_nm : float, on the mesh's pinion, for damage that acts as geometry; None: that of the first operating point
@@ -111,33 +107,30 @@ def stiffness_curves(
     """
     if points_per_pitch < 1 or (pitches is not None and pitches < 1):
         raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
-    config = gearbox_config(config, specimen_id)
-    specimen = draw_specimen(config, specimen_id)
     teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
     pair = teeth.pair
-    damages = [on_teeth(teeth.damage(i)) for i in range(len(config.states))]
+    damages = [on_teeth(teeth.damage(i)) for i in range(len(specimen.states))]
     hit = [damaged_engagements(pair, one) for one in damages if one] or [(0, 0)]
     shown = min(first for first, _ in hit), max(last for _, last in hit)
     angle = pitches_shown(shown, points_per_pitch, pitches) * 2 * pi / pair.pinion.teeth
-    wanted = [i for i, state in enumerate(config.states) if states is None or state.name in states]
+    wanted = [i for i, state in enumerate(specimen.states) if states is None or state.name in states]
     words = [gear.column for gear in specimen.names.meshes[mesh].gears]
     across = specimen.law.across_the_face
-    curves = [_curve(teeth, words, config.states[i].name, damages[i], angle, shown[0], across) for i in wanted]
+    curves = [_curve(teeth, words, specimen.states[i].name, damages[i], angle, shown[0], across) for i in wanted]
     if not across:
         return curves
-    torque = static_torque_nm(config, specimen_id, mesh) if torque_nm is None else torque_nm
+    torque = static_torque_nm(specimen, mesh) if torque_nm is None else torque_nm
     return [
-        _as_simulated(config, specimen_id, mesh, i, curve, shown[0], torque)
+        _as_simulated(specimen.in_state(i), mesh, i, curve, shown[0], torque)
         for i, curve in zip(wanted, curves, strict=True)
     ]
 
 
-def static_torque_nm(config: Config, specimen_id: int = 0, mesh: int = 0) -> float:
+def static_torque_nm(specimen: Specimen, mesh: int = 0) -> float:
     """Return the torque [N m] at which static curves of a mesh are taken: that of the first point above 0.
 
     Curves are those of drive flanks; without such a point they are taken at a light contact.
     """
-    specimen = draw_specimen(config, specimen_id)
     pair, turning = specimen.meshes[mesh].pair, float(specimen.shaft_turns[mesh])
     light = light_force_n(pair) * pair.pinion.base_radius_m
     return next((point.torque_nm / turning for point in specimen.points if point.torque_nm > 0.0), light)
@@ -151,16 +144,8 @@ def stiffness_meaning(*, across_the_face: bool, torque_nm: float) -> str:
 
 
 def _as_simulated(
-    config: Config,
-    specimen_id: int,
-    mesh: int,
-    state_id: int,
-    curve: StiffnessCurve,
-    engagement: int,
-    torque_nm: float,
+    specimen: Specimen, mesh: int, state_id: int, curve: StiffnessCurve, engagement: int, torque_nm: float
 ) -> StiffnessCurve:
-    own = state_config(config, specimen_id, state_id)
-    specimen = draw_specimen(own, specimen_id)
     teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
     state, static = static_state(specimen, teeth, state_id)
     pair, angle, contact = state.pair, curve.angle_rad, static.contact

@@ -9,9 +9,8 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.specimen import Specimen
 from siggen.gearbox.tooth_errors import MadeGear
 from siggen.gears.errors.gear_errors import profiles_m
 from siggen.gears.errors.helix import HELIX_POINTS
@@ -32,26 +31,21 @@ class GearChart:
     helix_um: FloatArray | None
 
 
-def gear_charts(
-    config: Config, specimen_id: int = 0, state: str | None = None, mesh: int = 0
-) -> tuple[GearChart, GearChart]:
+def gear_charts(specimen: Specimen, state: str | None = None, mesh: int = 0) -> tuple[GearChart, GearChart]:
     """Return pinion and gear of a mesh of a specimen in a state, the first one if none is named.
 
     Raises
     ------
     UsageError
-        If the set has perfect gears or no such state.
+        If it has perfect gears or no such state.
     """
-    names = [one.name for one in config.states]
+    names = [one.name for one in specimen.states]
     if state is not None and state not in names:
         raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}{nearest(state, names)}")
-    specimen = draw_specimen(config, specimen_id)
     teeth = specimen.meshes[mesh].teeth
     errors = teeth.errors(teeth.drawn_for(0 if state is None else names.index(state)))
     if errors is None:
-        raise UsageError(
-            f"{config.name}: its gears are perfect; give them errors, such as --set manufacture.accuracy_class=6"
-        )
+        raise UsageError("gears: received perfect ones; allowed: gears with errors, --set manufacture.accuracy_class=6")
     driver, driven = specimen.names.meshes[mesh].gears
     pair = teeth.pair
     return _chart(pair, "pinion", errors.pinion, driver.word), _chart(pair, "gear", errors.gear, driven.word)

@@ -25,7 +25,7 @@ from siggen.specimen.drive import record_rotation
 from siggen.specimen.structure import structure
 from siggen.views.exported_model import exported_model
 from tests.config.minimal import by_name, config, minimal
-from tests.simulated import simulate
+from tests.simulated import drawn_record, simulate
 
 SPEED_HZ, BALLS = 30.0, 9
 CAGE = 0.5 * (1.0 - 7.94 / 39.04)
@@ -141,7 +141,7 @@ def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
 
 
 def test_an_exported_model_has_what_a_spall_pushes_and_what_of_it_the_housing_feels() -> None:
-    model = exported_model(with_states(SPALL, duration_s=0.02), 1)
+    model = exported_model(*drawn_record(with_states(SPALL, duration_s=0.02), 1))
     names = [str(name) for name in model["bearing_force_names"]]
     felt = model["input_bearing_force_rows"]
     assert np.abs(model["inputs"]).max() > 100.0
@@ -150,7 +150,7 @@ def test_an_exported_model_has_what_a_spall_pushes_and_what_of_it_the_housing_fe
         on_shaft = model["input_vectors"][:, list(model["coordinates"]).index(axis)]
         np.testing.assert_allclose(felt[names.index(name)], -on_shaft, atol=1e-12)
     assert not felt[[names.index(name) for name in names if name.startswith("gear")]].any()
-    assert "input_bearing_force_rows" not in exported_model(with_states(None, duration_s=0.02), 1)
+    assert "input_bearing_force_rows" not in exported_model(*drawn_record(with_states(None, duration_s=0.02), 1))
 
 
 @pytest.mark.parametrize(("element", "turns"), [("outer", 2.0 / BALLS / CAGE), ("inner", 1.0), ("ball", 1.0 / CAGE)])

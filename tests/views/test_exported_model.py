@@ -29,7 +29,7 @@ from siggen.views.exported_model import FORMAT_VERSION, exported_model
 from tests.config.minimal import by_name
 from tests.config.planets import SPALL as PLANET_SPALL
 from tests.config.planets import planets
-from tests.simulated import internals_table
+from tests.simulated import drawn_record, internals_table
 from tests.specimen.test_two_stages import two_stages
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -125,7 +125,9 @@ def beginning(
     mesh = replace(state.mesh, structure=replace(built, meshes=vectors, **matrices))
     motion = specimen_motion(specimen.law, mesh, point, 1.0 / (loaded.fs_hz * steps), driven)
     buffer = io.BytesIO()
-    np.savez(buffer, **{name: np.asarray(value) for name, value in exported_model(loaded, record).items()})
+    np.savez(
+        buffer, **{name: np.asarray(value) for name, value in exported_model(*drawn_record(loaded, record)).items()}
+    )
     buffer.seek(0)
     model = {name: value[()] for name, value in np.load(buffer, allow_pickle=False).items()}
     times = model["start_s"] + np.arange(samples * steps + 1) / (loaded.fs_hz * steps)
@@ -209,7 +211,7 @@ def test_scipy_gives_the_motion_of_a_planetary_set_from_its_file_alone() -> None
 def test_the_model_starts_where_its_record_does() -> None:
     """From its start on, by its own steps, a motion comes to the record's values; one that starts later does not."""
     whole = load_config(planetary(), ["duration_s=0.005"])
-    model, loaded = exported_model(whole, 0), state_config(whole, 0, 0)
+    model, loaded = exported_model(*drawn_record(whole, 0)), state_config(whole, 0, 0)
     specimen, steps = draw_specimen(loaded, 0), int(model["steps_per_sample"])
     point = draw_operating_point(loaded, 0, 0)
     motion = specimen_motion(
@@ -248,15 +250,15 @@ def test_scipy_gives_the_motion_with_damping_by_asperity_share(coupling: str) ->
     ],
 )
 def test_every_key_is_described(file: str, record: int, overrides: list[str]) -> None:
-    described(exported_model(load_config(ROOT / file, ["duration_s=0.01", *overrides]), record), 1)
+    described(exported_model(*drawn_record(load_config(ROOT / file, ["duration_s=0.01", *overrides]), record)), 1)
 
 
 def test_every_key_of_two_stages_is_described() -> None:
-    described(exported_model(load_config(two_stages(), ["duration_s=0.01"]), 0), 2)
+    described(exported_model(*drawn_record(load_config(two_stages(), ["duration_s=0.01"]), 0)), 2)
 
 
 def test_every_key_of_a_planetary_set_is_described() -> None:
-    described(exported_model(load_config(planetary(), ["duration_s=0.01"]), 0), 6)
+    described(exported_model(*drawn_record(load_config(planetary(), ["duration_s=0.01"]), 0)), 6)
 
 
 def described(model: Mapping, meshes: int) -> None:

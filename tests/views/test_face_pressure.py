@@ -12,12 +12,12 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.planning.plan import planned_record
 from siggen.record.internals import record_internals
 from siggen.views.face_pressure import FacePressure, face_pressure
 from tests.config.mill import mill
 from tests.config.minimal import by_name
 from tests.config.staged import SPALL as SPALL_OF_STAGE
+from tests.simulated import drawn_record
 
 CONFIG = "configs/quickstart.yaml"
 SPALL = "{kind: irregular, profile_length_mm: 1.2, face_share: 0.6, face_centre_mm: 8, edge_radius_mm: 0.15}"
@@ -34,12 +34,12 @@ OVERRIDES = [
 
 @pytest.fixture(scope="module")
 def damaged() -> FacePressure:
-    return face_pressure(load_config(CONFIG, OVERRIDES), 1)
+    return face_pressure(*drawn_record(load_config(CONFIG, OVERRIDES), 1))
 
 
 def test_loads_add_up_to_the_force_that_the_pair_has_in_the_record(damaged: FacePressure) -> None:
     config = load_config(CONFIG, OVERRIDES)
-    state, _, angle, found = record_internals(config, planned_record(config, 1))
+    state, _, angle, found = record_internals(*drawn_record(config, 1))
     teeth, tooth = state.pair.pinion.teeth, damaged.view.tooth
     # The pair of the damaged tooth, found by the place of its contact rather than by its number.
     slots = sum(name.endswith("_position_m") for name in found)
@@ -74,7 +74,7 @@ def test_edges_press_harder_than_land_and_nothing_presses_far_inside_the_spall(d
 
 
 def test_a_healthy_tooth_of_the_gear_has_no_edges() -> None:
-    found = face_pressure(load_config(CONFIG, OVERRIDES), 0, "gear", None)
+    found = face_pressure(*drawn_record(load_config(CONFIG, OVERRIDES), 0), "gear", None)
     assert (found.view.gear, found.view.tooth) == ("gear", 0)
     assert not found.at_edge.any()
     # Contact climbs the pinion's flank and goes down the gear's.
@@ -85,14 +85,14 @@ def test_a_further_mesh_is_found_by_its_gear_and_its_damaged_tooth_alone_is_unlo
     damage = {**SPALL_OF_STAGE, "face_length_mm": 30.0, "profile_length_mm": 2.0, "gear": "eva", "teeth": [3]}
     states = [{"name": "healthy"}, {"name": "severe", "damage": damage}]
     config = load_config(mill(duration_s=0.2, fs_hz=12_800.0, states=by_name(states)))
-    damaged, before = face_pressure(config, 1), face_pressure(config, 1, "eva", 0)
+    damaged, before = face_pressure(*drawn_record(config, 1)), face_pressure(*drawn_record(config, 1), "eva", 0)
     assert (damaged.view.gear, damaged.view.tooth) == ("eva", 3)
     assert damaged.point.torque_nm == pytest.approx(20.0 * 47 / 18)
     single = slice(60, 90)  # where one pair carries all
     assert damaged.force_n[single].min() < 0.3 * before.force_n[single].min()  # others differ by less than a tenth
     assert before.force_n[single].mean() == pytest.approx(20.0 * 47 / 18 / (0.5 * 17 * 3e-3 * 0.9397), rel=0.05)
     with pytest.raises(UsageError, match="--gear pinion; allowed: ida, otto, eva, karl"):
-        face_pressure(config, 1, "pinion")
+        face_pressure(*drawn_record(config, 1), "pinion")
 
 
 def run(*arguments: object) -> tuple[int, str]:

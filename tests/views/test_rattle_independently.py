@@ -20,6 +20,7 @@ from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import exported_model
+from tests.simulated import drawn_record
 from tests.views.test_exported_model import PINION, ROOT, by_scipy, largest
 
 RECORD, SAMPLES = 12, 256  # 5 ms
@@ -44,7 +45,7 @@ def knocked(torque_nm: float, knock_m_s: float, steps: int, samples: int = SAMPL
     config = load_config(ROOT / "tests/configs/casing.yaml", overrides)
     if reference:
         config = config.model_copy(update={"dynamics": by_reference(config.dynamics, steps)})
-    model = {name: np.asarray(value)[()] for name, value in exported_model(config, RECORD).items()}
+    model = {name: np.asarray(value)[()] for name, value in exported_model(*drawn_record(config, RECORD)).items()}
     model["start_s"] = KNOCKED_S
     model["start_state"] = after(model, knock_m_s)
     planned = planned_record(config, RECORD)

@@ -28,7 +28,7 @@ from tests.config.mill import mill
 from tests.config.minimal import by_name
 from tests.config.staged import SLOW, SPALL, staged
 from tests.diagnostics.explore.unpacked import held
-from tests.simulated import simulate
+from tests.simulated import drawn_record, simulate
 
 COMMON: dict[str, Any] = {
     "specimens": 4, "fs_hz": 12_800.0, "duration_s": 0.3, "manufacture": {"accuracy_class": 6, "flank_waves": "on"},
@@ -132,8 +132,8 @@ def test_columns_and_labels_of_other_names_hold_the_same(made: Path) -> None:
 def test_a_flank_is_asked_for_by_the_name_of_its_gear(made: Path) -> None:
     config = load_config(made / "mill.yaml")
     with pytest.raises(UsageError, match="--gear pinion; allowed: ida, otto, eva, karl"):
-        face_pressure(config, 1, "pinion")
-    assert face_pressure(config, 1, "otto", 0).view.gear == "otto"
+        face_pressure(*drawn_record(config, 1), "pinion")
+    assert face_pressure(*drawn_record(config, 1), "otto", 0).view.gear == "otto"
 
 
 @pytest.mark.slow

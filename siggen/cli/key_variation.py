@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.gearbox.draw import draw_specimen
 from siggen.keys.problems import nearest
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
 
@@ -44,6 +45,6 @@ def varied_curves(
     found: list[StiffnessCurve] = []
     for label, config, state in loaded:
         names = (*(() if found else config.state_names[:1]), config.state_names[state])
-        curves = stiffness_curves(config, specimen_id, torque_nm=torque_nm, states=names, mesh=mesh)
+        curves = stiffness_curves(draw_specimen(config, specimen_id), torque_nm=torque_nm, states=names, mesh=mesh)
         found += [*curves[:-1], replace(curves[-1], state=label)]
     return found
