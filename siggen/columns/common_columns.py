@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.columns.of_parts import FAULTY_TEETH, TEETH, frequency_of, of_gear, of_shaft
-from siggen.columns.planetary_columns import SET_COLUMNS, manufacture_of_others, planetary_operating_columns
+from siggen.columns.planetary_columns import PLANET_HZ, SET_COLUMNS, manufacture_of_others
 from siggen.keys.column import HERTZ, MILLIMETRE, Column, Role, in_role
 from siggen.names import Names
 from siggen.sensors.quantity import STILL_M_S2
@@ -77,9 +77,9 @@ def target_columns(names: Names) -> tuple[Column, ...]:
     return in_role(Role.TARGET, *STATE_COLUMNS, faulty, *teeth, *DAMAGE_COLUMNS)
 
 
-def operating_columns(names: Names) -> tuple[Column, ...]:
-    """Return the columns of speed, load and teeth of the first mesh."""
-    driver, shafts = names.first.driver, names.shafts[:2]
+def operating_columns(names: Names, *, planetary: bool = False) -> tuple[Column, ...]:
+    """Return the columns of speed, load and teeth of the first mesh; of a set the carrier's stand with its ring's."""
+    driver, shafts = names.first.driver, names.shafts[: 1 if planetary else 2]
     at_start = f"angle of {driver.called} at the first sample"
     start = Column("start_angle_rad", pa.float64(), "rad", at_start, Role.PROVENANCE)
     return in_role(
@@ -88,6 +88,7 @@ def operating_columns(names: Names) -> tuple[Column, ...]:
         Column("speed_hz", pa.float64(), HERTZ, f"nominal speed of the input shaft, that of {driver.called}"),
         TORQUE,
         *(of_shaft(SHAFT_HZ, shaft) for shaft in shafts),
+        *((PLANET_HZ,) if planetary else ()),
         frequency_of(names.first),
         start,
         section="operating_points",
@@ -150,7 +151,7 @@ def common_columns(gearbox: Specimen) -> tuple[Column, ...]:
     return (
         *target_columns(names),
         *gearbox.states[0].labels,
-        *(planetary_operating_columns() if planetary else operating_columns(names)),
+        *operating_columns(names, planetary=planetary),
         *(INTEGRATION_COLUMNS if gearbox.law.method == "exponential" else ()),
         *gearbox.labels,
         *(HOUSING_COLUMNS if gearbox.boxed else ()),

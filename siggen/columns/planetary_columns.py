@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
 from siggen.columns.manufacture_columns import error_columns, wave_columns
-from siggen.columns.of_parts import FAULTY_TEETH, TEETH, frequency_of, of_gear, of_shaft, quantity_of
+from siggen.columns.of_parts import FAULTY_TEETH, TEETH, of_gear
 from siggen.keys.column import HERTZ, Column, Role, in_role, list_of
-from siggen.names import PLANETARY
+from siggen.names import PLANETARY, GearName
 
 if TYPE_CHECKING:
     from siggen.gearbox.tooth_errors import MadeWith
 
 EACH = "each_planet"
 RING = PLANETARY.meshes[1].driven
+PLANET_HZ = Column(
+    "planet_hz",
+    pa.float64(),
+    HERTZ,
+    "rotation frequency of the planets about their pins, against the carrier",
+    quantity="hz",
+    of="planet",
+)
 SET_COLUMNS = in_role(
     Role.CONDITION,
     *(replace(of_gear(column, RING), label="") for column in (FAULTY_TEETH, TEETH)),
@@ -30,37 +37,9 @@ SET_COLUMNS = in_role(
 )
 
 
-def planetary_operating_columns() -> tuple[Column, ...]:
-    """Return the columns of speed, load and teeth of sun and planets."""
-    sun, planet = PLANETARY.first.gears
-    teeth = "number of teeth of the sun", "number of teeth of each planet"
-    against = "rotation frequency of the planets about their pins, against the carrier"
-    start = "angle of the sun at the first sample; that of the carrier by their ratio"
-    return in_role(
-        Role.CONDITION,
-        *(
-            replace(of_gear(TEETH, gear), meaning=meaning, section="gears")
-            for gear, meaning in zip((sun, planet), teeth, strict=True)
-        ),
-        Column("speed_hz", pa.float64(), HERTZ, "nominal speed of the input shaft, that of the sun"),
-        Column("torque_nm", pa.float64(), "N m", "torque at the input shaft"),
-        of_shaft(Column("{}_shaft_hz", pa.float64(), HERTZ, "rotation frequency of {}"), PLANETARY.shafts[0]),
-        Column("planet_hz", pa.float64(), HERTZ, against, quantity="hz", of="planet"),
-        frequency_of(PLANETARY.first),
-        Column("start_angle_rad", pa.float64(), "rad", start, Role.PROVENANCE),
-        section="operating_points",
-    )
-
-
-def manufacture_of_others(made: MadeWith) -> Iterator[Column]:
-    """Yield the columns of errors of the ring and of all planets, as lists, of the flanks towards the sun."""
-    for column in (*error_columns(made), *wave_columns(made)):
-        yield _made(column, "ring", "the ring")
-    for column in error_columns(made):
-        yield _made(replace(column, type=list_of(column.type)), EACH, "each planet")
-
-
-def _made(column: Column, word: str, called: str) -> Column:
-    named = replace(column, name=column.name.format(word), meaning=column.meaning.format(called))
-    (made,) = in_role(Role.PROVENANCE, named, section="manufacture")
-    return replace(made, quantity=quantity_of(column), of=word)
+def manufacture_of_others(made: MadeWith) -> tuple[Column, ...]:
+    """Return the columns of errors of the ring and of all planets, as lists, of the flanks towards the sun."""
+    ring, each = GearName("ring", "ring", "ring", "the ring"), GearName(EACH, EACH, EACH, "each planet")
+    of_ring = (of_gear(column, ring) for column in (*error_columns(made), *wave_columns(made)))
+    of_planets = (of_gear(replace(column, type=list_of(column.type)), each) for column in error_columns(made))
+    return in_role(Role.PROVENANCE, *of_ring, *of_planets, section="manufacture")

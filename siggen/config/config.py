@@ -160,16 +160,6 @@ class Config(Section):
         return round(self.fs_hz * self.duration_s)
 
     @property
-    def has_plates(self) -> bool:
-        """Whether every gearbox has a housing of plates of its own."""
-        return self.dynamics.model == "casing" and isinstance(self.housing, PlateHousing)
-
-    @property
-    def turns_in_housing(self) -> bool:
-        """Whether a planetary set stands in a housing, which hears its forces behind its own motion."""
-        return self.planetary is not None and self.dynamics.model == "casing"
-
-    @property
     def gives_way(self) -> bool:
         """Whether forces of the bearings reach sensors through modes of a housing."""
         return self.dynamics.model == "casing" and not isinstance(self.housing, RigidHousing)

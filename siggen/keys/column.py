@@ -55,11 +55,6 @@ class Column:
     of: str = ""
     label: str = ""
 
-    @property
-    def filled_by(self) -> str:
-        """What the simulation calls its value."""
-        return self.label or self.name
-
     def field(self) -> pa.Field:
         """Return the Arrow field; no column of a set holds nulls."""
         metadata = {

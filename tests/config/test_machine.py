@@ -47,7 +47,7 @@ def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and
     config = load_config(mill(machine=renamed, sensors={"at": {"place": "gear_bearing"}}, states=states))
     of = {(column.quantity, column.of): column for column in set_columns(config).labels if column.of}
     assert of["teeth", "gear"].name == "teeth_gear"
-    assert of["teeth", "gear"].filled_by == "teeth_pinion"  # which the driver of a mesh is inside
+    assert of["teeth", "gear"].label == "teeth_pinion"  # which the driver of a mesh is inside
     assert of["shaft_hz", "pinion"].name == "pinion_shaft_hz"
     assert config.names.gear(config.states[1].damages[0].hit_gear) == "gear"
     assert structure(draw_specimen(config, 0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
