@@ -2,54 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from functools import partial
 
-from siggen.config import Dynamics
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.errors import Problem
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.bearing_spall import BearingSpalls
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.drawing import corners
+from siggen.names import ROLES
 
 STIFFNESSES = ("bearing_stiffness_x_n_per_m", "bearing_stiffness_y_n_per_m")
 """Keys of a shaft's section that its `bearing` replaces."""
 
 
-def bearing_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
+def bearing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
     """Yield the problems of both shafts at the bounds of all numbers."""
-    dynamics: Dynamics | None = sections.get("dynamics")
-    for which in ("pinion", "gear") if dynamics is not None else ():
-        section = getattr(dynamics, which).bearing or BallGeometry()
-        bearings = [one.bearing() for one in corners(section)]
-        crowded = [one for one in bearings if one.ball_diameter_m >= one.room_m]
+    for role in ROLES:
+        given = [one for one in corners(partial(gearbox.ball, role)) if one is not None]
+        crowded = [one for one in given if one.ball_diameter_m >= one.room_m]
         if crowded:
             received = f"{crowded[0].balls} balls of {1e3 * crowded[0].ball_diameter_m:g} mm"
             allowed = f"allowed: below {1e3 * crowded[0].room_m:.4g} mm, the distance of two balls' centres"
-            yield Problem(f"dynamics.{which}.bearing.ball_diameter_mm", received, allowed)
+            yield Problem(f"dynamics.{role}.bearing.ball_diameter_mm", received, allowed)
         else:
-            yield from _spall_problems(sections, f"{which}_bearing", bearings)
-        if getattr(dynamics, which).bearing is not None:
-            yield from _change_problems(sections, f"dynamics.{which}")
+            yield from _spall_problems(gearbox, f"{role}_bearing", given or [BallGeometry().bearing()])
+        if given:
+            yield from _change_problems(gearbox, f"dynamics.{role}")
 
 
-def _spall_problems(sections: Mapping[str, Any], place: str, bearings: list[BallBearing]) -> Iterator[Problem]:
+def _spall_problems(gearbox: PossibleGearbox, place: str, bearings: list[BallBearing]) -> Iterator[Problem]:
     """Yield spalls that do not fit one of what a bearing may be."""
-    for index, state in sections.get("states", {}).items():
-        for path, damage in state.placed(f"states.{index}"):
-            if isinstance(damage, BearingSpalls) and damage.bearing == place:
-                for bearing in bearings:
-                    yield from (replace(one, path=f"{path}.{one.path}") for one in damage.problems_in(bearing))
+    for path, damage in gearbox.meshes[0].damages:
+        if isinstance(damage, BearingSpalls) and damage.bearing == place:
+            for bearing in bearings:
+                yield from (replace(one, path=f"{path}.{one.path}") for one in damage.problems_in(bearing))
 
 
-def _change_problems(sections: Mapping[str, Any], at: str) -> Iterator[Problem]:
+def _change_problems(gearbox: PossibleGearbox, at: str) -> Iterator[Problem]:
     """Yield changes of states to a stiffness that a bearing replaces: such a state would be healthy by another name."""
     unused = [f"{at}.{key}" for key in STIFFNESSES]
-    for index, state in sections.get("states", {}).items():
+    for state in gearbox.config.states:
         for change in state.changes:
             if change.path in unused:
                 allowed = f"allowed: changes of {at}.bearing.clearance_um, or {at}.bearing: null"
                 yield Problem(
-                    f"states.{index}.changes.{change.path}", f"a key that {at}.bearing stands in place of", allowed
+                    f"states.{state.name}.changes.{change.path}", f"a key that {at}.bearing stands in place of", allowed
                 )

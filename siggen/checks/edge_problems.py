@@ -7,36 +7,32 @@ gearboxes are not solved.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator
+from math import inf
 
-from siggen.config import Dynamics
 from siggen.errors import Problem
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, bounds
+from siggen.keys.number import bounds
 
 LARGEST_SHARE = 1.0 / 7.0
 """Radius of an edge over the relative radius of curvature at the pitch point."""
 
 
-def edge_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Iterator[Problem]:
+def edge_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
     """Yield edge radii that are too large at the bounds of all numbers, for the gears that are possible."""
-    dynamics: Dynamics | None = sections.get("dynamics")
-    if dynamics is None or not pairs or dynamics.mesh.law != "pairs":
+    if gearbox.config.dynamics.mesh.law != "pairs":
         return
-    most_mm = 1e3 * LARGEST_SHARE * min(_pitch_radius_m(pair) for pair in pairs)
-    damages = {
-        path: section for i, s in sections.get("states", {}).items() for path, section in s.placed(f"states.{i}")
-    }
-    radii: dict[str, Number] = {
-        f"{path}.{own[0]}": own[1] for path, section in damages.items() if (own := section.own_edge_radius) is not None
-    }
-    if len(radii) < len(damages):
-        radii["dynamics.mesh.pit_edge_radius_mm"] = dynamics.mesh.pit_edge_radius_mm
-    for path, radius in radii.items():
-        if bounds(radius)[1] > most_mm:
-            allowed = f"allowed: at most {most_mm:.3g}, a seventh of the flanks' relative radius at the pitch point"
-            yield Problem(path, str(radius), allowed)
+    for mesh in gearbox.meshes:
+        most_mm = 1e3 * LARGEST_SHARE * min(map(_pitch_radius_m, mesh.pairs), default=inf)
+        given = {path: damage.own_edge_radius for path, damage in mesh.damages}
+        radii = {f"{path}.{own[0]}": own[1] for path, own in given.items() if own is not None}
+        if len(radii) < len(given):
+            radii["dynamics.mesh.pit_edge_radius_mm"] = gearbox.config.dynamics.mesh.pit_edge_radius_mm
+        for path, radius in radii.items():
+            if bounds(radius)[1] > most_mm:
+                allowed = f"allowed: at most {most_mm:.3g}, a seventh of the flanks' relative radius at the pitch point"
+                yield Problem(path, str(radius), allowed)
 
 
 def _pitch_radius_m(pair: GearPair) -> float:

@@ -7,11 +7,11 @@ parallelism of the shafts make at their largest; c_γβ = 0.85 c' (0.75 ε + 0.2
 
 from __future__ import annotations
 
-from siggen.config import Gears
-from siggen.gearbox.pair import gear_pair
+from siggen.errors import UsageError
 from siggen.gears.errors.iso_1328 import flank_tolerances
+from siggen.gears.geometry.gear_pair import GearPair
 from siggen.rig.rig import Rig
-from siggen.rig.rig_numbers import rig_numbers, single_stiffness_n_um_mm
+from siggen.rig.rig_numbers import single_stiffness_n_um_mm
 
 FINEST, COARSEST = 3, 7
 """Classes that are proposed: from gears ground with the greatest care to the preset's coarsest (assumed)."""
@@ -28,33 +28,25 @@ def covering_classes(rig: Rig) -> tuple[int, ...]:
     Those of the preset where there are no such gears, or none within ISO 1328-1: whoever loads the file says why.
     """
     try:
-        allowed_um = _allowed_um(rig) - PARALLEL_UM_PER_MM * rig.face_width_mm
-        fitting = [grade for grade in range(FINEST, COARSEST + 1) if _slopes_um(rig, grade) <= allowed_um]
-    except ValueError:
+        pair = GearPair.of(rig.teeth, rig.module_mm, rig.face_width_mm, pressure_angle_deg=rig.pressure_angle_deg)
+        allowed_um = _allowed_um(rig, pair) - PARALLEL_UM_PER_MM * rig.face_width_mm
+        fitting = [grade for grade in range(FINEST, COARSEST + 1) if _slopes_um(pair, grade) <= allowed_um]
+    except (UsageError, ValueError):
         return rig.accuracy_classes
     coarsest = max(fitting, default=FINEST)
     return tuple(range(max(FINEST, coarsest - CHOICES + 1), coarsest + 1))
 
 
-def _allowed_um(rig: Rig) -> float:
+def _allowed_um(rig: Rig, pair: GearPair) -> float:
     """Return 2 F/(b c_γβ) at the largest torque [µm]."""
-    pair = gear_pair(_gears(rig))
     line_load_n_mm = rig.torque_nm[1] / pair.pinion.base_radius_m / rig.face_width_mm
     stiffness = 0.85 * single_stiffness_n_um_mm(rig.teeth) * (0.75 * pair.contact_ratio + 0.25)
     return 2.0 * line_load_n_mm / stiffness
 
 
-def _slopes_um(rig: Rig, grade: int) -> float:
+def _slopes_um(pair: GearPair, grade: int) -> float:
     """Return the largest helix slopes of both gears together [µm]."""
-    pair = gear_pair(_gears(rig))
     return sum(
         1e6 * LARGEST_SHARE * flank_tolerances(gear, pair.face_width_m, grade, pair.helix_rad).helix_slope_m
         for gear in (pair.pinion, pair.gear)
     )
-
-
-def _gears(rig: Rig) -> Gears:
-    bores = [0.5 * rotor.shaft.bore_mm for rotor in rig_numbers(rig).rotors]
-    wheels = [{"teeth": z, "bore_radius_mm": bore} for z, bore in zip(rig.teeth, bores, strict=True)]
-    sizes = {"module_mm": rig.module_mm, "face_width_mm": rig.face_width_mm}
-    return Gears(**sizes, pressure_angle_deg=rig.pressure_angle_deg, pinion=wheels[0], gear=wheels[1])  # type: ignore[arg-type]

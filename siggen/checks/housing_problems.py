@@ -6,25 +6,24 @@ Everything is checked at the bounds of all numbers, with the largest bearings th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
-from siggen.config import Dynamics, PlateHousing, Shafts
+from siggen.config import Shafts
 from siggen.dynamics.housing.layout import Contents
 from siggen.errors import Problem
 from siggen.gearbox.housing_layout import (
     ABOVE_SHARE,
     CLEARANCE_M,
-    IRON_WALL,
-    STEEL_WALL,
     end_for_bearings_m,
     height_for_bearings_m,
-    housing_contents,
-    least_wall_m,
+    specimen_layout,
 )
 from siggen.gearbox.housing_numbers import PlateNumbers
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, bounds
+from siggen.keys.number import HIGH, LOW, Number, bounds, constant
+from siggen.names import ROLES
 
 THICKEST = 0.25
 """Thickness of a wall over the least inner length of its box; a thicker one is no plate."""
@@ -40,57 +39,40 @@ class Least(NamedTuple):
     reason: str
 
 
-def housing_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> list[Problem]:
-    """Return the problems of the section at the bounds of all numbers, for the gears that are possible."""
-    dynamics: Dynamics | None = sections.get("dynamics")
-    housing = sections.get("housing")
-    if dynamics is None or dynamics.model != "casing" or not isinstance(housing, PlateHousing):
-        return []
-    return [problem for pair in pairs for problem in _problems(housing, dynamics.shafts, pair)]
+def housing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
+    """Yield the problems of the section at the bounds of all numbers, for the gears that are possible."""
+    least, most = gearbox.plates(lambda _: LOW), gearbox.plates(lambda _: HIGH)
+    if least is None or most is None:
+        return
+    for pair in gearbox.meshes[0].pairs:
+        shafts = gearbox.shafts(lambda _: HIGH)
+        contents, proportions, _ = specimen_layout(most, shafts, pair)
+        if shafts is not None:
+            yield from _bearing_problems(shafts, pair)
+        yield from _problems(least, most, contents, proportions.wall_m)
 
 
-def _problems(housing: PlateHousing, shafts: Shafts | None, pair: GearPair) -> Iterator[Problem]:
-    yield from _bearing_problems(shafts, pair)
-    widest = None if shafts is None else _widest(shafts)
-    numbers = PlateNumbers.model_construct(**dict(housing))
-    numbers = numbers.model_copy(update={"bearing": bounds(numbers.bearing)[1]})
-    contents, wall_m = housing_contents(numbers, widest, pair), _thickest_m(housing, pair)
-    for least in _least(contents, wall_m):
-        given: Number | None = getattr(housing, least.given)
-        if given is not None and 1e-3 * bounds(given)[0] < least.length_m:
-            allowed = f"allowed: at least {1e3 * least.length_m:.4g} mm: {least.reason}"
-            yield Problem(f"housing.{least.given}", f"{bounds(given)[0]:g}", allowed)
-    most_m = THICKEST * min(_inner_m(numbers, contents))
-    if housing.wall_mm is not None and wall_m > most_m:
+def _problems(least: PlateNumbers, most: PlateNumbers, contents: Contents, wall_m: float) -> Iterator[Problem]:
+    for one in _least(contents, wall_m):
+        given: Number | None = getattr(least, one.given)
+        if given is not None and 1e-3 * constant(given) < one.length_m:
+            allowed = f"allowed: at least {1e3 * one.length_m:.4g} mm: {one.reason}"
+            yield Problem(f"housing.{one.given}", f"{given:g}", allowed)
+    most_m = THICKEST * min(_inner_m(least, contents))
+    if most.wall_mm is not None and wall_m > most_m:
         allowed = f"allowed: at most {1e3 * most_m:.3g} mm, a quarter of the least inner length of the box"
         yield Problem("housing.wall_mm", f"{1e3 * wall_m:g}", allowed)
 
 
-def _bearing_problems(shafts: Shafts | None, pair: GearPair) -> Iterator[Problem]:
+def _bearing_problems(shafts: Shafts, pair: GearPair) -> Iterator[Problem]:
     """Yield shafts whose bearings have no room beside each other in one wall."""
-    if shafts is None:
-        return
-    diameters_mm = {which: bounds(getattr(shafts, which).diameter_mm)[1] for which in ("pinion", "gear")}
+    diameters_mm = {role: constant(getattr(shafts, role).diameter_mm) for role in ROLES}
     most_mm = 2e3 * pair.working_centre_distance_m / LEAST_BEARING
-    thicker = max(diameters_mm, key=lambda which: diameters_mm[which])
+    thicker = max(ROLES, key=lambda role: diameters_mm[role])
     if sum(diameters_mm.values()) > most_mm:
         received = f"{diameters_mm[thicker]:g}, with the other shaft {sum(diameters_mm.values()):g} mm together"
         allowed = f"allowed: at most {most_mm:.4g} mm together, so that both bearings fit into one wall of the housing"
         yield Problem(f"dynamics.shafts.{thicker}.diameter_mm", received, allowed)
-
-
-def _widest(shafts: Shafts) -> Shafts:
-    parts = {name: getattr(shafts, name) for name in ("pinion", "gear")}
-    return shafts.model_copy(
-        update={name: p.model_copy(update={"diameter_mm": bounds(p.diameter_mm)[1]}) for name, p in parts.items()}
-    )
-
-
-def _thickest_m(housing: PlateHousing, pair: GearPair) -> float:
-    if housing.wall_mm is not None:
-        return 1e-3 * bounds(housing.wall_mm)[1]
-    share = IRON_WALL[1] if housing.material == "grey_iron" else STEEL_WALL[1]
-    return share * least_wall_m(pair.working_centre_distance_m)
 
 
 def _least(contents: Contents, wall_m: float) -> Iterator[Least]:
@@ -110,7 +92,7 @@ def _inner_m(numbers: PlateNumbers, contents: Contents) -> Iterator[float]:
     A width that is not given may be as narrow as the shafts ask for, whatever the walls.
     """
     centre_m, tips_m = contents.centre_distance_m, contents.tip_radius_m
-    end, above, sump = (bounds(n)[0] for n in (numbers.end, numbers.above, numbers.sump))
+    end, above, sump = map(constant, (numbers.end, numbers.above, numbers.sump))
     own_m = (sum(tips_m) + (1.0 + 2.0 * end) * centre_m, 2.0 * max(tips_m) + (above + sump) * centre_m, math.inf)
     given = (numbers.length_mm, numbers.height_mm, numbers.width_mm)
-    yield from (m if mm is None else 1e-3 * bounds(mm)[0] for m, mm in zip(own_m, given, strict=True))
+    yield from (m if mm is None else 1e-3 * constant(mm) for m, mm in zip(own_m, given, strict=True))

@@ -73,7 +73,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     parsed = parse(sized)
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
     of_physics = [
-        *physical_problems(parsed),
+        *physical_problems(parsed.sections),
         *state_problems(parsed),
         *response_problems(parsed.sections),
         *mode_problems(parsed.sections),

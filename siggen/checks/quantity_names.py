@@ -10,12 +10,11 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
 from siggen.gearbox.configured import pair_configs
 from siggen.gearbox.draw import draw_specimen
-from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
-from siggen.keys.drawing import corners
 from siggen.names import Names
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.structure import structure
@@ -49,8 +48,8 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     They follow from the configuration alone: the gears of the ranges with the longest path of contact have as many
     pairs in reach as any.
     """
-    possible = ((own, gear_pair(corner)) for own in pair_configs(config) for corner in corners(own.gears))
-    own, pair = max(possible, key=lambda one: _contact_ratio(one[1]))
+    possible = ((own, pair) for own in pair_configs(config) for pair in PossibleGearbox(own).meshes[0].pairs)
+    own, pair = max(possible, key=lambda one: one[1].contact_ratio)
     reaches = (one.reach_pitches(pair) for state in own.states for one in state.damages)
     reach = max(reaches, default=CORNER_REACH_PITCHES)
     specimen = draw_specimen(own, 0)
@@ -103,7 +102,3 @@ def bearing_force_name(place: str) -> str:
     if place.endswith("/turning"):
         return f"support_moment_{place.rpartition('/')[0]}_nm"
     return f"bearing_force_{'_'.join(place.split('/'))}_n"
-
-
-def _contact_ratio(pair: GearPair) -> float:
-    return (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m

@@ -1,28 +1,70 @@
-"""Sentences about contact and tilt across the face, and what limits them."""
+"""Sentences about contact and tilt across the face, what limits them, and bearings whose stiffness follows the load."""
 
 from __future__ import annotations
 
-from siggen.checks.bearing_notes import bearing_notes
-from siggen.checks.tilt_problems import NEEDED, flank_tilts
-from siggen.config import Config
-from siggen.gearbox.pair import gear_pair
+from collections.abc import Iterator
+from math import degrees
+
+from siggen.checks.bearing_problems import STIFFNESSES
+from siggen.checks.tilt_problems import flank_tilts
+from siggen.gearbox.configured import state_config
+from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.possible import PossibleGearbox
+from siggen.gearbox.specimen import Specimen
+from siggen.names import ROLES
+from siggen.specimen.loaded_bearings import BEARINGS
+from siggen.specimen.structure import specimen_bearings
 
 
-def shaft_notes(config: Config) -> tuple[str, ...]:
-    """Return what to know where the contact is solved across the face or gears tilt."""
-    mesh, notes = config.dynamics.mesh, []
-    if mesh.law == "pairs":
-        notes.append("contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.law: pairs)")
-    if config.dynamics.shafts is not None:
-        notes.append(
+def shaft_notes(gearbox: PossibleGearbox) -> Iterator[str]:
+    """Yield what to know where the contact is solved across the face or gears tilt."""
+    dynamics = gearbox.config.dynamics
+    if dynamics.mesh.law == "pairs":
+        yield "contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.law: pairs)"
+    if dynamics.shafts is not None:
+        yield (
             "shafts bend and gears tilt (dynamics.shafts), down to no load; only a tilt at which an end of the face "
             "meets the other flank is outside_model"
         )
-        tilts = flank_tilts({name: getattr(config, name) for name in NEEDED}, gear_pair(config.gears))
+        tilts = flank_tilts(gearbox, gearbox.meshes[0].pairs[0])
         if tilts.largest_rad > tilts.limit_rad:
-            notes.append(
-                f"at the bounds of shafts and bearings {tilts.torque_nm:.3g} N m tilt the flanks by "
+            yield (
+                f"at the bounds of shafts and bearings {gearbox.largest_torque_nm:.3g} N m tilt the flanks by "
                 f"{1e6 * tilts.largest_rad:.0f} urad; at {1e6 * tilts.limit_rad:.0f} an end meets the other flank: "
                 "such gearboxes end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
-    return (*notes, *bearing_notes(config))
+    if any(getattr(dynamics, role).bearing is not None for role in ROLES):
+        yield from _bearing_notes(gearbox)
+
+
+def _bearing_notes(gearbox: PossibleGearbox) -> Iterator[str]:
+    """Yield the stiffness of both bearings of each such shaft of gearbox 0, and that of states that change it."""
+    config = gearbox.config
+    for role in ROLES:  # a preset that a file extends may have given them
+        rotor = getattr(config.dynamics, role)
+        given = [key for key in STIFFNESSES if key in rotor.model_fields_set]
+        if rotor.bearing is not None and given:
+            at = config.names.own_path(f"dynamics.{role}.bearing").removesuffix(".bearing")
+            yield (
+                f"{' and '.join(f'{at}.{key}' for key in given)}: not used: {at}.bearing has a stiffness by load; "
+                f"{at}.bearing: null takes the given one"
+            )
+    found = dict(_bearings(draw_specimen(config, 0)))
+    yield from (f"{key}: {text}" for key, text in found.items())
+    for index, state in enumerate(config.states):
+        if state.changes:
+            changed = _bearings(draw_specimen(state_config(config, 0, index), 0))
+            yield from (f"{key}, state {state.name}: {text}" for key, text in changed if found.get(key) != text)
+
+
+def _bearings(specimen: Specimen) -> Iterator[tuple[str, str]]:
+    for point in specimen.points:
+        for role, one in specimen_bearings(specimen.under(point)).items():
+            balls = f"{one.bearing.balls} balls of {1e3 * one.bearing.ball_diameter_m:.3g} mm"
+            text = (
+                f"{BEARINGS * one.along_n_per_m:.3g} N/m along the load, {BEARINGS * one.across_n_per_m:.3g} across; "
+                f"{balls} bear it over {degrees(one.half_zone_rad):.0f} degrees to either side (clearance "
+                f"{1e6 * one.bearing.clearance_m:.3g} um)"
+            )
+            shaft = next(one.called for one in specimen.names.shafts if one.inner == role)
+            yield f"both bearings of {shaft} under {point.torque_nm:.3g} N m (gearbox 0)", text

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from siggen.config import BLOCK, Config
+from siggen.config import BLOCK
 from siggen.errors import counted
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.number import bounds
 from siggen.planning.plan import specimen_count
 
@@ -13,12 +14,9 @@ FEWEST_TESTED = 6
 WINDOW_TURNS, FEWEST_WINDOWS = 8, 2
 
 
-def size_notes(config: Config) -> tuple[str, ...]:
-    """Return a sentence on each."""
-    return (*_of_split(config), *_of_records(config))
-
-
-def _of_split(config: Config) -> Iterator[str]:
+def size_notes(gearbox: PossibleGearbox) -> Iterator[str]:
+    """Yield a sentence on each."""
+    config = gearbox.config
     tested = specimen_count(config, "test")
     if tested < FEWEST_TESTED and config.splits.by != "pair":
         share = config.splits.test
@@ -27,9 +25,6 @@ def _of_split(config: Config) -> Iterator[str]:
             f"splits: {counted(tested, 'gearbox', 'gearboxes')} in the test split: below {FEWEST_TESTED} the limits of "
             f"every score are too wide to tell models apart; take {more}"
         )
-
-
-def _of_records(config: Config) -> Iterator[str]:
     slowest_hz = min(abs(bound) for point in config.operating_points for bound in bounds(point.speed_hz))
     slowest_hz *= config.variation.speed_ratios[0]
     turns, wanted = config.duration_s * slowest_hz, FEWEST_WINDOWS * WINDOW_TURNS

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from pydantic_core import PydanticCustomError
@@ -22,7 +21,7 @@ def state_problems(parsed: ParsedConfig) -> Iterator[Problem]:
     states: Mapping[str, StateSection] = parsed.sections.get("states", {})
     if parsed.problems or not any(state.changes for state in states.values()):
         return
-    known = {problem.path for problem in _every(parsed, parsed.sections)}
+    known = {problem.path for problem in _every(parsed.sections)}
     for index, name in enumerate(states):
         changes = [one for _, one in changes_of(tuple(states.values()), index)]
         if changes:
@@ -41,16 +40,16 @@ def _changed_problems(
     if manufacture is not None and manufacture.draw == "state":
         allowed = "allowed: none with manufacture.draw: state, whose gears are others in every state; or draw: specimen"
         yield Problem(f"states.{state}.changes", _texts(changes), allowed)
-    for problem in _every(parsed, {**parsed.sections, **changed}):
+    for problem in _every({**parsed.sections, **changed}):
         if problem.path not in known:
             path, remark = _blamed(problem.path, changes)
             yield Problem(f"states.{state}.changes{path}", f"{remark}{problem.received}", problem.allowed)
     yield from _column_problems(parsed.sections, changed, changes, f"states.{state}.changes")
 
 
-def _every(parsed: ParsedConfig, sections: Mapping[str, Any]) -> list[Problem]:
+def _every(sections: Mapping[str, Any]) -> list[Problem]:
     """Return all problems of some sections."""
-    return [*consistency_problems(sections, {}), *physical_problems(replace(parsed, sections=sections))]
+    return [*consistency_problems(sections, {}), *physical_problems(sections)]
 
 
 def _blamed(path: str, changes: Sequence[Change]) -> tuple[str, str]:

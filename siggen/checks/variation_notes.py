@@ -4,49 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from siggen.config import Config
-from siggen.config.config import rated_nm
 from siggen.config.variation import RARE
 from siggen.dynamics.drive.slow_variation import SLOW_CORNER_HZ
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.number import Number, bounds
 from siggen.specimen.shaft_forces import RATED_SPEED_HZ
 
 
-def variation_notes(config: Config) -> tuple[str, ...]:
-    """Return what varies and which forces the shafts bring; nothing for constant speed and torque alone."""
-    return (*_speed(config), *_torque(config), *_forces(config), *_limits(config))
-
-
-def reversal_notes(config: Config) -> tuple[str, ...]:
-    """Return whose torque may change its sign within a record, at the largest draws and rare random values."""
-    return tuple(_reversals(config))
-
-
-def _speed(config: Config) -> Iterator[str]:
-    speed = config.variation.speed
+def variation_notes(gearbox: PossibleGearbox) -> Iterator[str]:
+    """Yield what varies and which forces the shafts bring; nothing for constant speed and torque alone."""
+    config = gearbox.config
+    speed, torque, unbalance = config.variation.speed, config.variation.torque, config.dynamics.unbalance.grade_mm_s
     if (speed.start_ratio, speed.end_ratio) != (1.0, 1.0):
         yield f"speed runs from {_span(speed.start_ratio)} to {_span(speed.end_ratio)} times nominal over a record"
-    if _some(speed.random_rms):
-        yield f"slow random speed of {_percent(speed.random_rms)} rms up to {SLOW_CORNER_HZ:g} Hz"
-    for number, often in ((speed.ripple_once, "once"), (speed.ripple_twice, "twice")):
-        if _some(number):
-            yield f"speed ripple of {_percent(number)} {often} per revolution"
-    if _some(speed.slip):
-        yield f"motor slip of {_percent(speed.slip)} at {rated_nm(config.dynamics, config.operating_points):g} N m"
+    slow, once = f"rms up to {SLOW_CORNER_HZ:g} Hz", "per revolution"
+    for number, sentence in (
+        (speed.random_rms, f"slow random speed of {_percent(speed.random_rms)} {slow}"),
+        (speed.ripple_once, f"speed ripple of {_percent(speed.ripple_once)} once {once}"),
+        (speed.ripple_twice, f"speed ripple of {_percent(speed.ripple_twice)} twice {once}"),
+        (speed.slip, f"motor slip of {_percent(speed.slip)} at {gearbox.rated_nm:g} N m"),
+        (torque.random_rms, f"slow random torque of {_percent(torque.random_rms)} {slow}"),
+        (torque.load_once, f"load torque pulsates by {_percent(torque.load_once)} once {once} of its shaft"),
+        (torque.line_ripple, f"motor torque pulsates by {_percent(torque.line_ripple)} at 100 Hz, twice the line"),
+        (unbalance, f"unbalance of grade G{_span(unbalance)} at {RATED_SPEED_HZ:g} Hz"),
+    ):
+        if bounds(number)[1] > 0.0:
+            yield sentence
+    if config.variation.active and config.dynamics.rubbing == "mixed_ehl":
+        yield "the oil film is that of the operating point; it does not follow the variation of speed and torque"
 
 
-def _torque(config: Config) -> Iterator[str]:
-    torque = config.variation.torque
-    if _some(torque.random_rms):
-        yield f"slow random torque of {_percent(torque.random_rms)} rms up to {SLOW_CORNER_HZ:g} Hz"
-    if _some(torque.load_once):
-        yield f"load torque pulsates by {_percent(torque.load_once)} once per revolution of its shaft"
-    if _some(torque.line_ripple):
-        yield f"motor torque pulsates by {_percent(torque.line_ripple)} at 100 Hz, twice the line"
-
-
-def _reversals(config: Config) -> Iterator[str]:
-    torque = config.variation.torque
+def reversal_notes(gearbox: PossibleGearbox) -> Iterator[str]:
+    """Yield whose torque may change its sign within a record, at the largest draws and rare random values."""
+    torque = gearbox.config.variation.torque
     slow = RARE * bounds(torque.random_rms)[1]
     for body, number, then in (
         ("load", torque.load_once, "the load then drives"),
@@ -58,28 +48,9 @@ def _reversals(config: Config) -> Iterator[str]:
             yield f"{fall}: {then}, and teeth may lose contact or touch on the other flank"
 
 
-def _forces(config: Config) -> Iterator[str]:
-    unbalance = config.dynamics.unbalance
-    if _some(unbalance.grade_mm_s):
-        yield f"unbalance of grade G{_span(unbalance.grade_mm_s)} at {RATED_SPEED_HZ:g} Hz"
-
-
-def _limits(config: Config) -> Iterator[str]:
-    if config.variation.active and config.dynamics.rubbing == "mixed_ehl":
-        yield "the oil film is that of the operating point; it does not follow the variation of speed and torque"
-
-
-def _some(number: Number) -> bool:
-    return bounds(number)[1] > 0.0
-
-
 def _percent(number: Number) -> str:
-    return _range(*(100.0 * value for value in bounds(number))) + " %"
+    return f"{_span(number, 100.0)} %"
 
 
-def _span(number: Number) -> str:
-    return _range(*bounds(number))
-
-
-def _range(low: float, high: float) -> str:
-    return f"{low:g}" if low == high else f"{low:g}-{high:g}"
+def _span(number: Number, times: float = 1.0) -> str:
+    return "-".join(dict.fromkeys(f"{times * value:g}" for value in bounds(number)))

@@ -56,6 +56,7 @@ def generate(
     from siggen.checks.plausibility import implausible
     from siggen.engines.processes import default_workers
     from siggen.errors import EXIT_RECORDS_FAILED
+    from siggen.gearbox.possible import PossibleGearbox
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
     from siggen.sets.parts import generate_part, part_of
@@ -63,7 +64,7 @@ def generate(
     loaded = load_config(config, overrides or ())
     chosen = None if part is None else part_of(part)
     with run_shown(log_json, out) as shown:
-        for sentence in implausible(loaded):
+        for sentence in implausible(PossibleGearbox(loaded)):
             shown.say(f"implausible: {sentence}")
         if text := compilation_text(loaded, default_workers() if engine.workers is None else engine.workers):
             shown.say(text)

@@ -81,6 +81,7 @@ def init(
     from siggen.config.expert_keys import schema_text
     from siggen.errors import UsageError
     from siggen.file_writing import write_file
+    from siggen.gearbox.possible import PossibleGearbox
     from siggen.rig.rig_answers import QUESTIONS, missing_answers, refuse_missing, rig_of
     from siggen.rig.rig_text import SCHEMA_FILE, rig_text
 
@@ -99,7 +100,7 @@ def init(
     write_file(out, text)  # last: once it is there, this command refuses
     for option, sentence in proposals.items():
         echo(f"--{option} was not given; proposed: {sentence}", err=True)
-    for sentence in implausible(config):
+    for sentence in implausible(PossibleGearbox(config)):
         echo(f"implausible: {sentence}", err=True)
     echo(f"next: siggen plan {out} (tries it: which records would be lost); siggen generate {out} ...", err=True)
     echo(str(out))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from siggen.config import Config
+    from siggen.gearbox.possible import PossibleGearbox
     from siggen.sets.trial import SetTrial
 
 
@@ -192,29 +193,28 @@ def _notes(config: Config) -> dict[str, Any]:
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.size_notes import size_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
-    from siggen.gearbox.pair import model_notes
+    from siggen.gearbox.possible import PossibleGearbox
 
+    gearbox = PossibleGearbox(config)
     notes = {
-        "size_notes": size_notes(config),
-        "stiffness_notes": _of_every_pair(config, model_notes),
-        "variation": variation_notes(config),
-        "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
-        "damage_notes": [*_of_every_pair(config, damage_notes)],
-        "state_notes": state_notes(config),
-        "shaft_notes": _of_every_pair(config, shaft_notes),
+        "size_notes": [*size_notes(gearbox)],
+        "stiffness_notes": _of_every_pair(gearbox, lambda own: own.stiffness_notes),
+        "variation": [*variation_notes(gearbox)],
+        "torque_notes": [*torque_notes(gearbox), *_of_every_pair(gearbox, reversal_notes)],
+        "damage_notes": _of_every_pair(gearbox, damage_notes),
+        "state_notes": [*state_notes(gearbox)],
+        "shaft_notes": _of_every_pair(gearbox, shaft_notes),
     }
-    return {"manufacture": _manufacture(config), **notes, "implausible": implausible(config)}
+    return {"manufacture": _manufacture(config), **notes, "implausible": implausible(gearbox)}
 
 
-def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> list[str]:
+def _of_every_pair(gearbox: PossibleGearbox, notes: Callable[[PossibleGearbox], Iterable[str]]) -> list[str]:
     """Return notes of all gear pairs, each once; where only some have it, with one of them and their number."""
-    from siggen.gearbox.configured import pair_configs
-
     found: dict[str, list[int]] = {}
-    for index, own in enumerate(pair_configs(config)):
+    for index, own in enumerate(gearbox.pairs):
         for note in notes(own):
             found.setdefault(note, []).append(index)
-    pairs = config.gears.pairs
+    pairs = gearbox.config.gears.pairs
     return [
         note if len(own) == max(1, len(pairs)) else f"{note} (gears.pairs.{own[0]}, {pairs[own[0]]}; {len(own)} in all)"
         for note, own in found.items()

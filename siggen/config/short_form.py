@@ -109,15 +109,6 @@ def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
     return {**own, "states": states}
 
 
-def mesh_alone(machine: Machine, number: int) -> Machine:
-    """Return the machine of one mesh alone, the number-th in the order of power, from 0."""
-    found = train(machine)
-    mesh, places = machine.meshes[found.meshes[number]], found.shafts[number : number + 2]
-    shafts = tuple(machine.shafts[place].model_copy(update={"span_mm": None}) for place in places)
-    gears = tuple(gear for gear in machine.gears if gear.name in (mesh.driver, mesh.driven))
-    return machine.model_copy(update={"shafts": shafts, "gears": gears, "meshes": (mesh,)})
-
-
 def _beside(raw: Mapping[str, Any]) -> Iterator[Problem]:
     for key in REPLACED:
         if raw.get(key):

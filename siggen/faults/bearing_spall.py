@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from math import radians
 from typing import Annotated, ClassVar, Literal
 
@@ -83,7 +84,7 @@ class BearingSpalls(Fault):
 
     def problems_in(self, bearing: BallBearing) -> Iterator[Problem]:
         """Yield the first of what does not fit its element of a bearing."""
-        for corner in corners(self):
+        for corner in corners(partial(draw, self, path="")):
             for problem in corner._spall(bearing, 0.0).own_problems():
                 yield Problem(KEYS[problem.name], in_mm(problem.received), allowed_text(problem.allowed))
                 return

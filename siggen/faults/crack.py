@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from math import degrees, inf, radians
 from typing import Annotated, ClassVar, Literal
 
@@ -91,7 +92,7 @@ class RootCracks(Fault):
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with a crack at every combination of its bounds."""
-        for corner in corners(self):
+        for corner in corners(partial(draw, self, path="")):
             try:
                 crack = corner._on_tooth(pair, 0)
             except ValueError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from pydantic import Field
 
@@ -33,8 +34,8 @@ from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.outlines import Outline, rectangle
 from siggen.gears.damage.spall import FlankSpall
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.drawing import corners
-from siggen.keys.number import bounds, constant
+from siggen.keys.drawing import corners, draw
+from siggen.keys.number import LOW, bounds, constant
 from siggen.keys.section import Section
 
 
@@ -97,7 +98,7 @@ def _outline(pair: GearPair, size: SpallSize, reading: str) -> Outline:
 
 def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = "") -> Iterator[Problem]:
     """Yield what is wrong with a spall by itself, at every combination of its bounds."""
-    for corner in corners(size):
+    for corner in corners(partial(draw, size, path="")):
         spall = spall_on_tooth(pair, corner, reading, 0)
         for problem in damage_problems(pair, (spall,)):
             if problem.name != "contact":
@@ -108,5 +109,5 @@ def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = 
 def largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> FlankSpall:
     """Return a spall with all its sizes at their upper and its place at its lower bounds, without depth to speak of."""
     largest = size.model_copy(update={key: bounds(getattr(size, key))[1] for key in SIZE_KEYS})
-    spall = spall_on_tooth(pair, next(corners(largest)), reading, tooth)
+    spall = spall_on_tooth(pair, draw(largest, lambda _: LOW, ""), reading, tooth)
     return replace(spall, depth_m=PROBE_M)

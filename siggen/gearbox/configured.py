@@ -7,8 +7,8 @@ in the healthy gearbox.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from functools import lru_cache, partial
+from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import Any
 
 from siggen.config import Config, StateSection
@@ -18,6 +18,7 @@ from siggen.faults.fault import Fault
 from siggen.gearbox.lived import Lived, lived, lived_states
 from siggen.keys.distributions import Choice
 from siggen.keys.teeth import drawn_teeth, most_teeth
+from siggen.names import ROLES
 from siggen.rig.carried_over import carried_over
 from siggen.seeding import Stage, generator, named_uniforms
 
@@ -102,12 +103,14 @@ def has_drawn_parts(config: Config) -> bool:
     )
 
 
-def possible_states(states: Mapping[str, StateSection]) -> Iterator[dict[str, StateSection]]:
-    """Yield the states with each gear that may be damaged, at most of its teeth: what checks look at."""
-    either = any(_gear(one) == "either" for state in states.values() for one in state.damages)
-    for gear in ("pinion", "gear") if either else ("pinion",):
-        hit = partial(_most_hit, gear)
-        yield {index: _state_hit(state, hit) for index, state in states.items()}
+def possible_damages(damage: Fault) -> Iterator[Fault]:
+    """Yield damage on each gear that may have it, at most of its teeth: what checks look at."""
+    gear: str | None = getattr(damage, "gear", None)
+    if gear is None:
+        yield damage
+        return
+    for hit in ROLES if gear == "either" else (gear,):
+        yield damage.model_copy(update={"gear": hit, "teeth": most_teeth(getattr(damage, "teeth"))})  # noqa: B009
 
 
 Hit = Callable[[Any], dict[str, object]]
@@ -115,16 +118,11 @@ Hit = Callable[[Any], dict[str, object]]
 
 
 def _drawn_hit(uniform: Callable[[str], float]) -> Hit:
-    gear, u = ("pinion", "gear")[int(2.0 * uniform("gear"))], uniform("teeth")
-    return lambda damage: _hit(damage, gear, drawn_teeth(damage.teeth, u))
-
-
-def _most_hit(gear: str, damage: Any) -> dict[str, object]:
-    return _hit(damage, gear, most_teeth(damage.teeth))
-
-
-def _hit(damage: Any, gear: str, teeth: int | tuple[int, ...]) -> dict[str, object]:
-    return {"gear": gear if damage.gear == "either" else damage.gear, "teeth": teeth}
+    gear, u = ROLES[int(2.0 * uniform("gear"))], uniform("teeth")
+    return lambda damage: {
+        "gear": gear if damage.gear == "either" else damage.gear,
+        "teeth": drawn_teeth(damage.teeth, u),
+    }
 
 
 def _gear(damage: Fault) -> str | None:

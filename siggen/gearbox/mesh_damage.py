@@ -50,11 +50,12 @@ def mesh_state(config: Config, mesh: str, state_id: int) -> MeshState:
 
 def sections_on(state: StateSection, mesh: str) -> tuple[Fault, ...]:
     """Return the damage of a state on one mesh, whose gears are called pinion and gear."""
-    return tuple(one.with_gears(_alone) for one in state.damages if mesh_of_gear(one.hit_gear) == mesh)
+    return tuple(on_pair(one) for one in state.damages if mesh_of_gear(one.hit_gear) == mesh)
 
 
-def _alone(gear: str) -> str:
-    return in_pair(gear.rpartition(DOT)[2])
+def on_pair(damage: Fault) -> Fault:
+    """Return damage of a mesh whose gears are called pinion and gear."""
+    return damage.with_gears(lambda gear: in_pair(gear.rpartition(DOT)[2]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from siggen.config import Config, Pair, Stiffness, Wheel
+from siggen.config import Pair, Stiffness, Wheel
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.geometry.spur_gear import transverse_gear
-from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.keys.drawing import corners
 from siggen.keys.number import constant
 
 
@@ -56,12 +54,3 @@ def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
 def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:
     """Return the options of one pair of a gearbox: in a ring neighbours do not act on each other."""
     return replace(options, coupling="none") if isinstance(pair, InternalPair) else options
-
-
-def model_notes(config: Config, mesh: int = 0) -> tuple[str, ...]:
-    """Return what to know about the stiffness model of a mesh, at the bounds of its gears, each sentence once."""
-    options = stiffness_options(config.stiffness)
-    gears = [gear.word for gear in config.names.meshes[mesh].gears]
-    section = config.stages[mesh - 1].gears if mesh else config.gears
-    notes = (note for corner in corners(section) for note in stiffness_notes(gear_pair(corner), options, gears))
-    return tuple(dict.fromkeys(notes))

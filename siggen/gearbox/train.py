@@ -65,11 +65,12 @@ def bending_shafts(dynamics: Dynamics, stage: GearStage, pair: GearPair) -> tupl
     if dynamics.shafts is None:
         return None
     pairs = ((dynamics.shafts.pinion, stage.pinion), (dynamics.shafts.gear, stage.gear))
-    pinion, gear = (_shaft(section, rotor, pair) for section, rotor in pairs)
+    pinion, gear = (shaft_numbers(section, rotor, pair) for section, rotor in pairs)
     return pinion, gear
 
 
-def _shaft(section: ShaftSection, rotor: RotorNumbers, pair: GearPair) -> Shaft:
+def shaft_numbers(section: ShaftSection, rotor: RotorNumbers, pair: GearPair) -> Shaft:
+    """Return a shaft that bends, with its gear."""
     return Shaft(
         span_m=1e-3 * constant(section.bearing_span_mm),
         gear_share=constant(section.gear_position),

@@ -1,21 +1,26 @@
-"""Replacing the distributions of a section: by drawn values, or by their bounds; and drawn values in SI."""
+"""Replacing the distributions of a section by drawn values, corners of what is drawn, and drawn values in SI."""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator
-from typing import Any, TypeVar
+from itertools import product
+from typing import Any, TypeAlias, TypeVar
 
 from siggen.keys.distributions import DRAWN
-from siggen.keys.number import Within, at, bounds, constant
+from siggen.keys.number import HIGH, LOW, MIDDLE, Within, at, constant
 from siggen.keys.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
+Part = TypeVar("Part")
+Uniforms: TypeAlias = Callable[[str], float]
+"""Path of a key -> the uniform in [0, 1) that belongs to it, or an end of its number."""
+MOST_CROSSED = 10
+"""Numbers of a part whose ends are all combined; of more each end by itself, and all low or high at once."""
 IN_SI = {"mm": ("m", 1e-3), "um": ("m", 1e-6), "ms": ("s", 1e-3)}
 """Unit at the end of a key -> that of SI, and what to multiply by; compound units such as `um_s` stay."""
 
 
-def draw(section: SomeSection, uniform: Callable[[str], float], path: str) -> SomeSection:
+def draw(section: SomeSection, uniform: Uniforms, path: str) -> SomeSection:
     """Return a section with every distribution replaced by a value.
 
     Parameters
@@ -34,19 +39,36 @@ def draw(section: SomeSection, uniform: Callable[[str], float], path: str) -> So
     return _replaced(section, drawn, path)
 
 
-def corners(section: SomeSection) -> Iterator[SomeSection]:
-    """Yield the section with its distributions at every combination of their bounds; itself if it has none."""
-    pairs: list[tuple[object, ...]] = []
+def corners(part: Callable[[Uniforms], Part], *of: str) -> Iterator[Part]:
+    """Yield a part as it is drawn at the ends of the numbers that it is drawn from; once if it has none.
 
-    def noted(value: object, _: str) -> object:
-        is_drawn = isinstance(value, DRAWN)
-        pairs.append(tuple(dict.fromkeys(bounds(value))) if is_drawn else (value,))  # type: ignore[arg-type]
-        return value
+    Parameters
+    ----------
+    part : callable
+        What draws the part: uniforms by the paths of keys -> the part.
+    *of : str
+        What the paths of numbers have in them whose ends count, all others are in their middle; without any all count.
+    """
+    names: dict[str, float] = {}
 
-    _replaced(section, noted, "")
-    for combination in itertools.product(*pairs):
-        values = iter(combination)
-        yield _replaced(section, lambda *_, values=values: next(values), "")
+    def noted(name: str) -> float:
+        return names.setdefault(name, MIDDLE) if not of or any(one in name for one in of) else MIDDLE
+
+    typical = part(noted)
+    if not names:
+        yield typical
+        return
+    crossed = product((LOW, HIGH), repeat=len(names)) if len(names) <= MOST_CROSSED else _apart(len(names))
+    for ends in crossed:
+        at_ends = dict(zip(names, ends, strict=True))
+        yield part(lambda name, at_ends=at_ends: at_ends.get(name, MIDDLE))  # type: ignore[misc]
+
+
+def _apart(count: int) -> Iterator[tuple[float, ...]]:
+    """Yield all ends low, all high, and each of them alone."""
+    for end in (LOW, HIGH):
+        yield (end,) * count
+        yield from (tuple(end if one == place else MIDDLE for one in range(count)) for place in range(count))
 
 
 def in_si(section: Section) -> dict[str, Any]:

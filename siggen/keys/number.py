@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Annotated, Any, Literal, TypeAlias, Union
 
 from pydantic import Field
@@ -20,9 +21,15 @@ Number: TypeAlias = float | Distribution | Changed
 """A physical number as the YAML file gives it, or as a state changes it."""
 
 
+LOW, MIDDLE, HIGH = -inf, 0.5, inf
+"""Ends of a number in place of a uniform, and the uniform that half of all values lie below."""
+
+
 def at(number: Number, u: float) -> float:
-    """Return the value of a number at one uniform; a constant is the same at every one."""
-    return number if isinstance(number, float) else number.at(u)
+    """Return the value of a number at one uniform or end; a constant is the same at every one."""
+    if isinstance(number, float):
+        return number
+    return number.at(u) if LOW < u < HIGH else number.bounds()[u == HIGH]
 
 
 def bounds(number: Number) -> tuple[float, float]:

@@ -50,11 +50,12 @@ def cage_sense(which: str, *, housed: bool) -> float:
 def on_loaded_bearings(stage: GearStage, found: dict[str, LoadedBearing]) -> GearStage:
     """Return a stage on bearings under load."""
     rotors = {"pinion": stage.pinion, "gear": stage.gear}
-    rotors |= {which: _on(rotors[which], one) for which, one in found.items()}
+    rotors |= {which: on_loaded_bearing(rotors[which], one) for which, one in found.items()}
     return replace(stage, pinion=rotors["pinion"], gear=rotors["gear"])
 
 
-def _on(rotor: Rotor, one: LoadedBearing) -> Rotor:
+def on_loaded_bearing(rotor: Rotor, one: LoadedBearing) -> Rotor:
+    """Return a gear on two bearings under load."""
     stiffness = BEARINGS * one.stiffness_n_per_m
     x, xy, y = float(stiffness[0, 0]), float(stiffness[0, 1]), float(stiffness[1, 1])
     numbers = replace(rotor.bearing, stiffness_x_n_per_m=x, stiffness_y_n_per_m=y, stiffness_xy_n_per_m=xy)

@@ -16,6 +16,7 @@ from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.housing_layout import specimen_layout
 from siggen.gearbox.housing_numbers import plate_numbers
 from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.rig.rig_answers import rig_of
 from siggen.rig.rig_text import rig_text
 from tests.config.minimal import minimal
@@ -66,11 +67,10 @@ def test_the_line_of_the_file_is_told(tmp_path: Path) -> None:
 def test_the_least_lengths_that_are_let_through_can_be_built(shafts: object, material: str) -> None:
     """Of 30 gearboxes each, whatever bearings and walls they draw; a box that cannot be is refused by its own check."""
     config = load_config(minimal(dynamics__shafts=shafts, housing__material=material))
-    pair = gear_pair(config.gears)
     least = {}
     for key in ("length_mm", "height_mm", "width_mm"):
         section = config.housing.model_copy(update={key: 1.0})
-        (problem,) = housing_problems({"dynamics": config.dynamics, "housing": section}, [pair])
+        (problem,) = housing_problems(PossibleGearbox(config.model_copy(update={"housing": section})))
         least[key] = 1.0005 * float(problem.allowed.split("at least ")[1].split(" mm")[0])  # told with four digits
     smallest = load_config(config.canonical() | {"housing": {**config.canonical()["housing"], **least}})
     for specimen_id in range(30):

@@ -11,14 +11,14 @@ import yaml
 
 from siggen.checks.loading import load_config
 from siggen.checks.shaft_notes import shaft_notes
-from siggen.checks.tilt_problems import MEMBERS, NEEDED, flank_tilts, static_tilts_rad
+from siggen.checks.tilt_problems import flank_tilts, static_tilt_rad
 from siggen.columns.record import RecordFailure, SimulatedRecord
-from siggen.config import Config, Dynamics
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
-from siggen.keys.drawing import draw
+from siggen.gearbox.possible import PossibleGearbox
+from siggen.gearbox.specimen import Specimen
+from siggen.names import ROLES
 from siggen.record.specimen_state import specimen_state
-from siggen.seeding import Stage, named_uniforms
 from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
 from tests.simulated import simulate
@@ -65,8 +65,8 @@ def test_a_law_that_feels_no_tilt_is_refused() -> None:
 
 
 def test_plan_says_what_limits_shafts() -> None:
-    assert not any("outside_model" in note for note in shaft_notes(load_config(minimal())))
-    assert any("outside_model" in note for note in shaft_notes(load_config(with_shafts())))
+    assert not any("outside_model" in note for note in shaft_notes(PossibleGearbox(load_config(minimal()))))
+    assert any("outside_model" in note for note in shaft_notes(PossibleGearbox(load_config(with_shafts()))))
 
 
 @pytest.mark.parametrize("helix_deg", [0.0, 12.0, -12.0])
@@ -82,8 +82,7 @@ def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
     specimen = draw_specimen(config, 0)
     state = specimen_state(specimen, 0)
     motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
-    dynamics = drawn_dynamics(config, 0)
-    found = sum(static_tilts_rad(dynamics, which, state.pair, 45.0)[1] for which in ("pinion", "gear"))
+    found = drawn_tilt_rad(specimen, 45.0)
     assert abs(found) > 1e-6
     assert found == pytest.approx(motion.pair_equations.static[0, 2], rel=1e-9)
 
@@ -118,21 +117,21 @@ def test_soft_shafts_are_refused_though_some_gearboxes_have_their_gear_in_the_mi
         load_config(with_shafts(diameter_mm=5.0, bearing_span_mm=140.0, gear_position=around))
 
 
-def drawn_dynamics(config: Config, number: int) -> Dynamics:
-    return draw(config.dynamics, named_uniforms(config.seed, Stage.SUPPORTS, number), "dynamics")
+def drawn_tilt_rad(specimen: Specimen, torque_nm: float) -> float:
+    train, rotors = specimen.train, (specimen.train.first.pinion, specimen.train.first.gear)
+    each = zip(train.bending, rotors, ROLES, strict=True)
+    return sum(static_tilt_rad(shaft, rotor.bearing, specimen.pair, role, torque_nm) for shaft, rotor, role in each)
 
 
 @pytest.mark.parametrize("which", ["bench", "industrial", "quickstart", "paper_b"])
 def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
     # By the drawn gearboxes, where the check takes places at equal shares: half of them at least have room.
     config = load_config(ROOT / "configs" / f"{which}.yaml")
-    sections = {name: getattr(config, name) for name in NEEDED}
-    rooms = []
+    gearbox, rooms = PossibleGearbox(config), []
     for number in range(9):
-        pair, dynamics = draw_specimen(config, number).pair, drawn_dynamics(config, number)
-        found = flank_tilts(sections, pair)
-        tilts = [static_tilts_rad(dynamics, gear, pair, found.torque_nm)[1] for gear in MEMBERS]
-        rooms.append(abs(sum(tilts)) / found.limit_rad)
+        specimen = draw_specimen(config, number)
+        tilt_rad = drawn_tilt_rad(specimen, gearbox.largest_torque_nm)
+        rooms.append(abs(tilt_rad) / flank_tilts(gearbox, specimen.pair).limit_rad)
     assert 0.0 < np.median(rooms) < 1.0
 
 

@@ -7,13 +7,15 @@ import pytest
 from siggen.checks.damage_notes import state_notes
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
+from siggen.gearbox.possible import PossibleGearbox
 from tests.config.minimal import by_name, minimal
 
 CHANGED = {"name": "changed", "severity": "moderate", "changes": {"dynamics.backlash_um": {"add": 40}}}
 
 
 def notes(fault: str) -> tuple[str, ...]:
-    return state_notes(load_config(minimal(states=by_name([{"name": "healthy"}, {**CHANGED, "fault": fault}]))))
+    states = by_name([{"name": "healthy"}, {**CHANGED, "fault": fault}])
+    return tuple(state_notes(PossibleGearbox(load_config(minimal(states=states)))))
 
 
 def test_a_slip_is_pointed_out_and_a_word_of_ones_own_is_not() -> None:

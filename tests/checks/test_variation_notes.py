@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 
 from siggen.checks.variation_notes import reversal_notes
+from siggen.gearbox.possible import PossibleGearbox
 from tests.config.minimal import config
 
 
 def reversals(**torque) -> list[str]:
-    return list(reversal_notes(config(variation={"torque": torque})))
+    return list(reversal_notes(PossibleGearbox(config(variation={"torque": torque}))))
 
 
 @pytest.mark.parametrize(

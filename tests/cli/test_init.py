@@ -17,6 +17,7 @@ from siggen.cli.app import app
 from siggen.config import read_yaml
 from siggen.errors import UsageError
 from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.possible import PossibleGearbox
 from tests.command import command
 
 RIGS = {
@@ -38,7 +39,7 @@ def test_a_machine_of_a_few_numbers_can_be_simulated_and_is_plausible(tmp_path: 
     file = tmp_path / "rig.yaml"
     assert run(*RIGS[name], "--sensors", "3", "--out", str(file)).exit_code == 0
     config = load_config(file)
-    assert implausible(config) == ()
+    assert implausible(PossibleGearbox(config)) == ()
     assert len(config.channels) == 3
     assert [state.severity for state in config.states] == [
         "healthy",

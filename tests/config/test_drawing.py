@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
 from siggen.config import Dynamics, Gears
@@ -97,12 +99,12 @@ def test_gain_is_drawn_per_axis_and_noise_is_left_to_the_record():
 
 def test_corners_are_all_combinations_of_the_bounds():
     gears = config(gears__module_mm=SPREAD, gears__gear__bore_radius_mm={"one_of": [9, 4, 6]}).gears
-    found = {(corner.module_mm, corner.gear.bore_radius_mm) for corner in corners(gears)}
+    found = {(corner.module_mm, corner.gear.bore_radius_mm) for corner in corners(partial(draw, gears, path=""))}
     assert found == {(0.05, 4.0), (0.05, 9.0), (0.10, 4.0), (0.10, 9.0)}
 
 
 def test_a_section_without_distributions_is_its_only_corner():
     gears = config().gears
-    assert list(corners(gears)) == [gears]
+    assert list(corners(partial(draw, gears, path=""))) == [gears]
     assert isinstance(gears, Gears)
     assert bounds(gears.module_mm) == (3.0, 3.0)

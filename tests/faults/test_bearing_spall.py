@@ -235,7 +235,7 @@ def test_what_cannot_be_is_refused_with_what_is_allowed(
 ) -> None:
     states = [{"name": "healthy"}, {"name": "slight", "damage": {**SPALL, **damage}}]
     parsed = parse(minimal(states=by_name(states), **changes))
-    problems = [*parsed.problems, *physical_problems(parsed)]
+    problems = [*parsed.problems, *physical_problems(parsed.sections)]
     found = {problem.path: problem for problem in problems}
     assert f"states.slight.damage.{path}" in found, problems
     assert allowed in found[f"states.slight.damage.{path}"].allowed

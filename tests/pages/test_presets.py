@@ -20,6 +20,7 @@ from siggen.config.inheritance import inherited
 from siggen.config.state_keys import complete_states
 from siggen.config.yaml_source import read_yaml
 from siggen.gearbox.configured import pair_of
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.planning.plan import SPLITS, split_of
 from siggen.sets.verification import verify
 from tests.simulated import simulate
@@ -132,4 +133,4 @@ def test_families_holds_many_usual_pairs_that_hunt_and_keeps_each_in_one_split()
     found = {pair_of(config, i): split_of(config, i) for i in range(len(pairs))}
     assert [sum(split == name for split in found.values()) for name in SPLITS] == [36, 12, 12]
     assert str(pairs[0]) == "17/35 teeth, m 2.5, b 32 mm"
-    assert implausible(config) == ()
+    assert implausible(PossibleGearbox(config)) == ()

@@ -8,7 +8,8 @@ from siggen.checks.loading import load_config
 from siggen.checks.physical_problems import physical_problems
 from siggen.config import parse
 from siggen.errors import ConfigError
-from siggen.gearbox.pair import gear_pair, model_notes, stiffness_options
+from siggen.gearbox.pair import gear_pair, stiffness_options
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.config.minimal import config, minimal
@@ -42,7 +43,7 @@ def test_what_load_lets_pass_gives_tables_and_what_it_refuses_does_not():
         pinion = {"teeth": 17, "bore_radius_mm": bore_mm}
         raw = minimal(**{**THIN_BORES, "gears__pinion": pinion}, stiffness={"beam": "base_circle", "coupling": "body"})
         usable = parse(raw).config
-        refused = any(problem.path == "stiffness.coupling" for problem in physical_problems(parse(raw)))
+        refused = any(problem.path == "stiffness.coupling" for problem in physical_problems(parse(raw).sections))
         seen.add(refused)
         if refused:
             with pytest.raises(ValueError, match="coupling 'body'"):
@@ -52,10 +53,14 @@ def test_what_load_lets_pass_gives_tables_and_what_it_refuses_does_not():
     assert seen == {True, False}
 
 
+def notes(**changes: object) -> tuple[str, ...]:
+    return PossibleGearbox(config(**changes)).stiffness_notes
+
+
 def test_notes_look_at_both_ends_of_a_distribution():
     small, large = ([low, high] for low, high in ((3.0, 10.0), (6.0, 17.5)))
-    assert model_notes(config()) == ()
-    (thick,) = model_notes(config(gears__pinion__bore_radius_mm=small))
+    assert notes() == ()
+    (thick,) = notes(gears__pinion__bore_radius_mm=small)
     assert "is 7.75" in thick
     # Above a third of the root radius it is the shaft inside that gives way: a solid body, which the fit knows.
-    assert model_notes(config(gears__pinion__bore_radius_mm=large)) == ()
+    assert notes(gears__pinion__bore_radius_mm=large) == ()

@@ -13,6 +13,7 @@ from siggen.config import Config
 from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import OperatingPoint
 from siggen.specimen.bearing_spalls import mean_force_n
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
@@ -124,7 +125,7 @@ def test_a_stiffness_in_newtons_per_metre_stays_what_it_is() -> None:
 
 
 def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> None:
-    notes = [note for note in shaft_notes(made()) if note.startswith("both bearings")]
+    notes = [note for note in shaft_notes(PossibleGearbox(made())) if note.startswith("both bearings")]
     assert len(notes) == 3
     assert "state loose" in notes[2]
     assert "clearance 40 um" in notes[2]
@@ -132,10 +133,11 @@ def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> No
 
 def test_plan_says_which_given_stiffness_a_bearing_replaces_and_which_it_does_not() -> None:
     given = {"dynamics__gear__bearing_stiffness_y_n_per_m": 1e8}
-    (note,) = (note for note in shaft_notes(made(**given)) if "not used" in note)
+    (note,) = (note for note in shaft_notes(PossibleGearbox(made(**given))) if "not used" in note)
     assert note.startswith(f"{STIFFNESS}: not used")
     assert "dynamics.gear.bearing: null" in note
-    assert not [note for note in shaft_notes(made(**given, dynamics__gear__bearing=None)) if "not used" in note]
+    without = PossibleGearbox(made(**given, dynamics__gear__bearing=None))
+    assert not [note for note in shaft_notes(without) if "not used" in note]
 
 
 @pytest.mark.parametrize(
