@@ -66,7 +66,8 @@ def generate(
     with run_shown(log_json, out) as shown:
         for sentence in implausible(PossibleGearbox(loaded)):
             shown.say(f"implausible: {sentence}")
-        if text := compilation_text(loaded, default_workers() if engine.workers is None else engine.workers):
+        workers = default_workers() if engine.workers is None else engine.workers
+        if text := compilation_text(loaded.dynamics.method, workers):
             shown.say(text)
         (runner, count), progress = engine.runner(), shown.progress
         told: dict[str, Any] = {"events": shown.events, "allowed_loss": engine.allowed_loss}

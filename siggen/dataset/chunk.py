@@ -8,7 +8,7 @@ import platform
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyarrow as pa
 
@@ -17,11 +17,8 @@ from siggen.columns.record import RecordFailure, SetColumns, SimulatedRecord, no
 from siggen.errors import EngineError
 from siggen.record.stage_times import collected, stage
 
-if TYPE_CHECKING:
-    from siggen.config import Config
-
-Simulate = Callable[["Config", Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
-"""(config, ids of one specimen's records) -> results in the same order, as `siggen.sets.drawn.simulated`."""
+Simulate = Callable[[Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
+"""Ids of one specimen's records -> results in the same order, as `siggen.sets.drawn.simulated`."""
 
 _PAUSED: dict[Any, Iterator[SimulatedRecord | RecordFailure]] = {}
 """The simulation of this process whose rest is to come, with the tables of its specimen; one at most."""
@@ -85,11 +82,10 @@ def chunks(shard: str, specimens: Sequence[range], group_rows: int) -> Iterator[
 
 @dataclass(frozen=True, slots=True)
 class ChunkSimulation:
-    """The function that an engine maps over chunks; carries the configuration to the workers once."""
+    """The function that an engine maps over chunks; carries to the workers once what simulates a set."""
 
-    config: Config
-    simulate: Simulate
     columns: SetColumns
+    simulate: Simulate
 
     def __call__(self, chunk: Chunk) -> ChunkResult:
         """Simulate a chunk; `part` without a limit."""
@@ -137,10 +133,10 @@ class ChunkSimulation:
         return self._results(chunk.records) if paused is None else paused
 
     def _key(self, chunk: Chunk) -> tuple[object, ...]:
-        return self.config.identity, self.simulate, chunk.records
+        return self.columns.identity, chunk.records
 
     def _results(self, ids: range) -> Iterator[SimulatedRecord | RecordFailure]:
-        yield from self.simulate(self.config, ids)
+        yield from self.simulate(ids)
 
     def _next(self, results: Iterator[SimulatedRecord | RecordFailure], ids: range) -> SimulatedRecord | RecordFailure:
         """Return the result of the first of the records that are left."""
@@ -161,7 +157,7 @@ class ChunkSimulation:
         """Return the first record that raises when simulated alone."""
         for record_id in ids:
             try:
-                list(self.simulate(self.config, [record_id]))
+                list(self.simulate([record_id]))
             except Exception:
                 return f"record {record_id}"
         return f"one of the records {ids[0]} to {ids[-1]} (none of them alone)"

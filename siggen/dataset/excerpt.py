@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
@@ -22,17 +21,14 @@ from siggen.dataset.sealed_streams import UNUSABLE, Maker, read_streams, sealed_
 from siggen.dataset.sidecar import Sidecar, read_sidecar
 from siggen.dataset.storage import Storage
 
-if TYPE_CHECKING:
-    from siggen.config import Config
-
 FOLDER = "excerpts"
 READERS = 8
 
-DamageRows = Callable[["Config", int], Sequence[Mapping[str, object]]]
-"""(config, record_id) -> rows of the damage table for one record, as siggen.record gives them."""
+DamageRows = Callable[[int], Sequence[Mapping[str, object]]]
+"""record_id -> rows of the damage table for one record, as siggen.record gives them."""
 
-LifeRows = Callable[["Config", int], Mapping[str, Sequence[Mapping[str, object]]]]
-"""(config, specimen) -> rows by the name of their table, as siggen.record gives them."""
+LifeRows = Callable[[int], Mapping[str, Sequence[Mapping[str, object]]]]
+"""specimen -> rows by the name of their table, as siggen.record gives them."""
 
 Excerpt = Mapping[str, pa.RecordBatch]
 """Folder of the table -> rows of a shard; see `excerpt_schemas`."""
@@ -68,7 +64,6 @@ class Excerpts:
         What makes the rows that stand in no shard: pure, and importable by name.
     """
 
-    config: Config
     columns: SetColumns
     storage: Storage
     maker: Maker
@@ -118,7 +113,7 @@ class Excerpts:
             # damage belongs to specimen and state: operating points and repeats of one state follow each other
             if owner != (record["specimen_id"], record["state_id"]):
                 owner = (record["specimen_id"], record["state_id"])
-                shared = self.damage_rows(self.config, record["record_id"])
+                shared = self.damage_rows(record["record_id"])
             yield from ({**row, "record_id": record["record_id"]} for row in shared)
 
     def _lives(self, split: str, specimens: Sequence[int]) -> dict[str, list[dict[str, object]]]:
@@ -126,7 +121,7 @@ class Excerpts:
             return {}
         rows: dict[str, list[dict[str, object]]] = {f"{LIFE_FOLDER}/{name}": [] for name in LIFE_TABLES}
         for specimen in specimens:
-            for name, found in self.life_rows(self.config, specimen).items():
+            for name, found in self.life_rows(specimen).items():
                 rows[f"{LIFE_FOLDER}/{name}"] += [{**row, "split": split} for row in found]
         return rows
 

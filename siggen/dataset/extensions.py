@@ -8,14 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 EXTENSIONS = "extensions.json"
 
@@ -42,9 +38,9 @@ def read_extensions(storage: Storage) -> tuple[int, ...]:
     return counts
 
 
-def earlier_specimens(storage: Storage, config: Config) -> tuple[int, ...]:
-    """Return the numbers of specimens that a set had before it had those of its configuration."""
-    return tuple(count for count in read_extensions(storage) if count < config.specimens)
+def earlier_specimens(storage: Storage, specimens: int) -> tuple[int, ...]:
+    """Return the numbers of specimens that a set had before it had so many."""
+    return tuple(count for count in read_extensions(storage) if count < specimens)
 
 
 def put_extensions(storage: Storage, counts: Sequence[int]) -> None:

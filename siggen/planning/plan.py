@@ -83,13 +83,16 @@ class ShardPlan:
         return sum(self.counts) if self.counts else len(self.specimens) * self.records_per_specimen
 
     @property
-    def record_ids(self) -> Iterator[int]:
-        """Ids of all records, ascending."""
+    def of_specimens(self) -> Iterator[range]:
+        """Ids of the records of each specimen, ascending."""
         stride = self.records_per_specimen
         counts = self.counts or [stride] * len(self.specimens)
-        return (
-            i for one, own in zip(self.specimens, counts, strict=True) for i in range(one * stride, one * stride + own)
-        )
+        return (range(one * stride, one * stride + own) for one, own in zip(self.specimens, counts, strict=True))
+
+    @property
+    def record_ids(self) -> Iterator[int]:
+        """Ids of all records, ascending."""
+        return chain.from_iterable(self.of_specimens)
 
     @property
     def key(self) -> str:

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from siggen.record.compilation import is_compiled
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 COMPILED_S = 50
 """CPU time of compiling what a first record of `quickstart` needs, check included (`python -m benchmarks cold`)."""
@@ -15,9 +10,9 @@ LARGER_SHARE = 0.6
 """Of the larger part, with which two processes are done."""
 
 
-def compilation_text(config: Config, workers: int) -> str:
-    """Return a sentence for whoever waits for the first record on a machine; empty where nothing is to be compiled."""
-    if is_compiled(config.dynamics.method):
+def compilation_text(method: str, workers: int) -> str:
+    """Return a sentence for whoever waits for a machine's first record; empty where nothing is to be compiled."""
+    if is_compiled(method):
         return ""
     wait_s = COMPILED_S * (LARGER_SHARE if workers > 1 else 1.0)
     machine = f"about {wait_s:.0f} s on an idle machine"

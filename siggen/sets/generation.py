@@ -69,5 +69,5 @@ def generate(
         storage.delete_leftovers()
         chosen = engine_of(engine, workers)
         with Interruption() as interruption:
-            earlier = earlier_specimens(storage, config)
+            earlier = earlier_specimens(storage, config.specimens)
             return set_run(config, storage, chosen, progress, interruption, earlier, events, limit).finish()

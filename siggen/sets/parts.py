@@ -205,7 +205,7 @@ def _copied(run: SetRun, sources: Sequence[Storage], target: Storage, shard: Sha
 
 
 def _promised(run: SetRun, storage: Storage, shard: ShardPlan) -> Sidecar | None:
-    found = promised(run.config, storage, shard)
+    found = promised(run.config.identity, run.config.state_names, storage, shard)
     return None if isinstance(found, str) else found
 
 

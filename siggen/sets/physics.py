@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
-from siggen.columns.record import SetColumns
-from siggen.dataset.chunk import Simulate
-from siggen.dataset.excerpt import DamageRows, LifeRows
+from siggen.columns.record import RecordFailure, SimulatedRecord
+from siggen.dataset.chunk import ChunkSimulation
 from siggen.keys.column import Column
 
 if TYPE_CHECKING:
@@ -48,18 +48,19 @@ class Physics:
         (config, specimen) -> labels of the damage of every state, from its drawing alone.
     """
 
-    simulate: Simulate
-    damage_rows: DamageRows
+    simulate: Callable[[Config, Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
+    damage_rows: Callable[[Config, int], Sequence[Mapping[str, object]]]
     quantities: Callable[[Config], Sequence[Column]]
     to_compile: Callable[[Config], Sequence[CompilationPart]] = _nothing
-    life_rows: LifeRows = _no_life
+    life_rows: Callable[[Config, int], Mapping[str, Sequence[Mapping[str, object]]]] = _no_life
     damage_sizes: Callable[[Config, int], Mapping[str, Mapping[str, object]]] = _no_sizes
 
-    def columns(self, config: Config) -> SetColumns:
-        """Return the columns of a set, of `internals/` too where it stores some."""
+    def simulation(self, config: Config) -> ChunkSimulation:
+        """Return what makes rows of a set, with its columns, those of `internals/` too where it stores some."""
         from siggen.sets.drawn import set_columns
 
-        return set_columns(config, () if config.internals is None else self.quantities(config))
+        columns = set_columns(config, () if config.internals is None else self.quantities(config))
+        return ChunkSimulation(columns, partial(self.simulate, config))
 
 
 def physics() -> Physics:

@@ -20,7 +20,7 @@ import numpy as np
 
 from siggen.columns.record import ChannelColumn
 from siggen.dataset.card_making import stated_tolerance
-from siggen.dataset.chunk import Chunk, ChunkSimulation
+from siggen.dataset.chunk import Chunk
 from siggen.dataset.manifest import PHYSICS, read_manifest
 from siggen.dataset.reading import Dataset, as_record
 from siggen.dataset.seal import sealed
@@ -208,8 +208,7 @@ def _found(config: Config, ids: Sequence[int], compared: Sequence[_Compared]) ->
 def _again(engine: Engine, config: Config, ids: Sequence[int]) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Yield record after record of a configuration, as they are done."""
     tasks = [Chunk("precision", range(record_id, record_id + 1)) for record_id in ids]
-    physics = contents.physics()
-    with running(engine, ChunkSimulation(config, physics.simulate, physics.columns(config)), tasks) as results:
+    with running(engine, contents.physics().simulation(config), tasks) as results:
         for index, result in results:
             if result.failures:
                 failure = result.failures[0]

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from siggen.dataset.environment import host_facts, peak_memory_bytes
 from siggen.dataset.sidecar import Sidecar
 from siggen.engines.protocol import Engine
 from siggen.sets.run_journal import RunJournal
 
-if TYPE_CHECKING:
-    from siggen.config import Config
-
 
 def run_facts(
-    config: Config,
+    duration_s: float,
     engine: Engine,
     sidecars: Iterable[Sidecar],
     journal: RunJournal,
@@ -35,7 +32,7 @@ def run_facts(
         "records_made": made,
         "records_failed": journal.failures,
         "records_per_s": round(made / seconds, 3),
-        "signal_s_per_s": round(made * config.duration_s / seconds, 3),
+        "signal_s_per_s": round(made * duration_s / seconds, 3),
         "shards_taken_over": taken_over,
         "stages": journal.stages(),
         "bytes": sum(file.bytes for sidecar in sidecars for file in sidecar.files),

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from siggen.columns.record import RecordFailure
 from siggen.dataset.sidecar import Sidecar
@@ -15,9 +15,6 @@ from siggen.engines.protocol import Engine
 from siggen.record.stage_times import StageTimes
 from siggen.sets.loss_limit import LossLimit
 from siggen.sources import installed_version
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 Events = Callable[[Mapping[str, object]], None]
 """Called with every event of a run, in the process that drives it; what it raises ends the run."""
@@ -70,11 +67,11 @@ class RunJournal:
         """Seconds since the run began."""
         return time.perf_counter() - self.started_s
 
-    def start(self, config: Config, path: str, engine: Engine, records: int, shards: int) -> None:
+    def start(self, name: str, identity: str, path: str, engine: Engine, records: int, shards: int) -> None:
         """Tell that a run begins, with the records and shards of the whole set."""
-        facts = {"log_version": LOG_VERSION, "siggen": installed_version(), "name": config.name}
+        facts = {"log_version": LOG_VERSION, "siggen": installed_version(), "name": name}
         who = {"engine": type(engine).__name__, "workers": engine.workers}
-        facts |= {"identity": config.identity, "path": path, **who, "records": records, "shards": shards}
+        facts |= {"identity": identity, "path": path, **who, "records": records, "shards": shards}
         self._tell("run_started", facts)
         self.expect(records)
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
+from siggen.columns.internals import internals_group_rows
 from siggen.columns.record import RecordFailure, SetColumns, listed_columns, record_schema
 from siggen.dataset.card import card
 from siggen.dataset.card_making import stated_tolerance
+from siggen.dataset.chunk import ChunkSimulation
 from siggen.dataset.environment import environment, fingerprint
 from siggen.dataset.excerpt import Excerpt, Excerpts
 from siggen.dataset.extensions import EXTENSIONS
@@ -33,6 +36,7 @@ from siggen.sets.loss_limit import LossLimit
 from siggen.sets.run_facts import run_facts
 from siggen.sets.run_journal import Events, RunJournal
 from siggen.sets.shard_making import ShardMaking
+from siggen.sets.shard_work import GroupRows
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -111,12 +115,12 @@ def set_run(
     journal = RunJournal(events, limit=limit)
     with journal.driver.during("planning"):
         physics = contents.physics()
-        columns = physics.columns(config)
+        simulation = physics.simulation(config)
         planned = planned_shards(config, earlier)
-    run = SetRun(config, storage, engine, physics, columns, progress or _silent, interruption, planned, journal)
+    run = SetRun(config, storage, engine, physics, simulation, progress or _silent, interruption, planned, journal)
     run.trusted = frozenset({fingerprint(run.environment)})
     run.total = sum(shard.record_count for shard in planned)
-    journal.start(config, str(storage.location), engine, run.total, len(planned))
+    journal.start(config.name, config.identity, str(storage.location), engine, run.total, len(planned))
     return run
 
 
@@ -143,7 +147,7 @@ class SetRun:
     storage: Storage
     engine: Engine
     physics: contents.Physics
-    columns: SetColumns
+    simulation: ChunkSimulation
     progress: Progress
     interruption: Interruption
     planned: Sequence[ShardPlan]
@@ -162,11 +166,23 @@ class SetRun:
 
     def __post_init__(self) -> None:
         maker = Maker(self.config.identity, fingerprint(self.environment), self.environment)
-        self.pieces = Pieces(self.storage, maker, self.columns)
-        makers = (self.physics.damage_rows, self.physics.life_rows)
-        self.excerpts = Excerpts(self.config, self.columns, self.storage, maker, *makers)
-        shared = (self.config, self.storage, self.engine, self.physics, self.columns, self.interruption)
-        self.making = ShardMaking(*shared, self.journal, self.pieces, self.excerpts, self._advance)
+        self.pieces = Pieces(self.storage, maker, self.simulation.columns)
+        physics, config, columns = self.physics, self.config, self.simulation.columns
+        damage, lives = partial(physics.damage_rows, config), partial(physics.life_rows, config)
+        self.excerpts = Excerpts(columns, self.storage, maker, damage, lives)
+        self.making = ShardMaking(
+            self.storage,
+            self.engine,
+            self.simulation,
+            partial(physics.to_compile, config),
+            config.state_names,
+            GroupRows(rows_per_group(config), internals_group_rows(columns) if columns.quantities else 0),
+            self.interruption,
+            self.journal,
+            self.pieces,
+            self.excerpts,
+            self._advance,
+        )
 
     def finish(self) -> Generation:
         """Make what is missing, from the first shard to the manifest.
@@ -229,8 +245,8 @@ class SetRun:
     def take_over(self, wanted: Sequence[ShardPlan]) -> None:
         """Find the shards that earlier runs committed with a trusted fingerprint."""
         missing = [shard for shard in wanted if shard.key not in self.sidecars]
-        check = self.interruption.check
-        for sidecar in usable_shards(self.config, self.storage, missing, self.trusted, self.notes, check):
+        check, of_set = self.interruption.check, (self.config.identity, self.config.state_names)
+        for sidecar in usable_shards(*of_set, self.storage, missing, self.trusted, self.notes, check):
             self.accept(sidecar)
 
     def accept(self, sidecar: Sidecar) -> None:
@@ -247,17 +263,19 @@ class SetRun:
     def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
         """Write configuration, tables, card and run.json; the manifest comes last and makes the set a finished one."""
         self.storage.put(CONFIG, config_bytes(self.config))
-        tables = []
+        tables, columns = [], self.simulation.columns
         for split in SPLITS:
             of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
             if of_split:
-                tables += write_tables(self.storage, self.columns, split, self._excerpts(of_split))
+                tables += write_tables(self.storage, columns, split, self._excerpts(of_split))
             self.interruption.check()
-        self.storage.put(CARD, card(self.config, sidecars, self.columns).encode())
+        self.storage.put(CARD, card(self.config, sidecars, columns).encode())
         written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
-        manifest = build_manifest(self.storage, manifest_facts(self.config, self.columns), sidecars, tables, written)
+        manifest = build_manifest(self.storage, manifest_facts(self.config, columns), sidecars, tables, written)
         counts = {"made": self.made, "taken_over": taken_over}
-        facts = run_facts(self.config, self.engine, sidecars, self.journal, **counts, environment=self.environment)
+        facts = run_facts(
+            self.config.duration_s, self.engine, sidecars, self.journal, **counts, environment=self.environment
+        )
         self.pieces.clear()
         self.excerpts.clear()
         self.storage.put(RUN, sealed(facts))

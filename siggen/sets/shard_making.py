@@ -9,9 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
-from siggen.columns.record import SetColumns
 from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.dataset.excerpt import Excerpts
 from siggen.dataset.object_name import SIDECAR_FOLDER, sidecar_name
@@ -23,15 +21,11 @@ from siggen.engines.protocol import DrainingEngine, Engine, Unfinished
 from siggen.engines.registry import running
 from siggen.errors import EngineError
 from siggen.planning.plan import ShardPlan
-from siggen.record.compilation import run_part
-from siggen.sets import physics as contents
+from siggen.record.compilation import CompilationPart, run_part
 from siggen.sets.interruption import Interruption
 from siggen.sets.run_journal import RunJournal
-from siggen.sets.shard_work import Answer, Closing, Excerpting, ShardWork, Stretch, Task, planned_rows, shard_chunks
+from siggen.sets.shard_work import Answer, Closing, Excerpting, GroupRows, ShardWork, Stretch, Task, shard_chunks
 from siggen.sets.under_way import STOP_AT_ONCE_S, UnderWay
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 STRETCHES_PER_WORKER = 2
 """Of what is left, a worker takes the share that leaves it so many: long stretches first, and short ones at the end.
@@ -62,11 +56,12 @@ class ShardMaking:
         What the workers have, from the first task on.
     """
 
-    config: Config
     storage: Storage
     engine: Engine
-    physics: contents.Physics
-    columns: SetColumns
+    simulation: ChunkSimulation
+    to_compile: Callable[[], Sequence[CompilationPart]]
+    states: tuple[str, ...]
+    group_rows: GroupRows
     interruption: Interruption
     journal: RunJournal
     pieces: Pieces
@@ -131,9 +126,8 @@ class ShardMaking:
                 self.storage.delete(name)
 
     def _work(self) -> ShardWork:
-        simulation = ChunkSimulation(self.config, self.physics.simulate, self.columns)
         is_parted = isinstance(self.engine, DrainingEngine)
-        return ShardWork(simulation, self.pieces, self.excerpts, planned_rows(simulation), is_parted)
+        return ShardWork(self.simulation, self.pieces, self.excerpts, self.states, self.group_rows, is_parted)
 
     def _drain(self) -> bool:
         """Let the workers finish what they are at, where a minute of work would be lost otherwise."""
@@ -150,7 +144,7 @@ class ShardMaking:
 
     def _compile(self, engine: ProcessEngine) -> None:
         """Compile once for all workers, which would compile the same side by side."""
-        parts = self.physics.to_compile(self.config)
+        parts = self.to_compile()
         if parts:
             with running(engine, run_part, parts) as compiled:
                 for _ in compiled:
@@ -172,7 +166,7 @@ class ShardMaking:
         kept = {chunk.records.start: chunk for held in found.values() for chunk in held}
         left = sum(shard.record_count for shard in missing) - sum(len(chunk.records) for chunk in kept.values())
         for shard in missing:
-            gaps = list(_gaps(shard_chunks(work.simulation, shard, work.group_rows), kept))
+            gaps = list(_gaps(shard_chunks(shard, work.group_rows), kept))
             pending = sum(len(chunk.records) for gap in gaps for chunk in gap)
             self._unclosed[shard.key] = Unclosed(shard, pending, shard.record_count - pending, self.journal.seconds)
             if not gaps:

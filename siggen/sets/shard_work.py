@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 
-from siggen.columns.internals import internals_group_rows, internals_schema
+from siggen.columns.internals import internals_schema
 from siggen.columns.record import RecordFailure, record_schema
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.excerpt import Excerpts
@@ -27,7 +27,7 @@ from siggen.dataset.sidecar import Sidecar, promised_shard, put_sidecar, ranges
 from siggen.engines.protocol import Unfinished
 from siggen.errors import DatasetError
 from siggen.file_writing import UNWRITABLE
-from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group
+from siggen.planning.plan import ShardPlan
 from siggen.record.stage_times import collected
 
 PART_S = 10.0
@@ -129,10 +129,12 @@ class GroupRows:
 
 @dataclass(frozen=True, slots=True)
 class ShardWork:
-    """The function that an engine maps over tasks; carries the configuration to the workers once.
+    """The function that an engine maps over tasks; carries to the workers once what makes a set.
 
     Attributes
     ----------
+    states
+        Names of all that a gearbox may be in.
     group_rows
         Of the files, by the plan of whoever drives the run.
     is_parted
@@ -142,6 +144,7 @@ class ShardWork:
     simulation: ChunkSimulation
     pieces: Pieces
     excerpts: Excerpts
+    states: tuple[str, ...]
     group_rows: GroupRows
     is_parted: bool
 
@@ -218,7 +221,7 @@ class ShardWork:
         return found.without_bulk((), ())
 
     def _results(self, shard: ShardPlan, kept: ShardPieces, made: list[ChunkResult]) -> Iterator[ChunkResult]:
-        for chunk in shard_chunks(self.simulation, shard, self.group_rows):
+        for chunk in shard_chunks(shard, self.group_rows):
             rest: Chunk | None = chunk
             while rest is not None:
                 result = kept.result(rest)
@@ -246,7 +249,7 @@ class ShardWork:
     def _committed(self, shard: ShardPlan, results: Iterable[ChunkResult]) -> Sidecar:
         """Write the rows of a shard as they come, then commit it with its sidecar."""
         failures: list[RecordFailure] = []
-        rows_per_state = dict.fromkeys(self.simulation.config.state_names, 0)
+        rows_per_state = dict.fromkeys(self.states, 0)
         with self._data(shard) as data, self._internals(shard) as internals:
             for result in results:
                 batch = result.batch()
@@ -285,13 +288,6 @@ class ShardWork:
         return table_draft(self.pieces.storage, internals_name(shard.key), schema, self.group_rows.internals)
 
 
-def planned_rows(simulation: ChunkSimulation) -> GroupRows:
-    """Return the rows of row groups."""
-    columns = simulation.columns
-    return GroupRows(rows_per_group(simulation.config), internals_group_rows(columns) if columns.quantities else 0)
-
-
-def shard_chunks(simulation: ChunkSimulation, shard: ShardPlan, group_rows: GroupRows) -> Iterator[Chunk]:
+def shard_chunks(shard: ShardPlan, group_rows: GroupRows) -> Iterator[Chunk]:
     """Cut a shard into chunks."""
-    specimens = [record_ids_of(simulation.config, specimen) for specimen in shard.specimens]
-    return chunks(shard.key, specimens, group_rows.of_chunk)
+    return chunks(shard.key, [*shard.of_specimens], group_rows.of_chunk)

@@ -10,7 +10,7 @@ from shlex import quote
 from typing import TYPE_CHECKING
 
 from siggen.columns.versions import SIMULATION_VERSION
-from siggen.dataset.chunk import Chunk, ChunkSimulation
+from siggen.dataset.chunk import Chunk
 from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts, sidecar_facts
 from siggen.dataset.inventory import Inventory, PromisedFile
@@ -244,8 +244,7 @@ def _simulate_again(
     exact = {record_id: fingerprint(_environment(dataset, record_id)) == here for record_id in ids}
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
-    physics = contents.physics()
-    function = ChunkSimulation(config, physics.simulate, physics.columns(config))
+    function = contents.physics().simulation(config)
     chosen = engine_of(engine, 0 if engine is None and workers is None else workers)
     with running(chosen, function, tasks) as results:
         for index, result in results:

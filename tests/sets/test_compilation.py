@@ -54,10 +54,10 @@ def test_a_configuration_is_checked_without_what_looks_for_lost_contacts(monkeyp
 def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: Config, monkeypatch: pytest.MonkeyPatch) -> None:
     run_part(compilation_parts(short)[1])
     assert is_compiled(short.dynamics.method)
-    assert (compilation_text(short, 2), to_compile(short)) == ("", ())
+    assert (compilation_text(short.dynamics.method, 2), to_compile(short)) == ("", ())
     older = SimpleNamespace(_cache=SimpleNamespace(_cache_file=SimpleNamespace(_load_index=dict)))
     monkeypatch.setattr(exponential_step, "advance", older)
-    assert "compiling the simulation once, for all workers: about 30 s" in compilation_text(short, 2)
+    assert "compiling the simulation once, for all workers: about 30 s" in compilation_text(short.dynamics.method, 2)
     assert [part.name for part in to_compile(short)] == [compilation.TEETH, compilation.MOTION]
 
 
