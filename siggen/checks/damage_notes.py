@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from siggen.config.states import KNOWN_CHANGES
-from siggen.faults.registry import FAULT_WORDS
+from siggen.faults.registry import FAULT_WORDS, KNOWN_CHANGES
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest

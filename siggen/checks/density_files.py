@@ -9,8 +9,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.errors import Problem
+from siggen.keys.data_file import data_file_bytes, shortened_path
 from siggen.noise.kinds import SOURCES
 
 COLUMNS = ("frequency_hz", "density")

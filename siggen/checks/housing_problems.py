@@ -6,10 +6,9 @@ Everything is checked at the bounds of all numbers, with the largest bearings th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from siggen.config import Shafts
 from siggen.dynamics.housing.layout import Contents
 from siggen.errors import Problem
 from siggen.gearbox.housing_layout import (
@@ -48,7 +47,7 @@ def housing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
         shafts = gearbox.shafts(lambda _: HIGH)
         contents, proportions, _ = specimen_layout(most, shafts, pair)
         if shafts is not None:
-            yield from _bearing_problems(shafts, pair)
+            yield from _bearing_problems({role: getattr(shafts, role).diameter_mm for role in ROLES}, pair)
         yield from _problems(least, most, contents, proportions.wall_m)
 
 
@@ -64,9 +63,8 @@ def _problems(least: PlateNumbers, most: PlateNumbers, contents: Contents, wall_
         yield Problem("housing.wall_mm", f"{1e3 * wall_m:g}", allowed)
 
 
-def _bearing_problems(shafts: Shafts, pair: GearPair) -> Iterator[Problem]:
+def _bearing_problems(diameters_mm: Mapping[str, float], pair: GearPair) -> Iterator[Problem]:
     """Yield shafts whose bearings have no room beside each other in one wall."""
-    diameters_mm = {role: constant(getattr(shafts, role).diameter_mm) for role in ROLES}
     most_mm = 2e3 * pair.working_centre_distance_m / LEAST_BEARING
     thicker = max(ROLES, key=lambda role: diameters_mm[role])
     if sum(diameters_mm.values()) > most_mm:

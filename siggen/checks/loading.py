@@ -64,6 +64,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.response_files import response_problems, with_measured_responses
     from siggen.checks.state_problems import state_problems
+    from siggen.gearbox.possible import PossibleGearbox
     from siggen.rig.sizes import with_sizes
 
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
@@ -72,18 +73,15 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     sized, unsized = with_sizes(with_modes)
     parsed = parse(sized)
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
-    of_physics = [
-        *physical_problems(parsed.sections),
-        *state_problems(parsed),
-        *response_problems(parsed.sections),
-        *mode_problems(parsed.sections),
-    ]
+    gearbox = PossibleGearbox.of_sections(parsed.sections)
+    of_files = (*response_problems(gearbox), *mode_problems(gearbox))
+    of_physics = [*physical_problems(gearbox), *state_problems(parsed), *of_files]
     told = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *unsized]
     problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:
         from siggen.checks.quantity_names import quantity_problems
 
-        problems = quantity_problems(parsed.config)
+        problems = quantity_problems(gearbox)
     if parsed.config is None or problems:
         files = () if file is None else extended_files(file)
         raise ConfigError(placed(problems, files, overrides), read_from + (" with overrides" if overrides else ""))

@@ -6,15 +6,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from siggen.config import Background, ModalHousing
-from siggen.config.data_file import data_file_bytes, shortened_path
-from siggen.config.short_form import names_in
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.errors import Problem
-from siggen.gearbox.mode_table import BASE, DRIVE, ModesRefusal, ModeTable, mode_table, seats_of, shape_column
+from siggen.gearbox.mode_table import BASE, DRIVE, ModeTable, mode_table, seats_of, shape_column
+from siggen.gearbox.possible import PossibleGearbox
+from siggen.keys.data_file import DataRefusal, named_content, shortened_path
 from siggen.keys.problems import nearest
 from siggen.sensing.inputs import MOTION
-from siggen.sensors.sensor import SensorBase
 
 KEY = "housing.modes"
 
@@ -36,52 +34,42 @@ def with_mode_file(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[str, A
     try:
         # neither name nor folder is part of the set: the same modes elsewhere give the same identity
         return {**raw, "housing": {**housing, "modes": _read(name, folder).text}}, []
-    except ModesRefusal as refused:
+    except DataRefusal as refused:
         return raw, [Problem(KEY, refused.received, refused.allowed)]
 
 
 def _read(name: str, folder: Path) -> ModeTable:
     try:
-        return mode_table(data_file_bytes(folder / name).decode("utf-8-sig"))
-    except OSError as error:
-        received = f"'{shortened_path(name)}', which cannot be read ({error.strerror})"
-        raise ModesRefusal(received, f"allowed: a file in {folder}") from None
+        return mode_table(named_content(name, folder).decode("utf-8-sig"))
     except UnicodeDecodeError:
-        raise ModesRefusal(f"'{shortened_path(name)}', which is no text", "allowed: a CSV file in UTF-8") from None
+        raise DataRefusal(f"'{shortened_path(name)}', which is no text", "allowed: a CSV file in UTF-8") from None
 
 
-def mode_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
+def mode_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
     """Yield what the modes of valid sections lack for their records."""
-    housing = sections.get("housing")
-    if not isinstance(housing, ModalHousing) or "\n" not in housing.modes:  # a file that was not read
+    config = gearbox.config
+    if config.housing.kind != "modal" or "\n" not in config.housing.modes:  # a file that was not read
         return
     try:
-        table = mode_table(housing.modes)
-    except ModesRefusal as refused:
+        table = mode_table(config.housing.modes)
+    except DataRefusal as refused:
         yield Problem(KEY, refused.received, refused.allowed)
         return
     present = (*map(shape_column, table.shapes), *table.base)
-    sensors = tuple(sections.get("sensors", {}).values())
-    planetary = sections.get("planetary") is not None
-    names = names_in(sections.get("machine"), planetary=planetary)
-    seats = SEATS_OF_SET if planetary else seats_of(names)
-    for column, use in {**_needed(sensors, seats), **_needed_behind(sections.get("background"))}.items():
+    for column, use in _needed(gearbox).items():
         if column not in present:
             allowed = f"allowed: a column of this name, for {use}"
             yield Problem(KEY, f"no column {column}", f"{allowed}{nearest(column, present)}")
 
 
-def _needed(sensors: tuple[SensorBase, ...], seats: tuple[str, ...]) -> dict[str, str]:
-    """Return the columns of seats and sensors, and what they are for."""
+def _needed(gearbox: PossibleGearbox) -> dict[str, str]:
+    """Return the columns of seats, sensors and parts of the background, and what they are for."""
+    config, background = gearbox.config, gearbox.config.background
+    seats = seats_of(config.names) if config.planetary is None else SEATS_OF_SET
     found = dict.fromkeys(map(shape_column, seats), "the bearing forces")
-    for sensor in sensors:
+    for sensor in config.sensors:
         places = (one.name.removeprefix("casing_") for one in sensor.shown_inputs if one.kind == MOTION)
         found |= {shape_column(place): f"the sensor {sensor.name}" for place in sorted(places)}
-    return found
-
-
-def _needed_behind(background: Background | None) -> dict[str, str]:
-    found: dict[str, str] = {}
     if background is not None and background.auxiliary_drive is not None:
         found |= dict.fromkeys(map(shape_column, DRIVE), "background.auxiliary_drive, or leave that out (null)")
     if background is not None and background.base is not None:

@@ -6,9 +6,8 @@ Everything is checked at the bounds of the distributions, so that no specimen ca
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,11 +48,10 @@ PLACES = 65
 """Angles over one pitch at which a coupling is checked: compliances change smoothly between."""
 
 
-def physical_problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
+def physical_problems(gearbox: PossibleGearbox) -> tuple[Problem, ...]:
     """Return the physical problems of valid sections, each path once; of each pair of a set the first."""
-    if "gears" not in sections:
+    if "gears" in gearbox.refused:
         return ()
-    gearbox = PossibleGearbox.of_sections(sections)
     if not gearbox.config.gears.pairs:
         return _problems(gearbox)
     if gearbox.config.stages or "operating_points" in gearbox.refused:  # told together; no torque to carry over

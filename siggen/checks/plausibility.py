@@ -13,7 +13,6 @@ from itertools import accumulate
 from math import pi, sqrt
 from operator import mul
 
-from siggen.config import Config, ModalHousing, RigidHousing
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
 from siggen.errors import counted
 from siggen.gearbox.mode_table import mode_table
@@ -71,11 +70,11 @@ class Quantity:
 def implausible(gearbox: PossibleGearbox) -> tuple[str, ...]:
     """Return a sentence on every implausible number of a configuration, in the order of its sections."""
     if gearbox.config.gears.pairs:
-        return (*_of_pairs(gearbox), *missing(gearbox.config))
+        return (*_of_pairs(gearbox), *missing(gearbox))
     own_path = gearbox.config.names.own_path
     outside = (quantity for quantity in quantities(gearbox) if quantity.implausible)
     found = (str(replace(quantity, path=own_path(quantity.path))) for quantity in outside)
-    return (*found, *_outside_usual(gearbox), *missing(gearbox.config))
+    return (*found, *_outside_usual(gearbox), *missing(gearbox))
 
 
 def _outside_usual(gearbox: PossibleGearbox) -> Iterator[str]:
@@ -247,11 +246,11 @@ class _SizesCompared:
             yield from self.of("background.base.mass_kg", what, (1.0, 2500.0), "is it in kg?", self.discs_kg)
         if config.dynamics.model != "casing":
             return
-        if isinstance(config.housing, ModalHousing):
+        if config.housing.kind == "modal":
             what, hint = "mass that a seat feels over both discs", "are shapes in 1/sqrt(kg), not of unit length?"
             masses = [mass / self.discs_kg for mass in mode_table(config.housing.modes).seat_masses_kg]
             yield Quantity("housing.modes", what, (min(masses), max(masses)), 0.5, 500.0, hint)
-        elif isinstance(config.housing, RigidHousing):
+        elif config.housing.kind == "rigid":
             yield from self.of("housing.mass_kg", what, (0.5, 500.0), "is it in kg?", self.discs_kg)
             for way in ("shear", "axial"):
                 path, count = f"housing.bolts.{way}_stiffness_n_per_m", len(config.housing.bolts.positions_mm)
@@ -291,7 +290,7 @@ class _SizesCompared:
         if dynamics.rubbing == "mixed_ehl":
             yield from self.of("dynamics.friction.roughness_um", "roughness [µm]", (0.02, 4.0), "is it in µm?")
         slowest = min(min(map(abs, bounds(point.speed_hz))) for point in config.operating_points)
-        shaft, order = _slowest_shaft(config, [own for _, own in self.meshes])
+        shaft, order = _slowest_shaft(self.gearbox, [own for _, own in self.meshes])
         what, one_turn_s = f"turns of {shaft} in a record", 1.0 / (slowest * order)
         yield from self.of("duration_s", what, (3.0, 1e5), "averages need several", one_turn_s)
         for sensor in config.sensors:
@@ -300,8 +299,9 @@ class _SizesCompared:
             yield Quantity(path, what, (sensor.limit, sensor.limit), least, most, hint)
 
 
-def missing(config: Config) -> Iterator[str]:
+def missing(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield what a set lacks that every measurement has."""
+    config = gearbox.config
     if config.manufacture is None:
         yield "manufacture: perfect gears: healthy records have no sidebands, so any damage is trivially found"
     noises = [s.noise_floor is not None or any(one.broad for one in s.sources) for s in config.sensors]
@@ -313,11 +313,12 @@ def missing(config: Config) -> Iterator[str]:
         if not (noisy or sensor.drawn_by_name) and nameless in seen:
             yield f"sensors: {sensor.name} repeats another sensor: their channels will be identical, bit by bit"
         seen.append(nameless)
-    yield from _empty_splits(config)
+    yield from _empty_splits(gearbox)
 
 
-def _empty_splits(config: Config) -> Iterator[str]:
+def _empty_splits(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield which splits have no gear pair, where splits go by pairs."""
+    config = gearbox.config
     if config.splits.by != "pair":
         return
     pairs = min(len(config.gears.pairs), config.specimens)
@@ -345,10 +346,10 @@ def _rim_kg(teeth: int, pair: GearPair) -> float:
     return STEEL_DENSITY_KG_M3 * pi * ((inner + RIM_MODULES * module) ** 2 - inner**2) * pair.face_width_m
 
 
-def _slowest_shaft(config: Config, pairs: Sequence[GearPair]) -> tuple[str, float]:
+def _slowest_shaft(gearbox: PossibleGearbox, pairs: Sequence[GearPair]) -> tuple[str, float]:
     """Return what turns slowest, and its turns per turn of the first shaft."""
-    if config.planetary is not None:
-        return "the carrier", 1.0 / (1.0 + config.planetary.ring_teeth / pairs[0].pinion.teeth)
+    if gearbox.config.planetary is not None:
+        return "the carrier", 1.0 / (1.0 + gearbox.config.planetary.ring_teeth / pairs[0].pinion.teeth)
     orders = accumulate((pair.pinion.teeth / pair.gear.teeth for pair in pairs), mul, initial=1.0)
-    order, shaft = min(zip(orders, (shaft.called for shaft in config.names.shafts), strict=True))
+    order, shaft = min(zip(orders, (shaft.called for shaft in gearbox.config.names.shafts), strict=True))
     return shaft, order

@@ -5,10 +5,8 @@ from __future__ import annotations
 import difflib
 from dataclasses import replace
 
-from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
-from siggen.gearbox.configured import pair_configs
 from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import Specimen
@@ -23,15 +21,11 @@ from siggen.specimen.wavy_teeth import WavyTeeth
 NEAREST = 3
 
 
-def quantity_problems(config: Config) -> list[Problem]:
+def quantity_problems(gearbox: PossibleGearbox) -> list[Problem]:
     """Return the names in `internals.quantities` that the model does not have, each with those nearest to it."""
-    section = config.internals
-    asked = () if section is None else section.named
-    if not asked:
-        return []
-    available = available_quantities(config)
-    problems = []
-    for place, name in asked:
+    section, problems = gearbox.config.internals, []
+    available = available_quantities(gearbox) if section is not None and section.named else ()
+    for place, name in section.named if section is not None else ():
         if name not in available:
             near = ", ".join(difflib.get_close_matches(name, available, NEAREST, cutoff=0.0))
             allowed = (
@@ -42,29 +36,29 @@ def quantity_problems(config: Config) -> list[Problem]:
     return problems
 
 
-def available_quantities(config: Config) -> tuple[str, ...]:
-    """Return the names of all internal quantities of the records of a configuration.
+def available_quantities(gearbox: PossibleGearbox) -> tuple[str, ...]:
+    """Return the names of all internal quantities of the records of a set.
 
     They follow from the configuration alone: the gears of the ranges with the longest path of contact have as many
     pairs in reach as any.
     """
-    possible = ((own, pair) for own in pair_configs(config) for pair in PossibleGearbox(own).meshes[0].pairs)
+    possible = ((own, pair) for own in gearbox.pairs for pair in own.meshes[0].pairs)
     own, pair = max(possible, key=lambda one: one[1].contact_ratio)
-    reaches = (one.reach_pitches(pair) for state in own.states for one in state.damages)
+    reaches = (one.reach_pitches(pair) for state in own.config.states for one in state.damages)
     reach = max(reaches, default=CORNER_REACH_PITCHES)
-    specimen = draw_specimen(own, 0)
+    specimen = draw_specimen(own.config, 0)
     assembled = structure(specimen)
     behind = tuple(
         MeshBehind(_tabulated(one.pair, specimen, assembled), float(turning))
         for one, turning in zip(specimen.behind, specimen.shaft_turns[1:-1], strict=True)
     )
     mesh = replace(_tabulated(pair, specimen, assembled, reach), behind=behind)
-    step_s = 1.0 / (config.fs_hz * specimen.law.steps_per_sample)
+    step_s = 1.0 / (specimen.sampling.fs_hz * specimen.law.steps_per_sample)
     law = specimen.law
     if law.across_the_face:  # every integrator has the same quantities; this one starts no motion
         law = law.by_reference()
     motion = specimen_motion(law, mesh, specimen.points[0], step_s)
-    return quantity_names(config.names, motion.structure, motion.internal_names)
+    return quantity_names(specimen.names, motion.structure, motion.internal_names)
 
 
 def _tabulated(

@@ -21,13 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.config.consistency import places_of
-from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.errors import Problem
+from siggen.gearbox.possible import PossibleGearbox
+from siggen.keys.data_file import DataRefusal, named_content
 from siggen.keys.problems import received_text
 from siggen.sensing.frequency_response import MEMORY_S, FrequencyResponse, curve_problems, grid_problems
 from siggen.sensors.path import MeasuredPath
-from siggen.sensors.response_text import SINGLE, ResponseRefusal, decoded_response, encoded_response
+from siggen.sensors.response_text import SINGLE, decoded_response, encoded_response
 
 UNIT = "m_s2_per_n"
 UNITS = {"real": (UNIT,), "imag": (UNIT,), "magnitude": (UNIT,), "phase": ("rad", "deg")}
@@ -61,7 +61,7 @@ def with_measured_responses(raw: Mapping[str, Any], folder: Path) -> tuple[Mappi
     for name, sensor in sensors.items():
         try:
             filled[name] = _filled(str(name), sensor, folder)
-        except ResponseRefusal as refused:
+        except DataRefusal as refused:
             problems.append(Problem(f"sensors.{name}.path.file", refused.received, refused.allowed))
     return {**raw, "sensors": filled}, problems
 
@@ -83,17 +83,17 @@ def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, lis
     return {"file": [one["file"] for one in found], "response": short}
 
 
-def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
+def response_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
     """Yield what makes the measured responses of valid sections unusable for their records."""
-    fs_hz, places = sections.get("fs_hz"), places_of(sections)
-    if fs_hz is None or places is None:
+    config = gearbox.config
+    if not gearbox.refused.isdisjoint({"fs_hz", "dynamics", "housing", "stages"}):  # which say what is needed
         return
-    for index, sensor in sections.get("sensors", {}).items():
+    for sensor in config.sensors:
         if isinstance(sensor.through, MeasuredPath):
-            wanted = _Wanted(sensor.axes, places.pressed, fs_hz)
+            wanted = _Wanted(sensor.axes, config.places.pressed, config.fs_hz)
             for number, text in enumerate(sensor.through.family):
                 keys = (f"file.{number}", f"response.{number}") if sensor.through.is_family else ("file", "response")
-                file, numbers = (f"sensors.{index}.path.{key}" for key in keys)
+                file, numbers = (f"sensors.{sensor.name}.path.{key}" for key in keys)
                 yield from _text_problems(text, wanted, file, numbers)
 
 
@@ -110,7 +110,7 @@ def _text_problems(text: str, wanted: _Wanted, where: str, numbers: str) -> Iter
     """Yield what is wrong with one response."""
     try:
         response = decoded_response(text)
-    except ResponseRefusal as refused:
+    except DataRefusal as refused:
         yield Problem(numbers, refused.received, refused.allowed)
         return
     wrong = [Problem(where, *found) for found in grid_problems(response.frequency_hz, wanted.fs_hz)]
@@ -138,19 +138,12 @@ def _read(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, str]:
     """Return file, sha256 and response of a path section whose numbers are still in the file."""
     name = path.get("file")
     if not isinstance(name, str):
-        raise ResponseRefusal(received_text(name), "allowed: the path of a CSV, Parquet or npz file")
-    try:
-        content = data_file_bytes(folder / name)
-    except OSError as error:
-        raise ResponseRefusal(
-            f"'{shortened_path(name)}', which cannot be read ({error.strerror})", f"allowed: a file in {folder}"
-        ) from None
+        raise DataRefusal(received_text(name), "allowed: the path of a CSV, Parquet or npz file")
+    content = named_content(name, folder)
     digest = hashlib.sha256(content).hexdigest()
     expected = path.get("sha256")
     if expected is not None and expected != digest:
-        raise ResponseRefusal(
-            f"'{name}' with SHA-256 {digest}", f"allowed: the file with {expected}, or leave sha256 out"
-        )
+        raise DataRefusal(f"'{name}' with SHA-256 {digest}", f"allowed: the file with {expected}, or leave sha256 out")
     text = encoded_response(_response(_own(_columns(content, Path(name).suffix.lower()), sensor)))
     # the folder is no part of the set: the same measurement elsewhere gives the same identity
     return {"file": Path(name).name, "sha256": digest, "response": text}
@@ -176,16 +169,16 @@ def _columns(content: bytes, ending: str) -> dict[str, FloatArray]:
                 _check_size(extent.num_rows * extent.num_columns)
                 table = pyarrow.parquet.read_table(source)
             case _:
-                raise ResponseRefusal(f"the ending '{ending}'", "allowed: .csv, .parquet, .npz")
+                raise DataRefusal(f"the ending '{ending}'", "allowed: .csv, .parquet, .npz")
     except (pa.ArrowInvalid, ValueError, OSError, zipfile.BadZipFile) as error:
-        raise ResponseRefusal(f"a file that cannot be read ({error})", f"allowed: a {ending[1:]} file") from None
+        raise DataRefusal(f"a file that cannot be read ({error})", f"allowed: a {ending[1:]} file") from None
     return {name: _numbers(name, table[name].to_numpy()) for name in table.column_names}
 
 
 def _check_size(numbers: int) -> None:
     """Refuse more numbers than a response may have; before they are unpacked, a small file can hold very many."""
     if numbers > MOST_NUMBERS:
-        raise ResponseRefusal(f"{numbers} numbers", f"allowed: at most {MOST_NUMBERS}")
+        raise DataRefusal(f"{numbers} numbers", f"allowed: at most {MOST_NUMBERS}")
 
 
 def _own(columns: dict[str, FloatArray], sensor: str) -> dict[str, FloatArray]:
@@ -197,15 +190,13 @@ def _own(columns: dict[str, FloatArray], sensor: str) -> dict[str, FloatArray]:
 
 def _numbers(name: str, values: NDArray[Any]) -> FloatArray:
     if values.ndim != 1 or values.dtype.kind not in "iuf":
-        raise ResponseRefusal(
-            f"column {name} of type {values.dtype}, shape {values.shape}", "allowed: a column of numbers"
-        )
+        raise DataRefusal(f"column {name} of type {values.dtype}, shape {values.shape}", "allowed: a column of numbers")
     return values.astype(np.float64)
 
 
 def _response(columns: Mapping[str, FloatArray]) -> FrequencyResponse:
     if FREQUENCY not in columns:
-        raise ResponseRefusal(f"the columns {', '.join(columns)}"[:200], f"allowed: a column {FREQUENCY}")
+        raise DataRefusal(f"the columns {', '.join(columns)}"[:200], f"allowed: a column {FREQUENCY}")
     _check_size(sum(values.size for values in columns.values()))
     parts: dict[tuple[str, str], dict[str, FloatArray]] = {}
     for name, values in columns.items():
@@ -213,9 +204,7 @@ def _response(columns: Mapping[str, FloatArray]) -> FrequencyResponse:
             continue
         key, part, unit = _meaning(name)
         if values.size != columns[FREQUENCY].size:
-            raise ResponseRefusal(
-                f"{values.size} numbers in {name}", f"allowed: {columns[FREQUENCY].size}, as frequencies"
-            )
+            raise DataRefusal(f"{values.size} numbers in {name}", f"allowed: {columns[FREQUENCY].size}, as frequencies")
         parts.setdefault(key, {})[part] = np.radians(values) if unit == "deg" else values
     return FrequencyResponse(columns[FREQUENCY], {key: _complex(key, found) for key, found in parts.items()})
 
@@ -225,13 +214,11 @@ def _meaning(column: str) -> tuple[tuple[str, str], str, str]:
     found = COLUMN.match(column)
     if found is None:
         allowed = f"allowed: {FREQUENCY}, and columns such as vertical_from_PLACE_bearing_vertical_real_{UNIT}"
-        raise ResponseRefusal(f"the column {column}", allowed)
+        raise DataRefusal(f"the column {column}", allowed)
     direction, place, axis, part, unit = found.groups()
     if unit not in UNITS[part]:
         units = " or ".join(UNITS[part])
-        raise ResponseRefusal(
-            f"the column {column} with {f'the unit {unit}' if unit else 'no unit'}", f"allowed: {units}"
-        )
+        raise DataRefusal(f"the column {column} with {f'the unit {unit}' if unit else 'no unit'}", f"allowed: {units}")
     return (direction, f"{place}/{axis}"), part, unit
 
 
@@ -242,4 +229,4 @@ def _complex(key: tuple[str, str], parts: Mapping[str, FloatArray]) -> NDArray[n
         case ["magnitude", "phase"]:
             return np.asarray(parts["magnitude"] * np.exp(1j * parts["phase"]))
     received = f"{' and '.join(sorted(parts))} of {key[0]}_from_{'_'.join(key[1].split('/'))}"
-    raise ResponseRefusal(received, "allowed: real and imag, or magnitude and phase")
+    raise DataRefusal(received, "allowed: real and imag, or magnitude and phase")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from siggen.config import BLOCK
 from siggen.errors import counted
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.number import bounds
@@ -19,8 +18,8 @@ def size_notes(gearbox: PossibleGearbox) -> Iterator[str]:
     config = gearbox.config
     tested = specimen_count(config, "test")
     if tested < FEWEST_TESTED and config.splits.by != "pair":
-        share = config.splits.test
-        more = f"specimens: {-(-FEWEST_TESTED * BLOCK // share)} or more" if share else "a share of splits.test"
+        share, block = config.splits.test, config.splits.train + config.splits.validation + config.splits.test
+        more = f"specimens: {-(-FEWEST_TESTED * block // share)} or more" if share else "a share of splits.test"
         yield (
             f"splits: {counted(tested, 'gearbox', 'gearboxes')} in the test split: below {FEWEST_TESTED} the limits of "
             f"every score are too wide to tell models apart; take {more}"

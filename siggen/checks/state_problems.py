@@ -13,6 +13,7 @@ from siggen.config.changes import Change, changed_sections
 from siggen.config.consistency import consistency_problems
 from siggen.config.states import changes_of
 from siggen.errors import Problem
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.problems import refused_problems
 
 
@@ -49,7 +50,7 @@ def _changed_problems(
 
 def _every(sections: Mapping[str, Any]) -> list[Problem]:
     """Return all problems of some sections."""
-    return [*consistency_problems(sections, {}), *physical_problems(sections)]
+    return [*consistency_problems(sections, {}), *physical_problems(PossibleGearbox.of_sections(sections))]
 
 
 def _blamed(path: str, changes: Sequence[Change]) -> tuple[str, str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from siggen.config.variation import RARE
 from siggen.dynamics.drive.slow_variation import SLOW_CORNER_HZ
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.number import Number, bounds
@@ -36,16 +35,11 @@ def variation_notes(gearbox: PossibleGearbox) -> Iterator[str]:
 
 def reversal_notes(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield whose torque may change its sign within a record, at the largest draws and rare random values."""
-    torque = gearbox.config.variation.torque
-    slow = RARE * bounds(torque.random_rms)[1]
-    for body, number, then in (
-        ("load", torque.load_once, "the load then drives"),
-        ("motor", torque.line_ripple, "the motor then brakes"),
-    ):
-        least = 1.0 - slow - bounds(number)[1]
+    then = {"load": "the load then drives", "motor": "the motor then brakes"}
+    for body, least in gearbox.config.variation.least_torques.items():
         if least < 0.0:
             fall = f"{body} torque falls to {100.0 * least:.3g} % of its mean"
-            yield f"{fall}: {then}, and teeth may lose contact or touch on the other flank"
+            yield f"{fall}: {then[body]}, and teeth may lose contact or touch on the other flank"
 
 
 def _percent(number: Number) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from siggen.config.data_file import is_file, kind_of_path, shortened_path
 from siggen.errors import UsageError
+from siggen.keys.data_file import is_file, kind_of_path, shortened_path
 from siggen.keys.problems import nearest
 
 SUFFIX = ".yaml"

@@ -10,18 +10,13 @@ from pydantic import ConfigDict, Field, model_validator
 from siggen.config.changes import Change, Changes
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.registry import COMBINED, DAMAGE, FAULT_WORDS, HEALTHY, DamageSections, default_word
+from siggen.faults.registry import COMBINED, DAMAGE, FAULT_WORDS, HEALTHY, KNOWN_CHANGES, DamageSections, default_word
 from siggen.keys.by_name import without_key_field
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
 SEVERITIES = ("healthy", "slight", "moderate", "severe")
-KNOWN_CHANGES = (
-    "misalignment", "eccentricity", "unbalance", "lubrication", "looseness", "clearance", "bearing", "coupling",
-    "resonance", "sensor",
-)  # fmt: skip
-"""What changed machines and sensors are called; any other word will do."""
 FAULT = AllowedText(
     f"with damage {', '.join(FAULT_WORDS[1:])}; with changes a word such as {', '.join(KNOWN_CHANGES)}; "
     "lower-case letters, digits, - and _"

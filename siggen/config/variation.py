@@ -80,3 +80,10 @@ class Variation(Section):
         spread = RARE * bounds(s.random_rms)[1] + bounds(s.ripple_once)[1] + bounds(s.ripple_twice)[1]
         lowest = min(bounds(s.start_ratio)[0], bounds(s.end_ratio)[0]) * (1.0 - spread) * (1.0 - bounds(s.slip)[1])
         return lowest, max(bounds(s.start_ratio)[1], bounds(s.end_ratio)[1]) * (1.0 + spread)
+
+    @property
+    def least_torques(self) -> dict[str, float]:
+        """Least torque of load and motor within a record over its mean, at the largest draws."""
+        slow = RARE * bounds(self.torque.random_rms)[1]
+        pulsating = {"load": self.torque.load_once, "motor": self.torque.line_ripple}
+        return {body: 1.0 - slow - bounds(number)[1] for body, number in pulsating.items()}

@@ -20,6 +20,11 @@ BY_WORD: Mapping[str, type[Fault]] = {one.kind_word(): one for one in KINDS}
 HEALTHY, COMBINED = "healthy", "combined"
 FAULT_WORDS = (HEALTHY, *dict.fromkeys(word for one in KINDS for word in one.words), COMBINED)
 """What states may be called."""
+KNOWN_CHANGES = (
+    "misalignment", "eccentricity", "unbalance", "lubrication", "looseness", "clearance", "bearing", "coupling",
+    "resonance", "sensor",
+)  # fmt: skip
+"""What changed machines and sensors are called; any other word will do."""
 
 DAMAGE = AllowedText(
     "null, a mapping with kind: {} or {}, or a list of such mappings".format(", ".join([*BY_WORD][:-1]), [*BY_WORD][-1])

@@ -23,6 +23,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.housing.modes import VIBRATING_HZ
 from siggen.dynamics.structure.makers import SEATS_OF_SET
+from siggen.keys.data_file import DataRefusal
 from siggen.keys.problems import nearest
 from siggen.names import PAIR, Names
 
@@ -34,14 +35,6 @@ COLUMNS_TEXT = f"{FREQUENCY}, {DAMPING}, <place>_<horizontal, vertical or axial>
 MOST_NUMBERS = 100_000
 """Numbers that a table may have: they become part of the configuration, some 20 characters each."""
 MOST_DAMPING = 0.5
-
-
-class ModesRefusal(Exception):  # noqa: N818 - becomes a problem of the configuration, never seen outside
-    """What was received instead of usable modes, and what is allowed."""
-
-    def __init__(self, received: str, allowed: str) -> None:
-        self.received, self.allowed = received, allowed
-        super().__init__(f"{received}; {allowed}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,15 +89,15 @@ def mode_table(text: str) -> ModeTable:
 
     Raises
     ------
-    ModesRefusal
+    DataRefusal
         If it holds none; names the line.
     """
     lines = list(_lines(text))
     if not lines:
-        raise ModesRefusal("no lines", f"allowed: a line of column names ({COLUMNS_TEXT}), then a line per mode")
+        raise DataRefusal("no lines", f"allowed: a line of column names ({COLUMNS_TEXT}), then a line per mode")
     names = _names(*lines[0])
     if len(names) * (len(lines) - 1) > MOST_NUMBERS:
-        raise ModesRefusal(f"{len(lines) - 1} modes in {len(names)} columns", f"allowed: {MOST_NUMBERS} numbers")
+        raise DataRefusal(f"{len(lines) - 1} modes in {len(names)} columns", f"allowed: {MOST_NUMBERS} numbers")
     rows = [(number, _numbers(number, row, names)) for number, row in lines[1:]]
     _check_modes([(number, row[names.index(FREQUENCY)], row[names.index(DAMPING)]) for number, row in rows])
     columns = dict(zip(names, np.array([row for _, row in rows]).T.copy(), strict=True))
@@ -126,7 +119,7 @@ def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
             if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#"):
                 yield reader.line_num, [cell.strip() for cell in cells]
     except csv.Error as error:
-        raise ModesRefusal(f"line {reader.line_num}: {error}", "allowed: numbers with commas between") from None
+        raise DataRefusal(f"line {reader.line_num}: {error}", "allowed: numbers with commas between") from None
 
 
 def _names(line: int, names: list[str]) -> list[str]:
@@ -134,18 +127,18 @@ def _names(line: int, names: list[str]) -> list[str]:
         known = name in {FREQUENCY, DAMPING, *BASE} or SHAPE.match(name)
         if not known:
             close = nearest(name, (FREQUENCY, DAMPING, *BASE, *map(shape_column, (*seats_of(PAIR), *DRIVE))))
-            raise ModesRefusal(f"line {line}: the column '{name[:100]}'", f"allowed: {COLUMNS_TEXT}{close}")
+            raise DataRefusal(f"line {line}: the column '{name[:100]}'", f"allowed: {COLUMNS_TEXT}{close}")
         if names.count(name) > 1:
-            raise ModesRefusal(f"line {line}: {names.count(name)} columns {name}", "allowed: one")
+            raise DataRefusal(f"line {line}: {names.count(name)} columns {name}", "allowed: one")
     for name in (FREQUENCY, DAMPING):
         if name not in names:
-            raise ModesRefusal(f"line {line}: no column {name}", f"allowed: {COLUMNS_TEXT}")
+            raise DataRefusal(f"line {line}: no column {name}", f"allowed: {COLUMNS_TEXT}")
     return names
 
 
 def _numbers(line: int, cells: list[str], names: list[str]) -> list[float]:
     if len(cells) != len(names):
-        raise ModesRefusal(f"line {line}: {len(cells)} numbers", f"allowed: {len(names)}, one per column")
+        raise DataRefusal(f"line {line}: {len(cells)} numbers", f"allowed: {len(names)}, one per column")
     found = []
     for name, cell in zip(names, cells, strict=True):
         try:
@@ -154,7 +147,7 @@ def _numbers(line: int, cells: list[str], names: list[str]) -> list[float]:
             number = math.nan
         if not math.isfinite(number):
             allowed = "allowed: a finite number; 0 where a mode does not move a place"
-            raise ModesRefusal(f"line {line}: {name} '{cell[:40]}'", allowed)
+            raise DataRefusal(f"line {line}: {name} '{cell[:40]}'", allowed)
         found.append(number)
     return found
 
@@ -164,13 +157,13 @@ def _check_modes(modes: list[tuple[int, float, float]]) -> None:
     for line, frequency, damping in modes:
         if frequency <= 0.0:
             allowed = "allowed: above 0; a housing stands on its feet, so compute or measure it there, not free"
-            raise ModesRefusal(f"line {line}: {FREQUENCY} {frequency:g}", allowed)
+            raise DataRefusal(f"line {line}: {FREQUENCY} {frequency:g}", allowed)
         if not 0.0 < damping < MOST_DAMPING:
             allowed = f"allowed: above 0 and below {MOST_DAMPING}, such as 0.02 for 2 %"
-            raise ModesRefusal(f"line {line}: {DAMPING} {damping:g}", allowed)
+            raise DataRefusal(f"line {line}: {DAMPING} {damping:g}", allowed)
     for (_, lower, _), (line, frequency, _) in pairwise(modes):
         if frequency < lower:
             allowed = f"allowed: at least {lower:g}, that of the line before; sort lines by {FREQUENCY}"
-            raise ModesRefusal(f"line {line}: {FREQUENCY} {frequency:g}", allowed)
+            raise DataRefusal(f"line {line}: {FREQUENCY} {frequency:g}", allowed)
     if not modes or modes[0][1] >= VIBRATING_HZ:
-        raise ModesRefusal("no mode", f"allowed: at least one below {VIBRATING_HZ:g} Hz")
+        raise DataRefusal("no mode", f"allowed: at least one below {VIBRATING_HZ:g} Hz")

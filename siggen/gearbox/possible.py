@@ -92,7 +92,7 @@ class PossibleGearbox:
 
     @classmethod
     def of_sections(cls, sections: Mapping[str, Any]) -> PossibleGearbox:
-        """Return what valid sections allow, `gears` among them; states and sensors by name."""
+        """Return what valid sections allow; states and sensors by name."""
         defaults = {key: field.get_default() for key, field in Config.model_fields.items() if not field.is_required()}
         listed = {key: tuple(sections.get(key, {}).values()) for key in ("states", "sensors")}
         config = Config.model_construct(**{**defaults, **HARMLESS, **sections, **listed})

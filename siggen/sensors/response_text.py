@@ -7,18 +7,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from siggen.keys.data_file import DataRefusal
 from siggen.sensing.frequency_response import FrequencyResponse
 
 SINGLE = "f4;"
 """Before a response whose numbers are float32."""
-
-
-class ResponseRefusal(Exception):  # noqa: N818 - becomes a problem of the configuration, never seen outside
-    """What was received instead of a usable response, and what is allowed."""
-
-    def __init__(self, received: str, allowed: str) -> None:
-        self.received, self.allowed = received, allowed
-        super().__init__(f"{received}; {allowed}")
 
 
 def encoded_response(response: FrequencyResponse, numbers_as: str = "") -> str:
@@ -38,7 +31,7 @@ def decoded_response(text: str) -> FrequencyResponse:
 
     Raises
     ------
-    ResponseRefusal
+    DataRefusal
         If it is none.
     """
     try:
@@ -48,6 +41,6 @@ def decoded_response(text: str) -> FrequencyResponse:
         raw = np.frombuffer(base64.b64decode(body, validate=True), width)
         numbers = raw.astype(np.float64).reshape(1 + 2 * len(keys), -1)
     except (ValueError, IndexError):
-        raise ResponseRefusal("a text that holds no response", "allowed: what siggen filled in itself") from None
+        raise DataRefusal("a text that holds no response", "allowed: what siggen filled in itself") from None
     curves = {key: numbers[1 + 2 * i] + 1j * numbers[2 + 2 * i] for i, key in enumerate(keys)}
     return FrequencyResponse(numbers[0], curves)

@@ -12,6 +12,7 @@ from siggen.config import Config
 from siggen.errors import ConfigError, SolverFailure
 from siggen.gearbox.configured import gearbox_config, gearbox_life
 from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.column import Column
 from siggen.planning.plan import planned_record, record_ids_of
 from siggen.record import damage_rows as rows
@@ -77,9 +78,10 @@ def stored_quantities(config: Config) -> tuple[Column, ...]:
     """
     if config.internals is None:
         return ()
-    if problems := quantity_problems(config):
+    gearbox = PossibleGearbox(config)
+    if problems := quantity_problems(gearbox):
         raise ConfigError(problems)
-    asked = available_quantities(config) if config.internals.stores_all else config.internals.quantities
+    asked = available_quantities(gearbox) if config.internals.stores_all else config.internals.quantities
     return tuple(quantity_column(name, config.names) for name in dict.fromkeys(asked))
 
 

@@ -16,6 +16,7 @@ from siggen.config import Config, parse
 from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
 from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
@@ -235,7 +236,7 @@ def test_what_cannot_be_is_refused_with_what_is_allowed(
 ) -> None:
     states = [{"name": "healthy"}, {"name": "slight", "damage": {**SPALL, **damage}}]
     parsed = parse(minimal(states=by_name(states), **changes))
-    problems = [*parsed.problems, *physical_problems(parsed.sections)]
+    problems = [*parsed.problems, *physical_problems(PossibleGearbox.of_sections(parsed.sections))]
     found = {problem.path: problem for problem in problems}
     assert f"states.slight.damage.{path}" in found, problems
     assert allowed in found[f"states.slight.damage.{path}"].allowed

@@ -12,6 +12,7 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.damage.chip import WholeChip
 from siggen.record.specimen_state import specimen_state
 from siggen.sets.drawn import damage_rows
@@ -62,7 +63,7 @@ def test_a_small_chip_shows_where_its_pair_leaves_and_no_teeth_part() -> None:
 
 
 def test_quantities_of_pairs_are_as_many_as_a_missing_tooth_has_in_reach() -> None:
-    names = [available_quantities(config_with(*damages)) for damages in ((CHIP,), (BROKEN,))]
+    names = [available_quantities(PossibleGearbox(config_with(*damages))) for damages in ((CHIP,), (BROKEN,))]
     pairs = [len({name.split("_")[1] for name in found if name.startswith("pair_")}) for found in names]
     assert pairs == [2, 3]
 

@@ -72,12 +72,15 @@ KNOW_THE_FILE = {"config", "rig", "gearbox", "cli"} | {
     "checks", "dataset", "library", "planning", "publication", "sets",
 }  # fmt: skip
 """Rooms that import the configuration; the second line is to become empty."""
+START_CHECKS = {"siggen.checks.loading", "siggen.checks.state_problems"}
+"""What reads sections and changes of them; all other checks look at a gearbox as it may be drawn."""
 
 
 def test_what_moves_and_measures_knows_a_drawn_gearbox_and_no_file() -> None:
     asking = {m for m, names in imported_by().items() if any(n.startswith("siggen.config") for n in names)}
     rooms = {m.removeprefix("siggen.").split(".")[0] for m in asking if m.startswith("siggen.")}
     assert rooms == KNOW_THE_FILE
+    assert {m for m in asking if m.startswith("siggen.checks.")} == START_CHECKS
 
 
 @pytest.mark.parametrize("package", ROOMS)

@@ -11,6 +11,29 @@ LARGEST_BYTES = 1 << 25
 """Of a file: 400,000 numbers, the most of a response, take a third of it as text."""
 
 
+class DataRefusal(Exception):  # noqa: N818 - becomes a problem of the configuration, never seen outside
+    """What was received instead of usable numbers, and what is allowed."""
+
+    def __init__(self, received: str, allowed: str) -> None:
+        self.received, self.allowed = received, allowed
+        super().__init__(f"{received}; {allowed}")
+
+
+def named_content(name: str, folder: Path) -> bytes:
+    """Return the content of a file that a configuration names.
+
+    Raises
+    ------
+    DataRefusal
+        If it cannot be read.
+    """
+    try:
+        return data_file_bytes(folder / name)
+    except OSError as error:
+        received = f"'{shortened_path(name)}', which cannot be read ({error.strerror})"
+        raise DataRefusal(received, f"allowed: a file in {folder}") from None
+
+
 def data_file_bytes(path: Path) -> bytes:
     """Return the content of a file.
 
