@@ -117,6 +117,16 @@ class Names:
         """Return what damage and labels call a gear; words such as none stay."""
         return self.damaged.get(inner, inner)
 
+    @property
+    def flanks(self) -> dict[str, tuple[str, str]]:
+        """What `gear` of damage may hold: gears, and for each mesh the drawn one of both -> mesh by sections, role."""
+        found: dict[str, tuple[str, str]] = {}
+        for mesh in self.meshes:
+            for role, gear in zip(ROLES, mesh.gears, strict=True):
+                found.setdefault(gear.word, (mesh.inner, role))
+        either = {_in(mesh.word, EITHER): (mesh.inner, EITHER) for mesh in self.meshes}
+        return found if self is PLANETARY else {**found, **either}
+
     def mesh(self, inner: str) -> MeshName:
         """Return a mesh."""
         return next(mesh for mesh in self.meshes if mesh.inner == inner)

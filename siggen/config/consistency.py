@@ -13,7 +13,6 @@ from typing import Any
 from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
 from siggen.config.life_problems import life_problems
-from siggen.config.planetary import RING, in_pair
 from siggen.config.planetary_problems import sets_problems
 from siggen.config.short_form import names_in
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
@@ -299,16 +298,13 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
         hit = (
             (f"{path}.{key}", *rest) for path, one in state.placed(f"states.{index}") for key, *rest in one.hit_teeth()
         )
-        for path, gear, teeth in hit:
-            if (pair := pair_of(sections, gear)) is None:  # told by `_stages_named`
-                continue
-            selected, called = most_teeth(teeth), names.gear(gear)
-            planetary = sections.get("planetary") if gear == RING else None
-            name = in_pair(gear.rpartition(".")[2])
-            count = min(pair.teeth_of(name)) if planetary is None else planetary.ring_teeth
+        for path, gear, teeth in ((path, gear, teeth) for path, gear, teeth in hit if gear in names.flanks):
+            (mesh, role), selected = names.flanks[gear], most_teeth(teeth)
+            ring = sections["planetary"].ring_teeth if of_set and mesh else None
+            count = min(pair_of(sections, mesh).teeth_of(role)) if ring is None else ring
             if isinstance(selected, int):
                 if selected > count:
-                    yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {called}")
+                    yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")
                 continue
-            allowed = f"allowed: an index from 0 to {count - 1}, the {called} has {count} teeth"
+            allowed = f"allowed: an index from 0 to {count - 1}, the {gear} has {count} teeth"
             yield from (Problem(path, f"tooth {tooth}", allowed) for tooth in selected if tooth >= count)

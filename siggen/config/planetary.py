@@ -57,8 +57,3 @@ class Planetary(Section):
     ring_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: steel, four modules thick behind the roots (assumed)"
     )
-
-
-def in_pair(name: str) -> str:
-    """Return what a gear of a planetary set is in its own pair, a ring behind a planet; any other name stays."""
-    return {**ROLES, RING: "gear"}.get(name, name)

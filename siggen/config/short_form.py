@@ -6,7 +6,7 @@ The first mesh is `gears`, with a pinion and a gear; further meshes are `stages`
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -88,10 +88,9 @@ def short_form(raw: Mapping[str, Any], names: Names) -> tuple[dict[str, Any], li
     problems = [*_beside(raw), *_keys(raw)]
     short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
     short |= {"dynamics": _with_shafts(raw["dynamics"], OF_SHAFTS, ROLES)} if "dynamics" in raw else {}
-    for section, key, table in _words(names):
-        if section in short:
-            short[section] = _replaced(short[section], key, {own: word for word, own in table.items()})
-            problems += _unknown(raw[section], section, key, table)
+    if "states" in short:
+        short["states"] = _replaced(raw["states"], {own: word for word, own in names.bearings.items()})
+        problems += _unknown(raw["states"], "states", list(names.bearings.values()))
     return _with_changes(short, names), problems
 
 
@@ -100,11 +99,9 @@ def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
     own = {key: value for key, value in plain.items() if key not in REPLACED}
     dynamics = {key: value for key, value in own["dynamics"].items() if key not in (DRIVER, DRIVEN)}
     own = {**own, "dynamics": _with_shafts(dynamics, ROLES, OF_SHAFTS)}
-    for section, key, table in _words(names):
-        own[section] = _replaced(own[section], key, table)
     states = {
         name: {**one, "changes": {names.own_path(path): to for path, to in one["changes"].items()}}
-        for name, one in own["states"].items()
+        for name, one in _replaced(own["states"], names.bearings).items()
     }
     return {**own, "states": states}
 
@@ -163,31 +160,24 @@ def _values(section: Section, model: type[Section]) -> dict[str, Any]:
     return {key: getattr(section, key) for key in model.model_fields}
 
 
-def _words(names: Names) -> Iterator[tuple[str, str, dict[str, str]]]:
-    """Yield section and key of what holds a word of the machine, and its words in the short form with the user's."""
-    yield "states", "gear", names.damaged
-    yield "states", "bearing", names.bearings
-
-
-def _replaced(value: Any, key: str, table: Mapping[str, str]) -> Any:
-    """Return mappings and lists with the words of a key replaced."""
+def _replaced(value: Any, table: Mapping[str, str]) -> Any:
+    """Return mappings and lists with the bearings of damage replaced."""
     if isinstance(value, Mapping):
         return {
-            name: table.get(item, item) if name == key and isinstance(item, str) else _replaced(item, key, table)
-            for name, item in value.items()
+            key: table.get(one, one) if key == "bearing" and isinstance(one, str) else _replaced(one, table)
+            for key, one in value.items()
         }
-    return [_replaced(item, key, table) for item in value] if isinstance(value, (list, tuple)) else value
+    return [_replaced(one, table) for one in value] if isinstance(value, (list, tuple)) else value
 
 
-def _unknown(value: Any, path: str, key: str, table: Mapping[str, str]) -> Iterator[Problem]:
-    """Yield words that are no name of the machine."""
+def _unknown(value: Any, path: str, known: Sequence[str]) -> Iterator[Problem]:
+    """Yield bearings of damage that the machine has not."""
     items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
-    for name, item in items:
-        if name == key and isinstance(item, str) and item not in table.values():
-            known = list(table.values())
-            yield Problem(f"{path}.{name}", f"'{item}'", f"allowed: one of {', '.join(known)}{nearest(item, known)}")
+    for key, one in items:
+        if key == "bearing" and isinstance(one, str) and one not in known:
+            yield Problem(f"{path}.{key}", f"'{one}'", f"allowed: one of {', '.join(known)}{nearest(one, known)}")
         else:
-            yield from _unknown(item, f"{path}.{name}", key, table)
+            yield from _unknown(one, f"{path}.{key}", known)
 
 
 def _with_changes(short: dict[str, Any], names: Names) -> dict[str, Any]:

@@ -7,18 +7,21 @@ from typing import Any
 
 from siggen.config.dynamics import Dynamics, Rotor
 from siggen.config.gears import Gears, Pair, Wheel
-from siggen.config.planetary import RING, ROLES
+from siggen.config.short_form import names_in
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
-from siggen.keys.problems import received_text
+from siggen.keys.problems import joined, nearest, received_text
+from siggen.names import EITHER, Names
 
 
 def stage_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
     """Yield what is wrong about further meshes between the valid sections of a configuration."""
     yield from _beside(sections)
-    yield from _idlers(sections)
-    yield from _named(sections, raw)
+    if raw.get("planetary") is None or sections.get("planetary"):  # not one that is wrong itself
+        names = names_in(sections["machine"], planetary=sections.get("planetary") is not None)
+        yield from _idlers(sections, names)
+        yield from _named(sections, names)
 
 
 def most_teeth_per_turn(sections: Mapping[str, Any]) -> float:
@@ -27,11 +30,10 @@ def most_teeth_per_turn(sections: Mapping[str, Any]) -> float:
     return float(max(*sections["gears"].teeth_of("pinion"), 0, *behind))
 
 
-def pair_of(sections: Mapping[str, Any], gear: str) -> Pair | None:
-    """Return the section `gears` of the mesh that a gear is in, None if there is no stage of its name."""
-    name = gear.rpartition(".")[0]
-    stages = {stage.name: stage.gears for stage in sections.get("stages", ())}
-    return stages.get(name) if name else sections["gears"]
+def pair_of(sections: Mapping[str, Any], mesh: str) -> Pair:
+    """Return the section `gears` of a mesh."""
+    found: Pair = next((one.gears for one in sections["stages"] if one.name == mesh), sections["gears"])
+    return found
 
 
 BESIDE = "with several meshes"
@@ -80,7 +82,7 @@ def _of_gears(gears: Gears, stages: tuple[Stage, ...]) -> Iterator[Problem]:
             yield Problem(f"{where}.helix_deg", str(pair.helix_deg), f"allowed: 0 {BESIDE}")
 
 
-def _idlers(sections: Mapping[str, Any]) -> Iterator[Problem]:
+def _idlers(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
     """Yield numbers of an idler that it cannot have in both of its meshes, and damage that takes both of its flanks."""
     stages: tuple[Stage, ...] = sections.get("stages", ())
     if "gears" not in sections:
@@ -95,31 +97,32 @@ def _idlers(sections: Mapping[str, Any]) -> Iterator[Problem]:
                 if own != there:
                     allowed = f"allowed: {there}, as in the mesh in front: an idler is one gear"
                     yield Problem(f"stages.{index}.{key}", str(own), allowed)
-            yield from _whole_teeth(sections, {_gear_in_front(stages, index), f"{stage.name}.pinion"})
+            meshes = names.meshes[index : index + 2]
+            flanks = {meshes[0].driven.word, meshes[1].driver.word, *(f"{mesh.word}.{EITHER}" for mesh in meshes)}
+            yield from _whole_teeth(sections, flanks)
         front = stage.gears
-
-
-def _gear_in_front(stages: tuple[Stage, ...], index: int) -> str:
-    return f"{stages[index - 1].name}.gear" if index else "gear"
 
 
 def _whole_teeth(sections: Mapping[str, Any], flanks: Collection[str]) -> Iterator[Problem]:
     """Yield damage on the teeth of an idler that is not on one flank alone."""
-    drawn = {f"{flank.removesuffix(flank.rpartition('.')[2])}either" for flank in flanks}
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
-            if one.needs_pairs and str(getattr(one, "gear", "")) in {*flanks, *drawn}:
+            if one.needs_pairs and str(getattr(one, "gear", "")) in flanks:
                 allowed = "allowed: pits, spalls and cracks of an idler, whose other flank meshes elsewhere"
                 yield Problem(f"{where}.kind", f"'{one.kind_word()}'", allowed)
 
 
-def _named(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield damage on gears that a pair or a planetary set has not; words of a machine are those of its names."""
-    if sections["machine"] is not None or (raw.get("planetary") and not sections.get("planetary")):
-        return
-    known = ("pinion", "gear", "either") if sections.get("planetary") is None else (*ROLES, RING)
+def _named(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
+    """Yield damage on gears that a gearbox has not, and lists of damage on gears of several meshes."""
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
-            gear = str(getattr(one, "gear", known[0]))
-            if gear not in known:
-                yield Problem(f"{where}.gear", f"'{gear}'", f"allowed: {', '.join(known)}")
+            hit = {joined(key.rpartition(".")[0], "gear"): gear for key, gear, _ in one.hit_teeth()}
+            several = len(hit) > 1 or "gear" not in hit
+            known = [word for word, (_, role) in names.flanks.items() if not several or role != EITHER]
+            unknown = [(key, gear) for key, gear in hit.items() if gear not in known]
+            for key, gear in unknown:
+                allowed = f"allowed: one of {', '.join(known)}{nearest(gear, known)}"
+                yield Problem(f"{where}.{key}", f"'{gear}'", allowed)
+            if not unknown and len({names.flanks[gear][0] for gear in hit.values()}) > 1:
+                allowed = "allowed: gears of one mesh; those of further meshes in a list of damages"
+                yield Problem(f"{where}.pits", ", ".join(hit.values()), allowed)

@@ -114,7 +114,7 @@ class Fault(Section):
 
     @property
     def hit_gear(self) -> str:
-        """The gear that it is on, with the name of a further stage; empty for none."""
+        """The gear that it is on, as the file calls it; empty for none."""
         return str(getattr(self, "gear", ""))
 
     def with_gears(self, name: Callable[[str], str]) -> Fault:

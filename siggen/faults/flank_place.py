@@ -29,17 +29,8 @@ GEAR_TEXT = AllowedText(
     "one of pinion, gear, either; of a machine the name of a gear, or MESH.either; of planetary sets sun, planet, ring",
     ("pinion", "gear", "either", "sun", "planet", "ring"),
 )
-AnyGear: TypeAlias = Annotated[
-    str, Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear|either)|sun|planet|ring)$"), GEAR_TEXT
-]
-"""`either`: drawn per gearbox, the same for all of its states; before a dot the name of a further stage."""
-
-ListedGear: TypeAlias = Annotated[
-    str,
-    Field(pattern=r"^(([a-z][a-z0-9_]{0,39}\.)?(pinion|gear)|sun|planet|ring)$"),
-    AllowedText("one of pinion, gear; of a machine the name of a gear; of planetary sets sun, planet, ring",
-                ("pinion", "gear", "sun", "planet", "ring")),
-]  # fmt: skip
+AnyGear: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}(\.[a-z][a-z0-9_]{0,39})?$"), GEAR_TEXT]
+"""`either`: drawn per gearbox, the same for all of its states."""
 
 DAMAGED_GEAR = (
     "damaged gear: pinion, gear, or either, drawn per gearbox; of a machine a gear by its name, or MESH.either; of a "
@@ -79,15 +70,6 @@ PROBE_M = 1e-9
 
 GO_ON = {"contact": ", or dynamics.mesh.law: pairs"}
 """What else to do about a problem, by its name."""
-
-
-DOT = "."
-"""Between the name of a stage and that of its gear, where damage names both."""
-
-
-def mesh_of_gear(gear: str) -> str:
-    """Return the further stage in the name of a gear, or `ring`; empty for the first mesh and no gear."""
-    return gear if gear == "ring" else gear.rpartition(DOT)[0]
 
 
 def height_m_of(pair: GearPair, which: str, height_mm: float | str, reading: str) -> float:

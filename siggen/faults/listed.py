@@ -16,12 +16,11 @@ from siggen.faults.flank_place import (
     MIDDLE_HEIGHT,
     MM,
     READING,
+    AnyGear,
     Height,
     HeightReading,
-    ListedGear,
     drawn_height_m,
     heights_m,
-    mesh_of_gear,
 )
 from siggen.faults.growth import Growth
 from siggen.faults.listed_irregular import ListedIrregular
@@ -39,7 +38,7 @@ from siggen.keys.section import Whole
 class ListedPit(PitSize):
     """One pit at a given place."""
 
-    gear: ListedGear = Field(default="pinion", description="damaged gear")
+    gear: AnyGear = Field(default="pinion", description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(description=FACE_CENTRE)
@@ -60,9 +59,6 @@ class ListedPits(Fault):
     def _not_empty(self) -> ListedPits:
         if not (self.pits or self.outlines):
             raise refusal([Problem("pits", "no pits and no outlines", "allowed: at least 1 of either")])
-        if len({mesh_of_gear(gear) for gear in self._gears}) > 1:
-            allowed = "allowed: gears of one mesh; those of further meshes in a list of damages"
-            raise refusal([Problem("pits", ", ".join(self._gears), allowed)])
         return self
 
     @classmethod

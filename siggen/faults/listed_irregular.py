@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from siggen.errors import Problem
-from siggen.faults.flank_place import MM, PROBE_M, ListedGear, allowed_text, axial_heights_m, in_mm
+from siggen.faults.flank_place import MM, PROBE_M, AnyGear, allowed_text, axial_heights_m, in_mm
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.irregular import IrregularSpall
 from siggen.gears.geometry.gear_pair import GearPair
@@ -27,7 +27,7 @@ EdgePoint = Annotated[
 class ListedIrregular(Section):
     """One irregular spall with a flat floor at a given place."""
 
-    gear: ListedGear = Field(default="pinion", description="damaged gear")
+    gear: AnyGear = Field(default="pinion", description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     edges_mm: Annotated[tuple[EdgePoint, ...], Field(min_length=2)] = Field(
         description="place across the face, heights of the lower and the upper edge above the base circle; ascending "

@@ -18,7 +18,7 @@ from siggen.faults.fault import Fault
 from siggen.gearbox.lived import Lived, lived, lived_states
 from siggen.keys.distributions import Choice
 from siggen.keys.teeth import drawn_teeth, most_teeth
-from siggen.names import ROLES
+from siggen.names import EITHER, ROLES, Names
 from siggen.rig.carried_over import carried_over
 from siggen.seeding import Stage, generator, named_uniforms
 
@@ -37,7 +37,7 @@ def _drawn(config: Config, specimen_id: int) -> Config:
 def _inspected(config: Config, specimen_id: int) -> Config:
     """Return the configuration of a gearbox whose inspections are states, as if a user had listed all outlines."""
     assert config.life is not None
-    states = lived_states(config.life, gearbox_life(config, specimen_id))
+    states = lived_states(config.life, gearbox_life(config, specimen_id), config.names)
     return _drawn(config, specimen_id).model_copy(update={"life": None, "states": states})
 
 
@@ -91,13 +91,13 @@ def with_drawn_parts(config: Config, specimen_id: int) -> Config:
     oils = oils_of(config.dynamics.friction.oil)
     supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
     oil = oils[int(supports("dynamics.friction.oil") * len(oils))]
-    return _with_oil(_with_damage(config, _drawn_hit(teeth)), oil)
+    return _with_oil(_with_damage(config, _drawn_hit(teeth, config.names)), oil)
 
 
 def has_drawn_parts(config: Config) -> bool:
     """Tell whether gearboxes differ in what `with_drawn_parts` gives."""
     return isinstance(config.dynamics.friction.oil, tuple) or any(
-        _gear(one) == "either" or isinstance(getattr(one, "teeth", None), Choice)
+        config.names.flanks.get(one.hit_gear, ("", ""))[1] == EITHER or isinstance(getattr(one, "teeth", None), Choice)
         for state in config.states
         for one in state.damages
     )
@@ -109,7 +109,7 @@ def possible_damages(damage: Fault) -> Iterator[Fault]:
     if gear is None:
         yield damage
         return
-    for hit in ROLES if gear == "either" else (gear,):
+    for hit in ROLES if gear == EITHER else (gear,):
         yield damage.model_copy(update={"gear": hit, "teeth": most_teeth(getattr(damage, "teeth"))})  # noqa: B009
 
 
@@ -117,12 +117,10 @@ Hit = Callable[[Any], dict[str, object]]
 """Damage of a state -> its gear and teeth."""
 
 
-def _drawn_hit(uniform: Callable[[str], float]) -> Hit:
-    gear, u = ROLES[int(2.0 * uniform("gear"))], uniform("teeth")
-    return lambda damage: {
-        "gear": gear if damage.gear == "either" else damage.gear,
-        "teeth": drawn_teeth(damage.teeth, u),
-    }
+def _drawn_hit(uniform: Callable[[str], float], names: Names) -> Hit:
+    role, u = ROLES[int(2.0 * uniform("gear"))], uniform("teeth")
+    drawn = {word: names.mesh(mesh).gear(role).word for word, (mesh, of) in names.flanks.items() if of == EITHER}
+    return lambda damage: {"gear": drawn.get(damage.gear, damage.gear), "teeth": drawn_teeth(damage.teeth, u)}
 
 
 def _gear(damage: Fault) -> str | None:

@@ -19,6 +19,7 @@ from siggen.life.clock import Block, Clock
 from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
 from siggen.life.law import Course, Named, Wearing
+from siggen.names import Names
 from siggen.seeding import Stage, named_generator, named_uniforms
 
 Event = Literal["failed", "suspended"]
@@ -67,14 +68,15 @@ class Lived:
         return counted_mg(self.course.removed_m3(self.clock.time(age_h)), age_h, self.named)
 
 
-def lived_states(life: Life, found: Lived) -> tuple[StateSection, ...]:
+def lived_states(life: Life, found: Lived, names: Names) -> tuple[StateSection, ...]:
     """Return the inspections of a gearbox as states."""
-    return tuple(_state(life, found, number) for number in range(len(found.ages_h)))
+    return tuple(_state(life, found, number, names) for number in range(len(found.ages_h)))
 
 
-def _state(life: Life, found: Lived, number: int) -> StateSection:
+def _state(life: Life, found: Lived, number: int, names: Names) -> StateSection:
     time = found.clock.time(found.ages_h[number])
-    damage = found.course.damage(time)
+    pits = found.course.damage(time)
+    damage = None if pits is None else pits.with_gears(lambda role: names.first.gear(role).word)
     severity = SEVERITIES[PHASES.index(found.phase(time))] if damage is not None else "healthy"
     fault = HEALTHY if damage is None else damage.words[0]
     return StateSection(name=life.name_of(number), fault=fault, severity=severity, damage=damage)

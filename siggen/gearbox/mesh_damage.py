@@ -12,15 +12,14 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from siggen.config import Config, StateSection
-from siggen.config.planetary import in_pair
 from siggen.faults.fault import Fault
-from siggen.faults.flank_place import DOT, mesh_of_gear
 from siggen.faults.growth import Growth
 from siggen.gears.damage.flank_loss import takes_from_flanks, with_outlines
 from siggen.gears.damage.part import Part, Parts
 from siggen.gears.damage.tooth_damage import goes_through
 from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Names
 
 LoadsAtRest: TypeAlias = Callable[[float], LoadAtRest]
 """Force of all pairs [N] -> how the teeth, without errors, share it."""
@@ -45,17 +44,19 @@ class MeshState:
 def mesh_state(config: Config, mesh: str, state_id: int) -> MeshState:
     """Return a state of a gearbox as one of its meshes sees it; that of a pair and of a sun is called ''."""
     state = config.states[state_id]
-    return MeshState(sections_on(state, mesh), config.grown_from(state_id), state.sham)
+    return MeshState(sections_on(state, mesh, config.names), config.grown_from(state_id), state.sham)
 
 
-def sections_on(state: StateSection, mesh: str) -> tuple[Fault, ...]:
+def sections_on(state: StateSection, mesh: str, names: Names) -> tuple[Fault, ...]:
     """Return the damage of a state on one mesh, whose gears are called pinion and gear."""
-    return tuple(on_pair(one) for one in state.damages if mesh_of_gear(one.hit_gear) == mesh)
+    return tuple(own for one in state.damages if (own := on_mesh(one, mesh, names)) is not None)
 
 
-def on_pair(damage: Fault) -> Fault:
-    """Return damage of a mesh whose gears are called pinion and gear."""
-    return damage.with_gears(lambda gear: in_pair(gear.rpartition(DOT)[2]))
+def on_mesh(damage: Fault, mesh: str, names: Names) -> Fault | None:
+    """Return damage with gears called pinion and gear; None of another mesh. What is on no gear is on the first."""
+    flanks = {"": ("", ""), **names.flanks}
+    here = damage.hit_gear in flanks and flanks[damage.hit_gear][0] == mesh
+    return damage.with_gears(lambda gear: flanks.get(gear, ("", gear))[1]) if here else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,10 +16,9 @@ from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import Rotor, Shaft
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.fault import Fault
-from siggen.faults.flank_place import mesh_of_gear
 from siggen.gearbox.configured import pair_configs, possible_damages
 from siggen.gearbox.housing_numbers import PlateNumbers, plate_numbers
-from siggen.gearbox.mesh_damage import on_pair
+from siggen.gearbox.mesh_damage import on_mesh
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gearbox.tooth_law import tooth_law
 from siggen.gearbox.train import rotor_numbers, shaft_numbers
@@ -140,8 +139,8 @@ class PossibleGearbox:
             (path, possible)
             for state in self.config.states
             for path, one in state.placed(f"states.{state.name}")
-            if mesh_of_gear(one.hit_gear) == mesh
-            for possible in possible_damages(on_pair(one))
+            if (own := on_mesh(one, mesh, self.config.names)) is not None
+            for possible in possible_damages(own)
         )
 
     @property

@@ -247,15 +247,11 @@ class BearingSpall(Damage):
 
 
 class DamagedPlace(NamedTuple):
-    """Where a damage is: a pair with its 'pinion' or 'gear', and the word of a file for gear or bearing.
-
-    `short` is the gear's name in the short form of files, where that has another one.
-    """
+    """Where a damage is: a pair with its 'pinion' or 'gear', and the word of a file for gear or bearing."""
 
     pair: GearPair
     which: str
     word: str
-    short: str = ""
 
     @property
     def gear(self) -> Gear:

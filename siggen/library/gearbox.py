@@ -208,7 +208,7 @@ class Gearbox:
 
     def _shapes(self, state: State) -> tuple[ShapeFault, ...]:
         own = enumerate(one for one in state.damages if one.is_shape)
-        return tuple(ShapeFault(gear=self._seat(one).short or one.on, number=i, damage=one) for i, one in own)
+        return tuple(ShapeFault(gear=one.on, number=i, damage=one) for i, one in own)
 
     @cached_property
     def _passed(self) -> tuple[PassedSensor, ...]:
@@ -291,7 +291,7 @@ class Gearbox:
             seats = (("sun", outer, "pinion"), ("planet", outer, "gear"), (RING, inner, "gear"))
             return {name: DamagedPlace(one, which, name) for name, one, which in seats}
         return {
-            gear.word: DamagedPlace(one.pair, role, gear.word, gear.inner)
+            gear.word: DamagedPlace(one.pair, role, gear.word)
             for mesh, one in zip(meshes, specimen.meshes, strict=True)
             for role, gear in zip(ROLES, mesh.gears, strict=True)
         }

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 NOT_NUMBERS = ("name", "seed", "specimens", "kind")
-WORDS = ("gear", "bearing")
-"""Keys that hold a gear or a bearing of a machine."""
 _Row: TypeAlias = tuple[str, str, str, bool]
 """Key, value, meaning and whether it is the default."""
 
@@ -69,8 +67,7 @@ def assumed_numbers_section(config: Config) -> str:
 def _own(config: Config) -> Iterator[_Row]:
     """Yield the rows of a machine in the words of its file."""
     names = config.names
-    words = {**names.damaged, **names.bearings}
-    for path, value, meaning, default in _numbers("", config, words):
+    for path, value, meaning, default in _numbers("", config, names.bearings):
         parts = path.split(".")
         if parts[0] in REPLACED or (parts[0] == "dynamics" and parts[1] in REPLACED_OF_DYNAMICS[:2]):
             continue
@@ -105,6 +102,6 @@ def _text(name: str, value: object, words: Mapping[str, str]) -> str:
         told = [f"{key} {_text(key, part, words)}" for key, part in parts.items() if part is not None]
         return f"{kind} {', '.join(told)}".strip()[:120]
     text = "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
-    if name in WORDS:
+    if name == "bearing":
         text = words.get(text, text)
     return (text if len(text) <= 120 else f"{text[:117]}...").replace("|", "/").replace("\n", " ")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
-from siggen.faults.flank_place import DOT
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.damage.part import Part
 from siggen.names import Names
@@ -30,6 +29,6 @@ def damage_rows(gearbox: Specimen, record: PlannedRecord, mesh: int | None = Non
 def _row(names: Names, part: Part, stage: str) -> dict[str, object]:
     """Return the row of a part, whose gear has the name of its stage before it, or that in a planetary set."""
     row = part.table_row()
-    gear = f"{stage}{DOT}{row['gear']}" if stage else str(row["gear"])
+    gear = f"{stage}.{row['gear']}" if stage else str(row["gear"])
     bearing = {"bearing": names.bearings[str(row["bearing"])]} if row.get("bearing") else {}
     return {**row, **bearing, "gear": names.gear(gear)}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from siggen.faults.flank_place import DOT
 from siggen.gearbox.specimen import Specimen
 from siggen.names import ROLES, SEVERAL
 from siggen.specimen.static_mesh import StaticMesh
@@ -57,5 +56,5 @@ def stage_operating_labels(
 def _faulty_gear(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any]]) -> str:
     """Return which gear carries damage; `several` where gears of several meshes do."""
     each = {"": str(first["faulty_gear"]), **{name: str(one["faulty_gear"]) for name, one in behind.items()}}
-    found = [f"{name}{DOT}{gear}" if name else gear for name, gear in each.items() if gear != "none"]
+    found = [f"{name}.{gear}" if name else gear for name, gear in each.items() if gear != "none"]
     return SEVERAL if len(found) > 1 or SEVERAL in each.values() else next(iter(found), "none")

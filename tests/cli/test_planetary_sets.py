@@ -157,7 +157,7 @@ def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:
         ({**HOUSED, "housing": {"kind": "modal", "modes": MODES}}, "housing.modes", "for the bearing forces"),
         ({"operating_points": [{"speed_hz": 20.0, "torque_nm": 0.0}]}, "operating_points.0.torque_nm", "above 0"),
         ({"sensors": {"b": {"place": "pinion_bearing"}}}, "sensors.b.place", "ring"),
-        ({"planetary": None}, "states.sun.damage.gear", "allowed: pinion, gear, either"),
+        ({"planetary": None}, "states.sun.damage.gear", "allowed: one of pinion, gear, either"),
         (
             {"states": {"severe": {"damage": {"kind": "chip", "gear": "sun", "height_mm": 1.0}}}},
             "states.severe.damage.kind", "pits, spalls and cracks",

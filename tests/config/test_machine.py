@@ -10,8 +10,10 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
+from siggen.gearbox.configured import gearbox_config
 from siggen.gearbox.draw import draw_specimen
 from siggen.sets.drawn import set_columns
+from siggen.specimen.mesh_teeth import all_teeth
 from siggen.specimen.structure import structure
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler
@@ -30,7 +32,7 @@ def test_other_names_and_another_order_make_the_same_gearbox() -> None:
     )).config  # fmt: skip
     assert own is not None
     assert short is not None
-    for section in ("gears", "stages", "dynamics", "states"):
+    for section in ("gears", "stages", "dynamics"):
         assert getattr(own, section) == getattr(short, section), section
     assert own.identity != short.identity, "their columns have other names"
 
@@ -49,7 +51,7 @@ def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and
     assert of["teeth", "gear"].name == "teeth_gear"
     assert of["teeth", "gear"].label == "teeth_pinion"  # which the driver of a mesh is inside
     assert of["shaft_hz", "pinion"].name == "pinion_shaft_hz"
-    assert config.names.gear(config.states[1].damages[0].hit_gear) == "gear"
+    assert config.states[1].damages[0].hit_gear == "gear"
     assert structure(draw_specimen(config, 0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
 
 
@@ -134,7 +136,7 @@ def test_a_machine_that_cannot_be_is_refused_at_the_users_line(mistake: str, tmp
 
 def test_an_idler_is_named_by_the_mesh_of_each_flank() -> None:
     config = load_config(idler(sensors={"out": {"kind": "encoder", "place": "b"}}))
-    assert [state.damages[0].gear for state in config.states[1:]] == ["gear", "second.pinion"]
+    assert [state.damages[0].gear for state in config.states[1:]] == ["first.b", "second.b"]
     assert parse(config.canonical()).config == config
     assert {"faulty_teeth_first_b", "faulty_teeth_second_b"} <= set(label_names(config))
     drawn = draw_specimen(config, 0)
@@ -145,6 +147,17 @@ def test_an_idler_whose_bore_is_drawn_has_one() -> None:
     bore = [10.0, 14.0]
     drawn = draw_specimen(load_config(idler(machine=with_idler("gears", 1, bore_radius_mm=bore))), 3)
     assert drawn.meshes[1].pair.pinion.bore_radius_m == drawn.pair.gear.bore_radius_m
+
+
+@pytest.mark.parametrize(("word", "gears"), [("fast.either", {"ida", "otto"}), ("slow.either", {"eva", "karl"})])
+def test_either_of_any_mesh_is_one_of_its_gears_drawn_per_gearbox(word: str, gears: set[str]) -> None:
+    damage = {**SPALL, "gear": word, "teeth": 1}
+    config = load_config(mill(states={"healthy": {}, "severe": {"damage": damage}}))
+    drawn = [gearbox_config(config, number).states[1].damages[0].hit_gear for number in range(12)]
+    assert set(drawn) == gears
+    specimen, (front, behind) = draw_specimen(config, 0), (("ida", "otto"), ("eva", "karl"))
+    counts = [len(one.damage(1)) for one in all_teeth(specimen)]
+    assert counts == [int(drawn[0] in front), int(drawn[0] in behind)]
 
 
 OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {

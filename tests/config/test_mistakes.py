@@ -59,7 +59,7 @@ MISTAKES = [
         {"states__slight__damage__gear": "pinoin"},
         "states.slight.damage.gear",
         "'pinoin'",
-        "ring; did you mean 'pinion'?",
+        "either; did you mean 'pinion'?",
     ),
     (
         {"sensors__bearing__kind": "acelerometer"},
