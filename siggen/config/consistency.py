@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
@@ -258,7 +257,8 @@ def _severities(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterato
 
 def _is_slip(word: str, other: str) -> bool:
     """Return whether two words differ by a letter or by two that are exchanged; numbers tell sizes apart."""
-    if re.sub("[^a-z]", "", word) == re.sub("[^a-z]", "", other) or abs(len(word) - len(other)) > 1:
+    letters = ([letter for letter in one if letter.isalpha()] for one in (word, other))
+    if next(letters) == next(letters) or abs(len(word) - len(other)) > 1:
         return False
     return SequenceMatcher(None, word, other).ratio() > 0.8
 

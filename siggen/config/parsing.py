@@ -152,7 +152,7 @@ def _of_entry(problem: Problem, name: str, key: str) -> Problem:
     below = problem.path.removeprefix(f"{name}.0").removeprefix(".")
     if below != "name":
         return replace(problem, path=_below(name, key, below))
-    return replace(problem, path=_below(name, key), received=problem.received.replace("the text", "the name", 1))
+    return replace(problem, path=_below(name, key), received=f"the name {key[:60]!r}")
 
 
 def _taken_over(problem: Problem, problems: Sequence[Problem], states: Mapping[str, object]) -> bool:

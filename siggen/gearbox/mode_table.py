@@ -80,7 +80,8 @@ def seats_of(names: Names) -> tuple[str, ...]:
 
 def shape_column(place: str) -> str:
     """Return the column of a place/axis."""
-    return f"{place.replace('/', '_')}_per_sqrt_kg{'_m' if place.endswith('/turning') else ''}"
+    seat, _, axis = place.partition("/")
+    return f"{seat}_{axis}_per_sqrt_kg{'_m' if axis == 'turning' else ''}"
 
 
 @lru_cache(maxsize=16)

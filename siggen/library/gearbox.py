@@ -257,7 +257,10 @@ class Gearbox:
         return {
             **{one: ("place", one) for one in places.motions if one not in (*places.bearings, "casing")},
             **{own: ("bearing", bearing) for own, bearing in bearings.items()},
-            **{one.replace("_", "."): ("coupling", one) for one in places.couplings},
+            **{
+                f"{end}.coupling": ("coupling", one)
+                for end, one in zip(("input", "output"), places.couplings, strict=False)
+            },
             **{one: ("gear", one) for one in places.gears if places.shafts},
         }
 

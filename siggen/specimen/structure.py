@@ -31,8 +31,9 @@ def structure(specimen: Specimen) -> Structure:
     if specimen.housing is None or isinstance(specimen.housing, Block):
         return found
     # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
-    shafts = {name.replace("bearing", "shaft"): shaft_direction(found, name) for name in found.bearing_directions}
-    return replace(found, motions=shafts)
+    shafts = {shaft.bearing: f"{shaft.word}_shaft" for shaft in specimen.names.shafts}
+    seats = ((seat, *seat.split("/")) for seat in found.bearing_directions)
+    return replace(found, motions={f"{shafts[at]}/{axis}": shaft_direction(found, seat) for seat, at, axis in seats})
 
 
 def specimen_train(specimen: Specimen, housing: Housing | None) -> Drivetrain:
