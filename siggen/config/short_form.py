@@ -6,7 +6,7 @@ The first mesh is `gears`, with a pinion and a gear; further meshes are `stages`
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from typing import Any
 
@@ -17,7 +17,7 @@ from siggen.config.machine import Machine, MachineMesh
 from siggen.config.machine_problems import idlers, train
 from siggen.config.stages import Stage
 from siggen.errors import Problem
-from siggen.keys.problems import nearest, received_text
+from siggen.keys.problems import received_text
 from siggen.keys.section import Section
 from siggen.names import (
     DRIVEN,
@@ -85,13 +85,9 @@ def _paths(machine: Machine) -> Iterator[tuple[str, str]]:
 
 def short_form(raw: Mapping[str, Any], names: Names) -> tuple[dict[str, Any], list[Problem]]:
     """Return what a file says beside its machine in words of pairs, and words of the file that are none of its own."""
-    problems = [*_beside(raw), *_keys(raw)]
     short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
     short |= {"dynamics": _with_shafts(raw["dynamics"], OF_SHAFTS, ROLES)} if "dynamics" in raw else {}
-    if "states" in short:
-        short["states"] = _replaced(raw["states"], {own: word for word, own in names.bearings.items()})
-        problems += _unknown(raw["states"], "states", list(names.bearings.values()))
-    return _with_changes(short, names), problems
+    return _with_changes(short, names), [*_beside(raw), *_keys(raw)]
 
 
 def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
@@ -101,7 +97,7 @@ def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
     own = {**own, "dynamics": _with_shafts(dynamics, ROLES, OF_SHAFTS)}
     states = {
         name: {**one, "changes": {names.own_path(path): to for path, to in one["changes"].items()}}
-        for name, one in _replaced(own["states"], names.bearings).items()
+        for name, one in own["states"].items()
     }
     return {**own, "states": states}
 
@@ -158,26 +154,6 @@ def drivetrain(machine: Machine) -> tuple[Gears, tuple[Stage, ...], dict[str, Ro
 def _values(section: Section, model: type[Section]) -> dict[str, Any]:
     """Return what a section has of a model's keys."""
     return {key: getattr(section, key) for key in model.model_fields}
-
-
-def _replaced(value: Any, table: Mapping[str, str]) -> Any:
-    """Return mappings and lists with the bearings of damage replaced."""
-    if isinstance(value, Mapping):
-        return {
-            key: table.get(one, one) if key == "bearing" and isinstance(one, str) else _replaced(one, table)
-            for key, one in value.items()
-        }
-    return [_replaced(one, table) for one in value] if isinstance(value, (list, tuple)) else value
-
-
-def _unknown(value: Any, path: str, known: Sequence[str]) -> Iterator[Problem]:
-    """Yield bearings of damage that the machine has not."""
-    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
-    for key, one in items:
-        if key == "bearing" and isinstance(one, str) and one not in known:
-            yield Problem(f"{path}.{key}", f"'{one}'", f"allowed: one of {', '.join(known)}{nearest(one, known)}")
-        else:
-            yield from _unknown(one, f"{path}.{key}", known)
 
 
 def _with_changes(short: dict[str, Any], names: Names) -> dict[str, Any]:

@@ -113,7 +113,7 @@ def _whole_teeth(sections: Mapping[str, Any], flanks: Collection[str]) -> Iterat
 
 
 def _named(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
-    """Yield damage on gears that a gearbox has not, and lists of damage on gears of several meshes."""
+    """Yield damage on gears and bearings that a gearbox has not, and lists of damage on gears of several meshes."""
     for index, state in sections.get("states", {}).items():
         for where, one in state.placed(f"states.{index}"):
             hit = {joined(key.rpartition(".")[0], "gear"): gear for key, gear, _ in one.hit_teeth()}
@@ -123,6 +123,9 @@ def _named(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
             for key, gear in unknown:
                 allowed = f"allowed: one of {', '.join(known)}{nearest(gear, known)}"
                 yield Problem(f"{where}.{key}", f"'{gear}'", allowed)
+            if one.needs_bearings and one.position not in (seats := [shaft.bearing for shaft in names.shafts[:2]]):
+                allowed = f"allowed: one of {', '.join(seats)}{nearest(one.position, seats)}"
+                yield Problem(f"{where}.bearing", f"'{one.position}'", allowed)
             if not unknown and len({names.flanks[gear][0] for gear in hit.values()}) > 1:
                 allowed = "allowed: gears of one mesh; those of further meshes in a list of damages"
                 yield Problem(f"{where}.pits", ", ".join(hit.values()), allowed)

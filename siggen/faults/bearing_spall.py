@@ -24,8 +24,10 @@ from siggen.keys.column import MILLIMETRE, Column
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant
 from siggen.keys.usual import Usual
+from siggen.keys.wording import AllowedText
 from siggen.seeding import Stage, named_uniforms
 
+BEARING_TEXT = AllowedText("one of pinion_bearing, gear_bearing; of a machine SHAFT_bearing of the first two shafts")
 KEYS = {"length_m": "length_mm", "depth_m": "depth_mm"}
 """Key that a problem of the drawn spall is about."""
 
@@ -52,9 +54,9 @@ class BearingSpalls(Fault):
     )
 
     kind: Literal["bearing_spall"] = "bearing_spall"
-    bearing: Literal["pinion_bearing", "gear_bearing"] = Field(
+    bearing: Annotated[str, BEARING_TEXT] = Field(
         default="pinion_bearing",
-        description="one of the two on that shaft (dynamics.<shaft>.bearing)",
+        description="one of the two on that shaft: pinion_bearing, gear_bearing, of a machine SHAFT_bearing",
     )
     element: Literal["outer", "inner", "ball"] = Field(description="the spalled race, or a ball")
     length_mm: Annotated[Number, Within(above=0), Usual(0.1, 30)] = Field(description="along the path of the balls")

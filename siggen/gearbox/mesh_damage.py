@@ -55,6 +55,9 @@ def sections_on(state: StateSection, mesh: str, names: Names) -> tuple[Fault, ..
 def on_mesh(damage: Fault, mesh: str, names: Names) -> Fault | None:
     """Return damage with gears called pinion and gear; None of another mesh. What is on no gear is on the first."""
     flanks = {"": ("", ""), **names.flanks}
+    if damage.needs_bearings:
+        seats = {word: seat for seat, word in names.bearings.items()}
+        damage = damage.model_copy(update={"bearing": seats.get(damage.position, damage.position)})
     here = damage.hit_gear in flanks and flanks[damage.hit_gear][0] == mesh
     return damage.with_gears(lambda gear: flanks.get(gear, ("", gear))[1]) if here else None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 from siggen.config.changes import Change
@@ -51,7 +51,7 @@ def assumed_numbers_section(config: Config) -> str:
 
     A default says nothing about any machine: it is what siggen takes where nobody says otherwise.
     """
-    rows = list(_own(config) if config.machine is not None else _numbers("", config, {}))
+    rows = list(_own(config) if config.machine is not None else _numbers("", config))
     chosen = sum(from_default is False for *_, from_default in rows)
     chosen_by = {True: "default", False: "configuration"}
     lines = [f"| `{path}` | {value} | {chosen_by[default]} | {meaning} |" for path, value, meaning, default in rows]
@@ -67,14 +67,14 @@ def assumed_numbers_section(config: Config) -> str:
 def _own(config: Config) -> Iterator[_Row]:
     """Yield the rows of a machine in the words of its file."""
     names = config.names
-    for path, value, meaning, default in _numbers("", config, names.bearings):
+    for path, value, meaning, default in _numbers("", config):
         parts = path.split(".")
         if parts[0] in REPLACED or (parts[0] == "dynamics" and parts[1] in REPLACED_OF_DYNAMICS[:2]):
             continue
         yield names.problem(Problem(path, "", "")).path, value, meaning, default
 
 
-def _numbers(path: str, section: Section, words: Mapping[str, str]) -> Iterator[_Row]:
+def _numbers(path: str, section: Section) -> Iterator[_Row]:
     """Yield path, value, meaning and whether it is the default of every leaf of a section."""
     for name, field in type(section).model_fields.items():
         value = getattr(section, name)
@@ -87,21 +87,19 @@ def _numbers(path: str, section: Section, words: Mapping[str, str]) -> Iterator[
                 if isinstance(item, Change):
                     yield f"{below}.{item.path}", f"{item.how} {item.value}", str(field.description), False
                 else:
-                    yield from _numbers(f"{below}.{getattr(item, item.key_field or '', place)}", item, words)
+                    yield from _numbers(f"{below}.{getattr(item, item.key_field or '', place)}", item)
         elif isinstance(value, Section) and not isinstance(value, DRAWN) and "kind" not in type(value).model_fields:
-            yield from _numbers(below, value, words)
+            yield from _numbers(below, value)
         else:
             default = not field.is_required() and value == field.get_default(call_default_factory=True)
-            yield below, _text(name, value, words), str(field.description or ""), default
+            yield below, _text(value), str(field.description or ""), default
 
 
-def _text(name: str, value: object, words: Mapping[str, str]) -> str:
+def _text(value: object) -> str:
     if isinstance(value, Section) and not isinstance(value, DRAWN):
         parts = value.model_dump()
         kind = parts.pop("kind", "")
-        told = [f"{key} {_text(key, part, words)}" for key, part in parts.items() if part is not None]
+        told = [f"{key} {_text(part)}" for key, part in parts.items() if part is not None]
         return f"{kind} {', '.join(told)}".strip()[:120]
     text = "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
-    if name == "bearing":
-        text = words.get(text, text)
     return (text if len(text) <= 120 else f"{text[:117]}...").replace("|", "/").replace("\n", " ")

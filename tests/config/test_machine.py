@@ -160,6 +160,21 @@ def test_either_of_any_mesh_is_one_of_its_gears_drawn_per_gearbox(word: str, gea
     assert counts == [int(drawn[0] in front), int(drawn[0] in behind)]
 
 
+@pytest.mark.parametrize(("place", "drawn"), [("input_bearing", "pinion_bearing"), ("middle_bearing", "gear_bearing")])
+def test_a_spalled_bearing_is_called_by_its_shaft_and_is_one_of_the_first_two(place: str, drawn: str) -> None:
+    def made(bearing: str) -> dict[str, Any]:
+        spall = {"kind": "bearing_spall", "element": "outer", "length_mm": 1.0, "bearing": bearing}
+        return mill(states={"healthy": {}, "severe": {"damage": spall}})
+
+    config = load_config(made(place))
+    assert config.canonical()["states"]["severe"]["damage"]["bearing"] == place
+    (part,) = next(iter(all_teeth(draw_specimen(config, 0)))).damage(1)
+    assert part.table_row()["bearing"] == drawn
+    (problem,) = parse(made("output_bearing")).problems
+    assert problem.path == "states.severe.damage.bearing"
+    assert problem.allowed.startswith("allowed: one of input_bearing, middle_bearing")
+
+
 OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {
     "teeth of two sizes": (
         {"machine": with_idler("meshes", 1, module_mm=2.5)}, "machine.meshes.1.module_mm", "an idler is one gear",
