@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from siggen.sets.trial import SetTrial
 
 
+LONGEST_NAME = 16
+"""Of a state that stands on one line of a table."""
 NOTES = ("size_notes", "stiffness_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
 """Lists of sentences in the summary, in the order in which they are printed."""
 
@@ -117,7 +119,8 @@ def _print_trial(console: Console, found: SetTrial | None) -> None:
     if found.sized:
         title += f"; damage of {counted(found.sized, 'gearbox', 'gearboxes')} in every state"
     heads = ("lost", "95 % of all", "loss of mesh stiffness", "through the face", "found")
-    table = Table(Column("state", overflow="fold"), *heads, title=title, title_justify="left")
+    names = Column("state", overflow="fold", min_width=min(LONGEST_NAME, max(len(one.state) for one in tried)))
+    table = Table(names, *heads, title=title, title_justify="left")
     for state in tried:
         low, high = state.interval
         damage = ("", "", "")

@@ -32,7 +32,7 @@ class Mesh(Section):
     damage: Literal["all", "geometry"] = Field(
         default="all",
         description="how damage acts with law: pairs; geometry: lands carry, flanks sink where none is left, "
-        "land within 0.5 mm of it is rough; all: geometry, and weaker sections",
+        "land beside it is rough, as far as it is wide, up to 0.5 mm; all: geometry, and weaker sections",
     )
     pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1), Usual(0.005, 1)] = Field(
         default=0.1, description="rounding of the edges of damage (law: pairs)"
@@ -78,5 +78,6 @@ class Friction(Section):
     )
     pit_roughness_um: Annotated[Number, Within(above=0, most=5), Usual(0.1, 5)] = Field(
         default=2.0,
-        description="rms roughness of a flank in damage and on the land within 0.5 mm of it (mixed_ehl)",
+        description="rms roughness of a flank in damage and on the land beside it, as far as that is wide, up to "
+        "0.5 mm (mixed_ehl)",
     )

@@ -10,26 +10,12 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.faults.registry import BY_WORD
 from siggen.gearbox.draw import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from siggen.sets.drawn import damage_rows, set_columns
 from tests.config.minimal import by_name, minimal
+from tests.kinds.machines import DAMAGES
 from tests.simulated import simulate
-
-PIT = {"semi_axis_face_mm": 0.6, "semi_axis_profile_mm": 0.4, "depth_mm": 0.3}
-EXAMPLES: dict[str, dict[str, Any]] = {
-    "layered": {"layers": 2, "pits_per_layer": 3, **PIT},
-    "clustered": {"count": 6, "spread_profile_mm": 1.0, **PIT},
-    "spall": {"face_length_mm": 12.0, "profile_length_mm": 1.5, "depth_mm": 0.4},
-    "list": {"pits": [{"face_mm": 8.0, **PIT}]},
-    "irregular": {"face_share": 1.0, "profile_length_mm": 1.5, "depth_mm": 0.4},
-    "crack": {"depth_share": 0.25},
-    "chip": {"height_mm": "whole"},
-    "wear": {"depth_um": 20.0},
-    "bearing_spall": {"element": "inner", "length_mm": 2.0, "depth_mm": 0.1},
-}  # fmt: skip
-"""One damage of every kind there is."""
 
 
 def config(*states: dict[str, Any], law: str = "pairs") -> Config:
@@ -39,18 +25,13 @@ def config(*states: dict[str, Any], law: str = "pairs") -> Config:
 
 
 def sham_of(kind: str) -> dict[str, Any]:
-    return {"name": "sham", "acts": False, "damage": {"kind": kind, **EXAMPLES[kind]}}
+    return {"name": "sham", "acts": False, "damage": {"kind": kind, **DAMAGES[kind]}}
 
 
 def record(chosen: Config, record_id: int) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result
-
-
-@pytest.fixture(scope="module")
-def healthy() -> SimulatedRecord:
-    return record(config({"name": "again"}), 1)
 
 
 def assert_same(sham: SimulatedRecord, healthy: SimulatedRecord) -> None:
@@ -60,15 +41,6 @@ def assert_same(sham: SimulatedRecord, healthy: SimulatedRecord) -> None:
     assert sham.tacho_s.tobytes() == healthy.tacho_s.tobytes()
     own = {name: label for name, label in sham.labels.items() if name not in ("state", "sham")}
     assert own == {name: label for name, label in healthy.labels.items() if name != "state"}
-
-
-@pytest.mark.parametrize("kind", BY_WORD)
-def test_every_kind_without_its_loss_gives_the_record_of_healthy_teeth(kind: str, healthy: SimulatedRecord) -> None:
-    sham = config(sham_of(kind))
-    found = record(sham, 1)
-    assert_same(found, healthy)
-    assert found.labels["sham"] is True
-    assert {row["kind"] for row in damage_rows(sham, 1)} == {"sham"}
 
 
 def test_springs_between_teeth_know_no_sham_either() -> None:
@@ -85,7 +57,7 @@ def test_its_teeth_have_kinds_of_pairs_of_their_own() -> None:
 
 
 def test_it_shifts_no_other_state() -> None:
-    real = {"name": "real", "severity": "severe", "damage": {"kind": "spall", **EXAMPLES["spall"]}}
+    real = {"name": "real", "severity": "severe", "damage": {"kind": "spall", **DAMAGES["spall"]}}
     grown = {"name": "grown", "grows": "real", "damage": {"teeth": 2}}
     between, without = config(real, sham_of("layered"), grown), config(real, {"name": "again"}, grown)
     assert damage_rows(between, 3) == damage_rows(without, 3)
@@ -99,7 +71,7 @@ def test_it_shifts_no_other_state() -> None:
         ({**sham_of("spall"), "severity": "slight"}, "states.sham.severity"),
         ({**sham_of("spall"), "acts": 1}, "states.sham.acts"),
         (
-            {**sham_of("spall"), "damage": {"kind": "spall", **EXAMPLES["spall"], "depth_mm": 40.0}},
+            {**sham_of("spall"), "damage": {"kind": "spall", **DAMAGES["spall"], "depth_mm": 40.0}},
             "states.sham.damage",
         ),
     ],

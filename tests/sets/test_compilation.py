@@ -13,6 +13,7 @@ from siggen.config import Config
 from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.time import exponential_step
 from siggen.engines.processes import ProcessEngine
+from siggen.engines.serial import SerialEngine
 from siggen.gears.damage import whole_loss
 from siggen.record import compilation
 from siggen.record.compilation import is_compiled, run_part
@@ -66,9 +67,12 @@ def test_a_run_compiles_before_its_first_record(short: Config, monkeypatch: pyte
 
     class Noting(ProcessEngine):
         def map(self, function, tasks):
-            for index, task in enumerate(tasks):
-                mapped.append(type(task))
-                yield index, function(task)
+            def noted():
+                for task in tasks:
+                    mapped.append(type(task))
+                    yield task
+
+            return SerialEngine().map(function, noted())
 
     monkeypatch.setattr(drawn, "is_compiled", lambda method: False)
     storage = LocalFolder(tmp_path / "set")

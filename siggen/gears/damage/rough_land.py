@@ -1,7 +1,9 @@
 """Rough land: the flank within a reach of damage is as rough as what broke out of it, not as the sound flank.
 
-Derived. A flank unrolls into the plane of the arc R_b ψ²/2 and the face, where distances are those on the metal. Damage
-grown by a disc is cut by a line across the profile where chords of the lines beside it, dy away, grow by √(r² - dy²).
+The reach is `REACH_M`, and of a break that is narrower along the profile its width: damage that vanishes leaves sound
+flanks. Derived. A flank unrolls into the plane of the arc R_b ψ²/2 and the face, where distances are those on the
+metal. Damage grown by a disc is cut by a line across the profile where chords of the lines beside it, dy away, grow by
+√(r² - dy²).
 So the land is found on lines a tenth of the reach apart, and the rough part of a slice is that of its lines.
 """
 
@@ -72,7 +74,7 @@ def rough_shares(pair: GearPair, pinion: RoughLand, gear: RoughLand, place_m: Fl
 def _grown(
     middle: FloatArray, face: FloatArray, low: FloatArray, high: FloatArray, intervals: IntArray, reach: float
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Return the unions (lines, most) of the intervals of lines within reach, each grown by what the reach leaves."""
+    """Return the unions (lines, most) of the intervals of lines within reach, each grown by what its reach leaves."""
     lines, widest = middle.size, low.shape[1]
     near = 2 * int(reach / (middle[1] - middle[0])) + 3 if lines > 1 else 1
     room, merged = np.zeros((4, near * widest)), np.zeros((4, near * widest))
@@ -80,11 +82,11 @@ def _grown(
     for i in range(lines):
         filled = 0
         for j in range(max(i - near // 2, 0), min(i + near // 2 + 1, lines)):
-            square = reach**2 - (face[j] - middle[i]) ** 2
-            if square < 0.0:
-                continue
-            more = sqrt(square)
             for k in range(intervals[j]):
+                square = min(reach, high[j, k] - low[j, k]) ** 2 - (face[j] - middle[i]) ** 2
+                if square < 0.0:
+                    continue
+                more = sqrt(square)
                 filled = insert_interval(low[j, k] - more, high[j, k] + more, 0.0, 0.0, room, filled)
         count[i] = merge_intervals(room, filled, merged)
         out[0, i], out[1, i] = merged[0], merged[1]
