@@ -12,6 +12,7 @@ from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.record.internals import internals_table as internals_of
+from siggen.sets import drawn
 from siggen.sets.drawn import set_columns, simulated
 
 
@@ -42,3 +43,8 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
 def label_names(config: Config) -> tuple[str, ...]:
     """Return the keys of the labels of a record."""
     return ("state", *(column.name for column in set_columns(config).labels))
+
+
+def damage_rows(config: Config, *record_ids: int) -> list[dict[str, object]]:
+    """Return the rows of damage of records of one gearbox."""
+    return [*drawn.damage_rows(config, record_ids)]

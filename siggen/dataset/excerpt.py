@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
 
 import pyarrow as pa
 
@@ -24,8 +26,8 @@ from siggen.dataset.storage import Storage
 FOLDER = "excerpts"
 READERS = 8
 
-DamageRows = Callable[[int], Sequence[Mapping[str, object]]]
-"""record_id -> rows of the damage table for one record, as siggen.record gives them."""
+DamageRows = Callable[[Sequence[int]], Iterable[Mapping[str, object]]]
+"""Ids of one specimen's records -> rows of the damage table, as siggen.record gives them."""
 
 LifeRows = Callable[[int], Mapping[str, Sequence[Mapping[str, object]]]]
 """specimen -> rows by the name of their table, as siggen.record gives them."""
@@ -101,20 +103,12 @@ class Excerpts:
         with parquet_file(self.storage, facts.name, facts.crc32_per_64_kib, facts.bytes) as file:
             labels = file.read(schemas[METADATA_FOLDER].names)
         specimens = [i for first, last in sidecar.specimens for i in range(first, last + 1)]
-        records = labels.select(["record_id", "specimen_id", "state_id"]).to_pylist()
-        rows = {DAMAGE_FOLDER: list(self._damage(records)), **self._lives(sidecar.split, specimens)}
+        owners = zip(labels["specimen_id"].to_pylist(), labels["record_id"].to_pylist(), strict=True)
+        records = ([record for _, record in own] for _, own in groupby(owners, key=itemgetter(0)))
+        damage = [row for of_specimen in records for row in self.damage_rows(of_specimen)]
+        rows = {DAMAGE_FOLDER: damage, **self._lives(sidecar.split, specimens)}
         made = {name: pa.RecordBatch.from_pylist(rows[name], schema=schemas[name]) for name in rows}
         return {METADATA_FOLDER: _one_batch(labels, schemas[METADATA_FOLDER]), **made}
-
-    def _damage(self, records: Iterable[Mapping[str, int]]) -> Iterator[dict[str, object]]:
-        shared: Sequence[Mapping[str, object]] = ()
-        owner: tuple[int, int] | None = None
-        for record in records:
-            # damage belongs to specimen and state: operating points and repeats of one state follow each other
-            if owner != (record["specimen_id"], record["state_id"]):
-                owner = (record["specimen_id"], record["state_id"])
-                shared = self.damage_rows(record["record_id"])
-            yield from ({**row, "record_id": record["record_id"]} for row in shared)
 
     def _lives(self, split: str, specimens: Sequence[int]) -> dict[str, list[dict[str, object]]]:
         if not self.columns.lives:

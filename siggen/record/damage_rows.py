@@ -1,6 +1,9 @@
-"""Rows of the damage table: the damage of one record with its places and sizes."""
+"""Rows of the damage table: the damage of records with its places and sizes."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import groupby
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
 from siggen.gearbox.specimen import Specimen
@@ -11,19 +14,24 @@ from siggen.specimen.bearing_spalls import drawn_labels
 from siggen.specimen.mesh_teeth import MeshTeeth
 
 
-def damage_rows(gearbox: Specimen, record: PlannedRecord, mesh: int | None = None) -> list[dict[str, object]]:
-    """Return one row per part of a record's damage, lengths in mm; none for a healthy record; `mesh`: of one alone."""
-    specimen = gearbox.in_state(record.state_id)
+def damage_rows(
+    gearbox: Specimen, records: Iterable[PlannedRecord], mesh: int | None = None
+) -> Iterator[dict[str, object]]:
+    """Yield one row per part of the damage of records of a gearbox, lengths in mm; `mesh`: of one alone."""
     empty = {column.name: nothing_of(column) for column in (*DAMAGE_COLUMNS, *kind_columns(gearbox))}
-    empty["record_id"] = record.record_id
-    if has_drawn_edges(gearbox):  # those of damage that states none itself
-        empty |= {"edge_radius_mm": 1e3 * specimen.law.edge_radius_m, "strip_depth_mm": []}
-    return [
-        {**empty, **_row(gearbox.names, part, one.inner), **drawn_labels(gearbox.seed, record, part)}
-        for number, one in enumerate(specimen.meshes)
-        if mesh in (None, number)
-        for part in MeshTeeth(specimen.law, one.teeth).damage(record.state_id)
-    ]
+    for state_id, of_state in groupby(records, key=lambda record: record.state_id):
+        specimen = gearbox.in_state(state_id)
+        if has_drawn_edges(gearbox):  # those of damage that states none itself
+            empty |= {"edge_radius_mm": 1e3 * specimen.law.edge_radius_m, "strip_depth_mm": []}
+        parts = [
+            (part, {**empty, **_row(gearbox.names, part, one.inner)})
+            for number, one in enumerate(specimen.meshes)
+            if mesh in (None, number)
+            for part in MeshTeeth(specimen.law, one.teeth).damage(state_id)
+        ]
+        for record in of_state:
+            for part, row in parts:
+                yield {**row, "record_id": record.record_id, **drawn_labels(gearbox.seed, record, part)}
 
 
 def _row(names: Names, part: Part, stage: str) -> dict[str, object]:

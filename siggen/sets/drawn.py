@@ -51,10 +51,10 @@ def simulated(config: Config, record_ids: Sequence[int]) -> Iterator[SimulatedRe
     return simulate_specimen(gearbox, records)
 
 
-def damage_rows(config: Config, record_id: int, mesh: int | None = None) -> list[dict[str, object]]:
-    """Return the rows of damage of a record; `mesh`: of one alone."""
-    record = planned_record(config, record_id)
-    return rows.damage_rows(draw_specimen(config, record.specimen_id), record, mesh)
+def damage_rows(config: Config, record_ids: Sequence[int]) -> Iterator[dict[str, object]]:
+    """Return the rows of damage of records of one gearbox."""
+    records = [planned_record(config, i) for i in record_ids]
+    return rows.damage_rows(draw_specimen(config, records[0].specimen_id), records)
 
 
 def life_rows(config: Config, specimen_id: int) -> dict[str, list[lives.Row]]:

@@ -37,7 +37,7 @@ class Physics:
     simulate
         (config, ids of one specimen's records) -> records or failures.
     damage_rows
-        (config, record_id) -> rows of `damage/`.
+        (config, ids of one specimen's records) -> rows of `damage/`.
     life_rows
         (config, specimen) -> rows of the tables of `life/`, by table.
     quantities
@@ -49,7 +49,7 @@ class Physics:
     """
 
     simulate: Callable[[Config, Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
-    damage_rows: Callable[[Config, int], Sequence[Mapping[str, object]]]
+    damage_rows: Callable[[Config, Sequence[int]], Iterable[Mapping[str, object]]]
     quantities: Callable[[Config], Sequence[Column]]
     to_compile: Callable[[Config], Sequence[CompilationPart]] = _nothing
     life_rows: Callable[[Config, int], Mapping[str, Sequence[Mapping[str, object]]]] = _no_life

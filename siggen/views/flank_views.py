@@ -116,11 +116,11 @@ def flank_damage_table(specimen: Specimen, state: str | None = None, mesh: int =
     """
     schema = pa.schema([column.field() for column in damage_columns(specimen)])
     fields = [pa.field("state", pa.string(), nullable=False), *(f for f in schema if f.name != "record_id")]
-    # operating points and repeats of a state share its damage
+    number = specimen.specimen_id
     rows = [
         {"state": specimen.states[index].name, **row}
         for index in _state_ids(specimen, state)
-        for row in damage_rows(specimen, PlannedRecord(0, specimen.specimen_id, index, 0, 0, ""), mesh)
+        for row in damage_rows(specimen, [PlannedRecord(0, number, index, 0, 0, "")], mesh)
     ]
     return pa.Table.from_pylist(rows, schema=pa.schema(fields))
 

@@ -198,8 +198,12 @@ def simulate_and_die(config: Config, record_ids: Sequence[int]) -> list[Simulate
     return simulate(config, record_ids)
 
 
-def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
+def damage_rows(config: Config, record_ids: Sequence[int]) -> list[dict[str, object]]:
     """Stand in for `siggen.sets.drawn.damage_rows`: one ellipse per pit."""
+    return [row for record_id in record_ids for row in _pits(config, record_id)]
+
+
+def _pits(config: Config, record_id: int) -> list[dict[str, object]]:
     planned = planned_record(config, record_id)
     damage = config.states[planned.state_id].damage
     ellipse = {

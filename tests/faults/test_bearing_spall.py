@@ -20,13 +20,12 @@ from siggen.gearbox.possible import PossibleGearbox
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.sets.drawn import damage_rows
 from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
 from siggen.specimen.drive import record_rotation
 from siggen.specimen.structure import structure
 from siggen.views.exported_model import exported_model
 from tests.config.minimal import by_name, config, minimal
-from tests.simulated import drawn_record, simulate
+from tests.simulated import damage_rows, drawn_record, simulate
 
 SPEED_HZ, BALLS = 30.0, 9
 CAGE = 0.5 * (1.0 - 7.94 / 39.04)
@@ -216,6 +215,11 @@ def test_its_row_tells_the_slip_that_its_cage_has_in_this_record() -> None:
     (row,), (source,) = damage_rows(made, 1), sources_of(made, 1)
     assert SLIP[0] <= row["slip_share"] <= SLIP[1]
     assert source.cage.order == pytest.approx(CAGE * (1.0 - row["slip_share"]), rel=1e-12)
+    repeated = with_states(SPALL, None, repeats=2)
+    rows = damage_rows(repeated, 1, 2, 3)
+    assert [row["record_id"] for row in rows] == [2, 3]
+    assert rows == [*damage_rows(repeated, 2), *damage_rows(repeated, 3)]
+    assert rows[0]["slip_share"] != rows[1]["slip_share"]
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,8 @@ from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.damage.chip import WholeChip
 from siggen.record.specimen_state import specimen_state
-from siggen.sets.drawn import damage_rows
 from tests.faults.test_damage import config_with, damage_of
-from tests.simulated import simulate
+from tests.simulated import damage_rows, simulate
 
 CHIP: dict[str, Any] = {"kind": "chip", "height_mm": 1.5}
 BROKEN: dict[str, Any] = {"kind": "chip", "height_mm": "whole"}

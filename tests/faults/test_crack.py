@@ -11,8 +11,8 @@ from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.crack import RootCrack
 from siggen.gears.geometry.root_chord import root_chord
-from siggen.sets.drawn import damage_rows
 from tests.faults.test_damage import config_with, damage_of
+from tests.simulated import damage_rows
 
 UNIFORM = [0.1, 0.2]
 

@@ -15,8 +15,8 @@ from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.heights import clipped_arc_m
 from siggen.gears.damage.irregular import IrregularSpall
-from siggen.sets.drawn import damage_rows
 from tests.faults.test_damage import PIT, config_with, damage_of
+from tests.simulated import damage_rows
 
 SPALL: dict[str, Any] = {"kind": "irregular", "profile_length_mm": 0.6, "face_share": 0.25}
 GROWN = [

@@ -14,8 +14,8 @@ from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import profile_arc_m
 from siggen.gears.stiffness.sections import contact_length_loss
-from siggen.sets.drawn import damage_rows
 from tests.faults.test_damage import config_with, damage_of
+from tests.simulated import damage_rows
 
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.1}
 DRAWN = [0.5, 1.5]

@@ -14,11 +14,10 @@ from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.wear import LABEL_POINTS, WornFlanks
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.record.specimen_state import specimen_state, state_teeth
-from siggen.sets.drawn import damage_rows
 from siggen.specimen.mesh_teeth import all_teeth
 from siggen.specimen.static_mesh import static_mesh
 from tests.faults.test_damage import config_with, damage_of
-from tests.simulated import simulate
+from tests.simulated import damage_rows, simulate
 
 WEAR: dict[str, Any] = {"kind": "wear", "depth_um": 20.0}
 

@@ -11,9 +11,9 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.sets.drawn import damage_rows, set_columns
+from siggen.sets.drawn import set_columns
 from tests.config.minimal import by_name, minimal
-from tests.simulated import simulate
+from tests.simulated import damage_rows, simulate
 
 SIZE = {"face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.3}
 PITS = {

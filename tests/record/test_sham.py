@@ -12,10 +12,10 @@ from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_specimen
 from siggen.record.specimen_state import specimen_state
-from siggen.sets.drawn import damage_rows, set_columns
+from siggen.sets.drawn import set_columns
 from tests.config.minimal import by_name, minimal
 from tests.kinds.machines import DAMAGES
-from tests.simulated import simulate
+from tests.simulated import damage_rows, simulate
 
 
 def config(*states: dict[str, Any], law: str = "pairs") -> Config:

@@ -9,8 +9,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
 from siggen.gearbox.configured import pair_config, pair_of
-from siggen.sets.drawn import damage_rows, simulated
-from tests.simulated import internals_table, simulate
+from siggen.sets.drawn import simulated
+from tests.simulated import damage_rows, internals_table, simulate
 
 SMALL = ["specimens=2", "duration_s=0.1", "dynamics.input_coupling.damping_nm_s_per_rad=2.0"]
 
