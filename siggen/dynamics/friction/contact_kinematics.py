@@ -6,7 +6,7 @@ R_e = s (T - s)/T, p_H = √(F_l E*/(π R_e)), a_H = √(4 F_l R_e/(π E*)). The
 film formulas use. Verified: at the pitch point of 18/47 teeth, module 3 mm, 30 N m, 30 Hz they give u_e = 1.741 m/s,
 R_e = 6.678 mm, p_H = 0.565 GPa and a_H = 66.6 µm, and p_H a_H π/2 is the line load.
 
-Every function takes numbers or arrays that broadcast, inside compiled code and outside.
+Every function takes numbers or arrays that broadcast.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-
-from siggen.compiled import entry
 
 Values: TypeAlias = float | NDArray[np.float64]
 """A number or an array; functions of several broadcast."""
@@ -37,13 +35,11 @@ def effective_modulus(youngs_modulus_pa: float, poisson_ratio: float) -> float:
     return youngs_modulus_pa / (1.0 - poisson_ratio**2)
 
 
-@entry(cache=True)
 def relative_radius(position_m: Values, line_m: float) -> Values:
     """Return R_e = ρ_1 ρ_2/(ρ_1 + ρ_2) at positions s on a line of action of length T [m]."""
     return position_m * (line_m - position_m) / line_m
 
 
-@entry(cache=True)
 def sliding_speed(
     position_m: Values, line_m: float, speed_1_rad_s: Values, speed_2_rad_s: Values, lateral_rate_m_s: Values
 ) -> Values:
@@ -59,19 +55,16 @@ def sliding_speed(
     return position_m * speed_1_rad_s - (line_m - position_m) * speed_2_rad_s + lateral_rate_m_s
 
 
-@entry(cache=True)
 def entrainment_speed(position_m: Values, line_m: float, speed_1_rad_s: Values, speed_2_rad_s: Values) -> Values:
     """Return u_e = (u_1 + u_2)/2 [m/s]."""
     return 0.5 * (position_m * speed_1_rad_s + (line_m - position_m) * speed_2_rad_s)
 
 
-@entry(cache=True)
 def hertz_pressure(line_load_n_per_m: Values, radius_m: Values, effective_modulus_pa: float) -> Values:
     """Return the peak pressure p_H [Pa] of a line load F_l [N/m] on a relative radius R_e [m] (E' goes in)."""
     return np.sqrt(line_load_n_per_m * (0.5 * effective_modulus_pa) / (np.pi * radius_m))
 
 
-@entry(cache=True)
 def hertz_half_width(line_load_n_per_m: Values, radius_m: Values, effective_modulus_pa: float) -> Values:
     """Return half the width b [m] of the contact of a line load F_l [N/m] on a relative radius R_e [m] (E' goes in)."""
     return np.sqrt(line_load_n_per_m * radius_m * 8.0 / (np.pi * effective_modulus_pa))
