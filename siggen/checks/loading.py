@@ -75,7 +75,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
     gearbox = PossibleGearbox.of_sections(parsed.sections)
     of_files = (*response_problems(gearbox), *mode_problems(gearbox))
-    of_physics = [*physical_problems(gearbox), *state_problems(parsed), *of_files]
+    of_physics = [*physical_problems(gearbox), *([] if parsed.problems else state_problems(gearbox)), *of_files]
     told = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *unsized]
     problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
     if parsed.config is not None and not problems:

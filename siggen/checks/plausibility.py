@@ -138,21 +138,16 @@ class _SizesCompared:
         """Mass of both as discs."""
         return sum(disc_mass_kg(gear, self.pair.face_width_m) for gear in (self.pair.pinion, self.pair.gear))
 
-    def of(
-        self,
-        path: str,
-        what: str,
-        usual: tuple[float, float],
-        hint: str = "",
-        over: float = 1.0,
-        under: float | None = None,
-    ) -> Iterator[Quantity]:
-        """Yield the number of a key over something, or something over it."""
+    def of(self, path: str, what: str, usual: tuple[float, float], hint: str, over: float = 1.0) -> Iterator[Quantity]:
+        """Yield the number of a key over something."""
         if (number := self.gearbox.number(path)) is not None:
             low, high = bounds(number)
-            yield Quantity(
-                path, what, (low / over, high / over) if under is None else (under / high, under / low), *usual, hint
-            )
+            yield Quantity(path, what, (low / over, high / over), *usual, hint)
+
+    def under(self, path: str, what: str, usual: tuple[float, float], hint: str, force: float) -> Quantity:
+        """Return what a force or torque makes of a stiffness."""
+        low, high = bounds(self.gearbox.number(path))
+        return Quantity(path, what, (force / high, force / low), *usual, hint)
 
     def gears(self) -> Iterator[Quantity]:
         """Yield sizes of gears."""
@@ -171,13 +166,12 @@ class _SizesCompared:
         """Yield speeds and torques of operating points."""
         pair, radius = self.pair, self.pair.pinion.base_radius_m
         for i, point in enumerate(self.gearbox.config.operating_points):
-            at, force = f"operating_points.{i}", sorted(abs(torque / radius) for torque in bounds(point.torque_nm))
-            low, high = (speed * 2.0 * pi * pair.pinion.pitch_radius_m for speed in bounds(point.speed_hz))
+            at, torque_nm, speed_hz = f"operating_points.{i}", bounds(point.torque_nm), bounds(point.speed_hz)
+            low, high = (speed * 2.0 * pi * pair.pinion.pitch_radius_m for speed in speed_hz)
             hint = "speeds are turns of the input shaft per second, not per minute"
             yield Quantity(f"{at}.speed_hz", "pitch-line velocity [m/s]", (low, high), 0.02, 100.0, hint)
-            if (
-                bounds(point.torque_nm)[0] <= 0.0 <= bounds(point.torque_nm)[1]
-            ):  # idle is no mistake: the largest is judged
+            force = sorted(abs(torque / radius) for torque in torque_nm)
+            if torque_nm[0] <= 0.0 <= torque_nm[1]:  # idle is no mistake: what the largest torque does is judged
                 force = [force[1]] * 2
             if force[1] == 0.0:
                 continue
@@ -209,7 +203,7 @@ class _SizesCompared:
                 stiffness, damping = f"{at}.bearing_stiffness_{axis}_n_per_m", f"{at}.bearing_damping_{axis}_n_s_per_m"
                 if torque > 0.0 and not number("planetary"):
                     what, gives_um = "gives way at full load by [µm]", 1e6 * torque * of_torque
-                    yield from self.of(stiffness, what, (0.3, 1000.0), "is it in N/m, not N/mm?", under=gives_um)
+                    yield self.under(stiffness, what, (0.3, 1000.0), "is it in N/m, not N/mm?", gives_um)
                 (low, high), (least, most) = bounds(number(damping)), bounds(number(stiffness))
                 if high > 0.0:
                     ratios = max(low, 1e-3 * high) / least, high / most
@@ -219,18 +213,13 @@ class _SizesCompared:
     def ends(self) -> Iterator[Quantity]:
         """Yield couplings and machines at both ends."""
         number, pair, torque = self.gearbox.number, self.pair, self.gearbox.largest_torque_nm
-        disc_kg_m2, behind = (
-            disc_inertia_kg_m2(pair.pinion, pair.face_width_m),
-            torque * pair.gear.teeth / pair.pinion.teeth,
-        )
-        # a mill turns behind its gears
-        for end, machine, role, most, torque_nm in (
-            ("input", "motor", "pinion", 1.5e3, torque),
-            ("output", "load", "gear", 1e5, behind),
-        ):
+        disc_kg_m2 = disc_inertia_kg_m2(pair.pinion, pair.face_width_m)
+        behind_nm = torque * pair.gear.teeth / pair.pinion.teeth
+        both = ("input", "motor", "pinion", 1.5e3, torque), ("output", "load", "gear", 1e5, behind_nm)  # such as a mill
+        for end, machine, role, most, torque_nm in both:
             stiffness, inertia = f"dynamics.{end}_coupling.stiffness_nm_per_rad", f"dynamics.{machine}_inertia_kg_m2"
             hint = "is the stiffness in N m/rad?"
-            yield from self.of(stiffness, "twist at full load [rad]", (3e-4, 1.0), hint, under=torque_nm)
+            yield self.under(stiffness, "twist at full load [rad]", (3e-4, 1.0), hint, torque_nm)
             own = self.gearbox.rotor(role, pair, lambda _: LOW).inertia_kg_m2, bounds(number(inertia))[0]
             critical = 2.0 * sqrt(bounds(number(stiffness))[0] / sum(1.0 / one for one in own))
             damping, what = f"dynamics.{end}_coupling.damping_nm_s_per_rad", "damping over the critical one"

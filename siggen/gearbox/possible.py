@@ -10,10 +10,12 @@ from typing import Any
 from siggen.config import Config, PlateHousing, Shafts
 from siggen.config.changes import SECTIONS, changed_sections
 from siggen.config.config import rated_nm
+from siggen.config.consistency import consistency_problems
 from siggen.config.stages import turned
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.dynamics.structure.gear_stage import Rotor, Shaft
+from siggen.errors import Problem
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.fault import Fault
 from siggen.gearbox.configured import pair_configs, possible_damages
@@ -106,7 +108,12 @@ class PossibleGearbox:
         """Return those that a state has changed."""
         sections = {name: getattr(self.config, name) for name in SECTIONS}
         changes = changed_sections(sections, [change for _, change in self.config.changes_of(state)])
-        return PossibleGearbox(self.config.model_copy(update=changes))
+        return PossibleGearbox(self.config.model_copy(update=changes), self.refused)
+
+    def contradictions(self) -> list[Problem]:
+        """Return what is wrong between sections by their form."""
+        named = {key: {one.name: one for one in getattr(self.config, key)} for key in ("states", "sensors")}
+        return consistency_problems({**dict(self.config), **named}, {})
 
     @cached_property
     def meshes(self) -> tuple[PossibleMesh, ...]:

@@ -72,8 +72,8 @@ KNOW_THE_FILE = {"config", "rig", "gearbox", "cli"} | {
     "checks", "dataset", "library", "planning", "publication", "sets",
 }  # fmt: skip
 """Rooms that import the configuration; the second line is to become empty."""
-START_CHECKS = {"siggen.checks.loading", "siggen.checks.state_problems"}
-"""What reads sections and changes of them; all other checks look at a gearbox as it may be drawn."""
+START_CHECKS = {"siggen.checks.loading"}
+"""What reads a file; all other checks look at a gearbox as it may be drawn."""
 
 
 def test_what_moves_and_measures_knows_a_drawn_gearbox_and_no_file() -> None:
