@@ -115,7 +115,7 @@ class Names:
 
     def gear(self, inner: str) -> str:
         """Return what damage and labels call a gear; words such as none stay."""
-        return self.damaged.get(inner, inner)
+        return next((gear.word for gear in self.gears if gear.inner == inner), inner)
 
     @property
     def flanks(self) -> dict[str, tuple[str, str]]:
@@ -125,17 +125,11 @@ class Names:
             for role, gear in zip(ROLES, mesh.gears, strict=True):
                 found.setdefault(gear.word, (mesh.inner, role))
         either = {_in(mesh.word, EITHER): (mesh.inner, EITHER) for mesh in self.meshes}
-        return found if self is PLANETARY else {**found, **either}
+        return found if self == PLANETARY else {**found, **either}
 
     def mesh(self, inner: str) -> MeshName:
         """Return a mesh."""
         return next(mesh for mesh in self.meshes if mesh.inner == inner)
-
-    @property
-    def damaged(self) -> dict[str, str]:
-        """What `gear` of damage may hold, by sections: gears, and for each mesh the drawn one of both."""
-        either = {_in(mesh.inner, EITHER): _in(mesh.word, EITHER) for mesh in self.meshes}
-        return {**{gear.inner: gear.word for gear in self.gears}, **either}
 
     @property
     def bearings(self) -> dict[str, str]:
