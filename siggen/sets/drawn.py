@@ -13,6 +13,7 @@ from siggen.errors import ConfigError, SolverFailure
 from siggen.gearbox.configured import gearbox_config, gearbox_life
 from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.possible import PossibleGearbox
+from siggen.gearbox.specimen import Specimen
 from siggen.keys.column import Column
 from siggen.planning.plan import planned_record, record_ids_of
 from siggen.record import damage_rows as rows
@@ -26,8 +27,29 @@ from siggen.record.stage_times import stage
 
 
 def set_columns(config: Config, quantities: Sequence[Column] = ()) -> SetColumns:
-    """Return the columns of a set that stores some internal quantities, by its first gearbox."""
-    return columns_of_gearbox(draw_specimen(config, 0), config.identity, quantities)
+    """Return the columns of a set that stores some internal quantities, by its first gearbox that can be drawn."""
+    return columns_of_gearbox(first_drawn(config), config.identity, quantities)
+
+
+TRIED = 100
+
+
+def first_drawn(config: Config) -> Specimen:
+    """Return the first gearbox of a set whose draw is not refused, as a ring that fits no planets is.
+
+    Raises
+    ------
+    ValueError
+        If all of the first hundred are refused.
+    """
+    numbers = range(min(TRIED, config.specimens))
+    for number in numbers:
+        try:
+            return draw_specimen(config, number)
+        except ValueError:
+            if number == numbers[-1]:
+                raise
+    raise AssertionError("a set has gearboxes")
 
 
 def simulated(config: Config, record_ids: Sequence[int]) -> Iterator[SimulatedRecord | RecordFailure]:
@@ -47,7 +69,7 @@ def simulated(config: Config, record_ids: Sequence[int]) -> Iterator[SimulatedRe
         with refused_as("outside_model"), stage("plan"):
             gearbox = draw_specimen(config, numbers[0])
     except SolverFailure as failure:
-        return (RecordFailure(record.record_id, failure.status, failure.reason) for record in records)
+        return iter([RecordFailure(record.record_id, failure.status, failure.reason) for record in records])
     return simulate_specimen(gearbox, records)
 
 
@@ -93,12 +115,13 @@ def to_compile(config: Config) -> tuple[CompilationPart, ...]:
 def compilation_parts(config: Config) -> tuple[CompilationPart, ...]:
     """Return what compiles what records of a set need: damaged teeth, then all else with plain ones."""
     # the last state of every kind of damage, shams removing nothing
-    states = gearbox_config(config, 0).states
+    number = first_drawn(config).specimen_id
+    states = gearbox_config(config, number).states
     kinds = {type(one): i for i, state in enumerate(states) if not state.sham for one in state.damages}
     plain = tuple(state.model_copy(update={"damage": None}) for state in config.states[:1])
     parallel = config.dynamics.model_copy(update={"shafts": None})
     short = config.model_copy(update={"dynamics": parallel, "states": plain, "duration_s": SHORT_S})
     return (
-        CompilationPart(TEETH, partial(draw_specimen, config, 0), tuple(kinds.values()) or (0,)),
-        CompilationPart(MOTION, partial(draw_specimen, short, 0)),
+        CompilationPart(TEETH, partial(draw_specimen, config, number), tuple(kinds.values()) or (0,)),
+        CompilationPart(MOTION, partial(draw_specimen, short, number)),
     )
