@@ -27,7 +27,7 @@ from diagnostics.records.usable_records import refused_parts
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, angle_grid, resample_to_angle
 from diagnostics.signal.shaft_angle import shaft_angle
-from diagnostics.signal.shaft_signals import Shaft, record_shafts
+from diagnostics.signal.shaft_signals import SignalShaft, record_shafts
 from diagnostics.signal.spectrum import order_lines
 from diagnostics.signal.synchronous_average import synchronous_average
 
@@ -129,7 +129,7 @@ def _checks(record: Recording, settings: IndicatorSettings) -> None:
 
 
 def _over_angle(
-    steps: np.ndarray, grid: AngleGrid | None, shafts: tuple[Shaft, Shaft], settings: IndicatorSettings
+    steps: np.ndarray, grid: AngleGrid | None, shafts: tuple[SignalShaft, SignalShaft], settings: IndicatorSettings
 ) -> ChannelSignals:
     """Return a channel of which the record over angle is known."""
     signals = ChannelSignals(np.ones(1), FS_HZ, grid, shafts, settings)
@@ -137,9 +137,9 @@ def _over_angle(
     return signals
 
 
-def _shaft_values(steps: np.ndarray, shaft: Shaft, settings: IndicatorSettings) -> tuple[dict[str, float], ...]:
+def _shaft_values(steps: np.ndarray, shaft: SignalShaft, settings: IndicatorSettings) -> tuple[dict[str, float], ...]:
     """Return values and moments of one shaft from a record over angle."""
-    other = Shaft("gear" if shaft.name == "pinion" else "pinion", shaft.teeth, 0, shaft.resolved, "")
+    other = SignalShaft("gear" if shaft.name == "pinion" else "pinion", shaft.teeth, 0, shaft.resolved, "")
     signals = _over_angle(steps, None, (shaft, other), settings)
     own = tuple(entry for entry in ALL if "shaft" in entry.fields)
     return signals.values(own), signals.moments()

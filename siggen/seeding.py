@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 
-class Stage(IntEnum):
+class Stream(IntEnum):
     """Consumers of randomness. Integers are part of every data set's identity: never renumber."""
 
     SPLIT = 1
@@ -34,31 +34,31 @@ class Stage(IntEnum):
     LIFE = 19
 
 
-OWNER_KEYS: dict[Stage, int] = {
-    Stage.SPLIT: 1,
-    Stage.GEARS: 1,
-    Stage.SUPPORTS: 1,
-    Stage.SENSOR: 1,
-    Stage.OPERATING_POINT: 2,
-    Stage.DAMAGED_TEETH: 1,
-    Stage.DAMAGE: 2,
-    Stage.START: 4,
-    Stage.NOISE: 4,
-    Stage.MANUFACTURE: 2,
-    Stage.DRIVE: 4,
-    Stage.BEARING_TONES: 1,
-    Stage.PATH: 1,
-    Stage.FORCE_NOISE: 4,
-    Stage.BACKGROUND: 1,
-    Stage.BACKGROUND_NOISE: 4,
-    Stage.PAIRS: 1,
-    Stage.PAIR_ORDER: 1,
-    Stage.LIFE: 1,
+OWNER_KEYS: dict[Stream, int] = {
+    Stream.SPLIT: 1,
+    Stream.GEARS: 1,
+    Stream.SUPPORTS: 1,
+    Stream.SENSOR: 1,
+    Stream.OPERATING_POINT: 2,
+    Stream.DAMAGED_TEETH: 1,
+    Stream.DAMAGE: 2,
+    Stream.START: 4,
+    Stream.NOISE: 4,
+    Stream.MANUFACTURE: 2,
+    Stream.DRIVE: 4,
+    Stream.BEARING_TONES: 1,
+    Stream.PATH: 1,
+    Stream.FORCE_NOISE: 4,
+    Stream.BACKGROUND: 1,
+    Stream.BACKGROUND_NOISE: 4,
+    Stream.PAIRS: 1,
+    Stream.PAIR_ORDER: 1,
+    Stream.LIFE: 1,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 
 
-def generator(seed: int, stage: Stage, *owner: int) -> np.random.Generator:
+def generator(seed: int, stage: Stream, *owner: int) -> np.random.Generator:
     """Return the generator of one stage and owner; the same arguments always give the same stream.
 
     Raises
@@ -70,7 +70,7 @@ def generator(seed: int, stage: Stage, *owner: int) -> np.random.Generator:
     return _philox(seed, int(stage), *owner)
 
 
-def named_generator(seed: int, stage: Stage, *owner: int, name: str) -> np.random.Generator:
+def named_generator(seed: int, stage: Stream, *owner: int, name: str) -> np.random.Generator:
     """Return the generator of one named thing of an owner, such as a channel; other names never shift its stream.
 
     Raises
@@ -82,7 +82,7 @@ def named_generator(seed: int, stage: Stage, *owner: int, name: str) -> np.rando
     return _philox(seed, int(stage), *owner, _key(name))
 
 
-def named_uniforms(seed: int, stage: Stage, *owner: int) -> Callable[[str], float]:
+def named_uniforms(seed: int, stage: Stream, *owner: int) -> Callable[[str], float]:
     """Return a function from names (paths of configuration keys) to uniforms in [0, 1) that belong to one owner.
 
     A name's uniform depends on nothing but seed, stage, owner and the name itself, so keys may be added anywhere later.
@@ -102,7 +102,7 @@ def _key(name: str) -> int:
     return int.from_bytes(hashlib.sha256(name.encode()).digest()[:8]) | 1 << 63
 
 
-def _check_owner(stage: Stage, owner: tuple[int, ...]) -> None:
+def _check_owner(stage: Stream, owner: tuple[int, ...]) -> None:
     if len(owner) != OWNER_KEYS[stage]:
         raise ValueError(f"stage {stage.name} takes {OWNER_KEYS[stage]} owner keys, received {owner}")
 

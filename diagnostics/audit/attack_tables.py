@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from diagnostics.audit.audit import ALONE, UNPAIRED, WITH_REFERENCE, Audit
-from diagnostics.audit.detectability import Detection
+from diagnostics.audit.detectability import Detectability
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.tables import interval_cell
@@ -76,7 +76,7 @@ def lost_below(audit: Audit, state: str) -> float:
     return max(CHANCE_AUC, limit) if math.isfinite(limit) else CHANCE_AUC
 
 
-def shown_ladders(audit: Audit) -> dict[str, list[Detection]]:
+def shown_ladders(audit: Audit) -> dict[str, list[Detectability]]:
     """Return the detections that are shown over the size of the damage: the strongest ones, and the older probe."""
     found = {ALONE: audit.ladder(referenced=False), WITH_REFERENCE: audit.ladder(referenced=True)}
     found[UNPAIRED] = audit.detections.get(UNPAIRED, [])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from diagnostics.audit.bank_detections import ChanceLimit, gearboxes_needed
 from diagnostics.audit.best_indicator import BestIndicator
-from diagnostics.audit.detectability import FEWEST_SPECIMENS, Detection, in_order
+from diagnostics.audit.detectability import FEWEST_SPECIMENS, Detectability, in_order
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.reference_comparison import ReferenceComparison
@@ -62,7 +62,7 @@ class Audit:
     findings: tuple[Finding, ...]
     verdict: str
     realism: Realism | None
-    detections: dict[str, list[Detection]]
+    detections: dict[str, list[Detectability]]
     notes: tuple[str, ...]
     seconds_per_record: float
     records: int
@@ -100,12 +100,12 @@ class Audit:
             found[name] = next((entry.auc.value for entry in entries if entry.state == state), math.nan)
         return {name: auc for name, auc in found.items() if math.isfinite(auc)}
 
-    def ladder(self, *, referenced: bool) -> list[Detection]:
+    def ladder(self, *, referenced: bool) -> list[Detectability]:
         """Return the entry of the strongest attacker for every state, in the order of sizes, with or without reference.
 
         The name of the attacker stands before what it chose.
         """
-        best: dict[str, Detection] = {}
+        best: dict[str, Detectability] = {}
         for name, entries in self.detections.items():
             for entry in entries if is_referenced(name) == referenced else []:
                 known = best.get(entry.state)

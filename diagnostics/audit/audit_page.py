@@ -13,7 +13,7 @@ import numpy as np
 from diagnostics.audit.attack_tables import attack_parts, shown_ladders, tried
 from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary, reference_parts
-from diagnostics.audit.detectability import SIZES, TARGETS, DetectedLength, Detection, differ_in_length, length_at
+from diagnostics.audit.detectability import SIZES, TARGETS, Detectability, DetectedLength, differ_in_length, length_at
 from diagnostics.audit.envelope import QuantityShare, Realism
 from diagnostics.page import html
 from diagnostics.page.html import Cell
@@ -82,7 +82,7 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
     axis.set_title(f"{share.quantity.title}\n{share.inside:.0%} inside", fontsize=8, color=colour)
 
 
-def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
+def detectability_figure(variants: dict[str, list[Detectability]]) -> Figure:
     """Return AUC over profile length with intervals: a panel per variant, a marker per fault; dotted: targets.
 
     Faults whose states do not differ in length stand in the tables only, unless there are no others.
@@ -105,7 +105,7 @@ def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
     return figure
 
 
-def _ladders(variants: dict[str, list[Detection]]) -> list[tuple[str, str, list[Detection]]]:
+def _ladders(variants: dict[str, list[Detectability]]) -> list[tuple[str, str, list[Detectability]]]:
     """Return what was judged, by variant and fault."""
     found = [
         (name, fault, [entry for entry in entries if entry.fault == fault and np.isfinite(entry.auc.value)])
@@ -115,7 +115,7 @@ def _ladders(variants: dict[str, list[Detection]]) -> list[tuple[str, str, list[
     return [line for line in found if line[2]]
 
 
-def _draw_ladder(axis: Any, entries: list[Detection], colour: str, marker: str, label: str | None) -> None:
+def _draw_ladder(axis: Any, entries: list[Detectability], colour: str, marker: str, label: str | None) -> None:
     length = [entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries]
     value, low, high = (np.array([getattr(entry.auc, part) for entry in entries]) for part in ("value", "low", "high"))
     limits = np.nan_to_num([value - low, high - value]).clip(0.0)
@@ -209,7 +209,7 @@ def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[Cell]]:
     ]
 
 
-def _detection_table(name: str, entries: list[Detection], audit: Audit) -> str:
+def _detection_table(name: str, entries: list[Detectability], audit: Audit) -> str:
     sizes = [size for size in SIZES if entries and size in entries[0].sizes]
     rows = [
         [

@@ -22,7 +22,7 @@ from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.bank_detections import ChanceLimit, bank_detections, chance_limit, damaged_states
 from diagnostics.audit.best_indicator import best_indicators
 from diagnostics.audit.condition_traps import level_attackers
-from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
+from diagnostics.audit.detectability import TARGETS, Detectability, detections, features, length_at, waveform_change
 from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
 from diagnostics.audit.held_out import Attacker
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
@@ -83,7 +83,7 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
     }
 
 
-def _entries_numbers(entries: list[Detection], audit: Audit) -> dict[str, Any]:
+def _entries_numbers(entries: list[Detectability], audit: Audit) -> dict[str, Any]:
     return {
         "states": [
             {
@@ -232,7 +232,7 @@ def audit_set(
     )
 
 
-def _detections(measured: MeasuredSet, seed: int, paired: bool) -> dict[str, list[Detection]]:
+def _detections(measured: MeasuredSet, seed: int, paired: bool) -> dict[str, list[Detectability]]:
     found = {UNPAIRED: detections(measured, features(measured), seed)}
     if paired:
         found[PAIRED] = detections(measured, features(measured, paired=True), seed)
@@ -242,7 +242,7 @@ def _detections(measured: MeasuredSet, seed: int, paired: bool) -> dict[str, lis
 
 def _attacks(
     measured: MeasuredSet, seed: int, stage: Stage
-) -> tuple[dict[str, list[Detection]], ChanceLimit, tuple[ShamFound, ...]]:
+) -> tuple[dict[str, list[Detectability]], ChanceLimit, tuple[ShamFound, ...]]:
     """Return what the bank of attackers on waveforms reaches, by chance too, and on shams."""
     with stage("preparing attackers", PREPARED) as advance:
         bank = signal_attackers(measured, seed, advance)
@@ -264,7 +264,7 @@ def sham_sides(measured: MeasuredSet, bank: list[Attacker]) -> dict[str, list[At
     }
 
 
-def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realism: bool) -> list[str]:
+def _notes(measured: MeasuredSet, found: dict[str, list[Detectability]], with_realism: bool) -> list[str]:
     notes = []
     for name, entries in found.items():
         lacking = [entry.state for entry in entries if not math.isfinite(entry.auc.value)]

@@ -9,7 +9,7 @@ import math
 
 from diagnostics.audit.attack_tables import chance_sentence, lost_below, shown_ladders
 from diagnostics.audit.audit import Audit
-from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detection, length_at
+from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detectability, length_at
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.reference_comparison import FEWEST_GEARBOXES, FEWEST_RECORDINGS, TELLING_AUC, ReferenceComparison
 from diagnostics.audit.sham import sham_sentences
@@ -161,7 +161,7 @@ def _strongest_words(audit: Audit, state: str) -> str:
     return f"{tried}: AUC {decimal(entry.auc.value)} ({limits(entry.auc)}){basis}."
 
 
-def _size_sentence(detections: dict[str, list[Detection]]) -> list[str]:
+def _size_sentence(detections: dict[str, list[Detectability]]) -> list[str]:
     """Say from which length on damage is found at the lower target, by each variant that reaches it."""
     target, parts = TARGETS[0], []
     for name, entries in detections.items():

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnostics.audit.detectability import TARGETS, Detection, damage_sizes, in_order
+from diagnostics.audit.detectability import TARGETS, Detectability, damage_sizes, in_order
 from diagnostics.audit.held_out import Attacker, dealt_folds, held_out, held_out_values, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks
 from diagnostics.audit.simple_thresholds import LARGEST_AUC
@@ -190,7 +190,7 @@ def damaged_states(measured: MeasuredSet) -> tuple[str, ...]:
 
 def bank_detections(
     measured: MeasuredSet, attackers: Sequence[Attacker], seed: int, advance: Callable[[], None]
-) -> dict[str, list[Detection]]:
+) -> dict[str, list[Detectability]]:
     """Return the detection of every state by every attacker that could be asked, by its name.
 
     Parameters
@@ -213,16 +213,16 @@ def bank_detections(
     return found
 
 
-def detection_by(measured: MeasuredSet, attacker: Attacker, state: str, folds: np.ndarray, seed: int) -> Detection:
+def detection_by(measured: MeasuredSet, attacker: Attacker, state: str, folds: np.ndarray, seed: int) -> Detectability:
     """Return the detection of one state by one attacker; folds as of `dealt_folds`."""
     labels = measured.labels
     of_state = np.asarray(labels["state"] == state) & ~measured.healthy
     rows = judged_rows(attacker, measured.healthy, of_state, labels["specimen_id"])
     sizes, kind = damage_sizes(measured, of_state), damage_kind(labels, of_state)
     if rows.size == 0:
-        return Detection(state, kind, sizes, Interval(math.nan, math.nan, math.nan), 0, "", attacker.tried)
+        return Detectability(state, kind, sizes, Interval(math.nan, math.nan, math.nan), 0, "", attacker.tried)
     found = held_out(attacker, rows, of_state[rows], labels["specimen_id"][rows], folds[:, rows], seed)
-    return Detection(state, kind, sizes, found.auc, found.specimens, found.basis, attacker.tried)
+    return Detectability(state, kind, sizes, found.auc, found.specimens, found.basis, attacker.tried)
 
 
 def chance_limit(

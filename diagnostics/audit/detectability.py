@@ -31,7 +31,7 @@ TARGETS = (0.75, 0.85)
 
 
 @dataclass(frozen=True, slots=True)
-class Detection:
+class Detectability:
     """AUC of one state against healthy, with its damage: kind of fault and means of the size labels.
 
     `basis` is what the attacker chose most often, such as a band; `tried` how many columns it chose from or weighed.
@@ -101,7 +101,7 @@ def channel_mean(values: np.ndarray) -> np.ndarray:
         )
 
 
-def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list[Detection]:
+def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list[Detectability]:
     """Return the detection of every damaged state, by fault and profile length.
 
     Parameters
@@ -127,7 +127,7 @@ def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list
         )
         rows = labels["state"] == state
         sizes = damage_sizes(measured, rows)
-        found.append(Detection(state, damage_kind(labels, rows), sizes, auc, count, "", int(values.shape[1])))
+        found.append(Detectability(state, damage_kind(labels, rows), sizes, auc, count, "", int(values.shape[1])))
     return in_order(found)
 
 
@@ -136,7 +136,7 @@ def damage_sizes(measured: MeasuredSet, rows: np.ndarray) -> dict[str, float]:
     return {name: float(np.mean(measured.labels[name][rows])) for name in SIZES if name in measured.labels}
 
 
-def in_order(entries: list[Detection]) -> list[Detection]:
+def in_order(entries: list[Detectability]) -> list[Detectability]:
     """Return detections by fault, profile length and area."""
     return sorted(
         entries,
@@ -192,7 +192,7 @@ class DetectedLength:
     is_upper_bound: bool
 
 
-def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLength | None]:
+def length_at(entries: list[Detectability], target: float) -> dict[str, DetectedLength | None]:
     """Return by fault the profile length at which the AUC first reaches a target, linear between states; None if never.
 
     A fault whose states do not differ in length, such as spalls that grow along the face, is left out.
@@ -209,13 +209,13 @@ def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLeng
     return {fault: _first_reaching(found, target) for fault, found in ladders.items() if differ_in_length(found)}
 
 
-def differ_in_length(entries: list[Detection]) -> bool:
+def differ_in_length(entries: list[Detectability]) -> bool:
     """Return whether states differ in profile length, so that they can be ranked by it."""
     lengths = sorted(entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries)
     return all(high > low * (1.0 + 1e-6) for low, high in pairwise(lengths))
 
 
-def _first_reaching(entries: list[Detection], target: float) -> DetectedLength | None:
+def _first_reaching(entries: list[Detectability], target: float) -> DetectedLength | None:
     first = next((place for place, entry in enumerate(entries) if entry.auc.value >= target), None)
     if first is None:
         return None

@@ -17,7 +17,7 @@ BENCH, VARIABLE = "bench", "variable"
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class MeasuredQuantity:
     """Name in the measured set, title with unit, and the ranges (low, high) that count as inside."""
 
     name: str
@@ -31,35 +31,38 @@ class Quantity:
 
 HARMONIC_RANGE = ((-30.0, 12.0),)
 QUANTITIES = (
-    Quantity("sideband1_db", "1st sidebands / mesh 1 [dB]", ((-30.0, -8.0),)),
-    Quantity("sideband2_db", "2nd sidebands / mesh 1 [dB]", ((-31.0, -14.0),)),
-    Quantity("asymmetry_db", "upper / lower 1st sideband [dB]", ((-20.0, 6.0),)),
-    *(Quantity(f"harmonic{h}_db", f"mesh {h} / mesh 1 [dB]", HARMONIC_RANGE) for h in (2, 3, 4, 5)),
-    Quantity("noise_density_db", "noise density at mesh 1 [dB/Hz]", ((-36.0, -20.0),)),
-    Quantity("synchronous_ratio_db", "synchronous SNR [dB]", ((-4.0, 9.0),)),
-    Quantity("kurtosis", "kurtosis, raw (loaded or light load)", ((2.0, 3.2), (4.0, 6.5))),
-    Quantity("fm4", "FM4", ((2.3, 4.3),)),
-    Quantity("energy_ratio", "energy ratio", ((0.09, 1.8),)),
+    MeasuredQuantity("sideband1_db", "1st sidebands / mesh 1 [dB]", ((-30.0, -8.0),)),
+    MeasuredQuantity("sideband2_db", "2nd sidebands / mesh 1 [dB]", ((-31.0, -14.0),)),
+    MeasuredQuantity("asymmetry_db", "upper / lower 1st sideband [dB]", ((-20.0, 6.0),)),
+    *(MeasuredQuantity(f"harmonic{h}_db", f"mesh {h} / mesh 1 [dB]", HARMONIC_RANGE) for h in (2, 3, 4, 5)),
+    MeasuredQuantity("noise_density_db", "noise density at mesh 1 [dB/Hz]", ((-36.0, -20.0),)),
+    MeasuredQuantity("synchronous_ratio_db", "synchronous SNR [dB]", ((-4.0, 9.0),)),
+    MeasuredQuantity("kurtosis", "kurtosis, raw (loaded or light load)", ((2.0, 3.2), (4.0, 6.5))),
+    MeasuredQuantity("fm4", "FM4", ((2.3, 4.3),)),
+    MeasuredQuantity("energy_ratio", "energy ratio", ((0.09, 1.8),)),
 )
 BACKGROUND_QUANTITIES = (
-    Quantity("shaft_1x_db", "shaft 1x / strongest mesh line [dB]", ((-47.0, -5.0),)),
-    *(Quantity(f"shaft_{k}x_db", f"shaft {k}x / strongest mesh line [dB]", ((-50.0, -5.0),)) for k in (2, 3, 4)),
-    Quantity("floor_10_20hz_db", "floor 10-20 Hz [dB/Hz]", ((-80.0, -35.0),)),
-    Quantity("floor_40_160hz_db", "floor 40-160 Hz [dB/Hz]", ((-58.0, -40.0),)),
-    Quantity("floor_5_10khz_db", "floor 5-10 kHz [dB/Hz]", ((-65.0, -45.0),)),
-    Quantity("floor_slope_db", "floor 5-10 kHz / 40-160 Hz [dB]", ((-22.0, 10.0),)),
-    Quantity("tonality_3500_5000hz_db", "mean / median 3.5-5 kHz [dB]", ((2.5, 18.0),)),
-    Quantity("tonality_5_8khz_db", "mean / median 5-8 kHz [dB]", ((2.5, 14.0),)),
-    Quantity("lines_above_mesh5_per_khz", "lines above mesh 5 [1/kHz]", ((1.5, 8.7),)),
-    Quantity("noise_kurtosis_1_2khz", "kurtosis of the noise, 1-2 kHz", ((2.9, 3.6),)),
-    Quantity("noise_kurtosis_2_4khz", "kurtosis of the noise, 2-4 kHz", ((2.95, 4.5),)),
-    Quantity("noise_kurtosis_4_8khz", "kurtosis of the noise, 4-8 kHz", ((3.1, 6.3),)),
-    Quantity("noise_envelope_cv_1_2khz", "variation of its envelope, 1-2 kHz", ((0.51, 0.6),)),
-    Quantity("noise_envelope_cv_2_4khz", "variation of its envelope, 2-4 kHz", ((0.52, 0.7),)),
-    Quantity("noise_envelope_cv_4_8khz", "variation of its envelope, 4-8 kHz", ((0.53, 0.94),)),
-    Quantity("shaft_depth", "depth of the envelope at a shaft, 2-8 kHz", ((0.08, 0.75),)),
-    Quantity("repeated_coherence", "coherence of half averages, orders 100-300", ((0.0, 0.96),)),
-    Quantity("repeated_kurtosis", "kurtosis of the average, orders 100-300", ((2.3, 3.2),)),
+    MeasuredQuantity("shaft_1x_db", "shaft 1x / strongest mesh line [dB]", ((-47.0, -5.0),)),
+    *(
+        MeasuredQuantity(f"shaft_{k}x_db", f"shaft {k}x / strongest mesh line [dB]", ((-50.0, -5.0),))
+        for k in (2, 3, 4)
+    ),
+    MeasuredQuantity("floor_10_20hz_db", "floor 10-20 Hz [dB/Hz]", ((-80.0, -35.0),)),
+    MeasuredQuantity("floor_40_160hz_db", "floor 40-160 Hz [dB/Hz]", ((-58.0, -40.0),)),
+    MeasuredQuantity("floor_5_10khz_db", "floor 5-10 kHz [dB/Hz]", ((-65.0, -45.0),)),
+    MeasuredQuantity("floor_slope_db", "floor 5-10 kHz / 40-160 Hz [dB]", ((-22.0, 10.0),)),
+    MeasuredQuantity("tonality_3500_5000hz_db", "mean / median 3.5-5 kHz [dB]", ((2.5, 18.0),)),
+    MeasuredQuantity("tonality_5_8khz_db", "mean / median 5-8 kHz [dB]", ((2.5, 14.0),)),
+    MeasuredQuantity("lines_above_mesh5_per_khz", "lines above mesh 5 [1/kHz]", ((1.5, 8.7),)),
+    MeasuredQuantity("noise_kurtosis_1_2khz", "kurtosis of the noise, 1-2 kHz", ((2.9, 3.6),)),
+    MeasuredQuantity("noise_kurtosis_2_4khz", "kurtosis of the noise, 2-4 kHz", ((2.95, 4.5),)),
+    MeasuredQuantity("noise_kurtosis_4_8khz", "kurtosis of the noise, 4-8 kHz", ((3.1, 6.3),)),
+    MeasuredQuantity("noise_envelope_cv_1_2khz", "variation of its envelope, 1-2 kHz", ((0.51, 0.6),)),
+    MeasuredQuantity("noise_envelope_cv_2_4khz", "variation of its envelope, 2-4 kHz", ((0.52, 0.7),)),
+    MeasuredQuantity("noise_envelope_cv_4_8khz", "variation of its envelope, 4-8 kHz", ((0.53, 0.94),)),
+    MeasuredQuantity("shaft_depth", "depth of the envelope at a shaft, 2-8 kHz", ((0.08, 0.75),)),
+    MeasuredQuantity("repeated_coherence", "coherence of half averages, orders 100-300", ((0.0, 0.96),)),
+    MeasuredQuantity("repeated_kurtosis", "kurtosis of the average, orders 100-300", ((2.3, 3.2),)),
 )
 """What stands beside the mesh lines. Ranges pool channels of two or three machines and what is expected of others.
 
@@ -79,7 +82,7 @@ SPREAD_RANGES = {
 class QuantityShare:
     """One quantity over all healthy channel-records: its 5 %, 50 % and 95 % points, share inside, share undefined."""
 
-    quantity: Quantity
+    quantity: MeasuredQuantity
     values: np.ndarray
     quantiles: tuple[float, float, float]
     inside: float
@@ -117,9 +120,12 @@ class Realism:
         return float(np.mean([share.inside for share in self.background])) if self.background else math.nan
 
 
-def quantities(speed: str = BENCH) -> tuple[Quantity, ...]:
+def quantities(speed: str = BENCH) -> tuple[MeasuredQuantity, ...]:
     """Return the thirteen quantities, the last with the range of a bench or of a variable-speed machine."""
-    return (*QUANTITIES, Quantity("speed_variation_percent", f"speed variation, {speed} [%]", SPEED_RANGES[speed]))
+    return (
+        *QUANTITIES,
+        MeasuredQuantity("speed_variation_percent", f"speed variation, {speed} [%]", SPEED_RANGES[speed]),
+    )
 
 
 def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
@@ -151,7 +157,7 @@ def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
     )
 
 
-def quantity_share(quantity: Quantity, values: np.ndarray) -> QuantityShare:
+def quantity_share(quantity: MeasuredQuantity, values: np.ndarray) -> QuantityShare:
     """Return how the values of healthy channel-records lie in the ranges of a quantity."""
     flat = values.ravel()
     defined = flat[np.isfinite(flat)]

@@ -14,7 +14,7 @@ from typing import Any
 import pyarrow as pa
 
 from diagnostics.bench.derived_secret import shuffled
-from diagnostics.bench.question import Renumbered, Shown
+from diagnostics.bench.question import PublishedRecords, Renumbered
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.benchmark import PER_PART
 from siggen.dataset.reading import Dataset, as_record
@@ -29,7 +29,7 @@ GIVEN = ("operating_point_id", "speed_hz", "torque_nm")
 TEETH = "teeth_"
 
 
-def renumbered(dataset: Dataset, shown: Shown, secret: bytes, name: str, place: int) -> Renumbered:
+def renumbered(dataset: Dataset, shown: PublishedRecords, secret: bytes, name: str, place: int) -> Renumbered:
     """Return new numbers in an order that only the secret tells, those that are asked about last.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import Any
 from diagnostics.bench.baselines import damage_predictions
 from diagnostics.bench.conditions import CONDITIONS
 from diagnostics.bench.derived_secret import shuffled
-from diagnostics.bench.question import Question, Ranking, Shown, Words
+from diagnostics.bench.question import PublishedRecords, Question, Ranking, Words
 from diagnostics.records.state_classes import HEALTHY, SHAM
 from diagnostics.scoring.detect import DETECT, EVERY, LEAK
 from siggen.dataset.reading import Dataset
@@ -34,12 +34,12 @@ part is secret until labels are revealed.
 """
 
 
-def shown_records(dataset: Dataset, secret: bytes, name: str) -> Shown:
+def shown_records(dataset: Dataset, secret: bytes, name: str) -> PublishedRecords:
     """Return all records; one healthy one of every gearbox and operating point is told, drawn by lot."""
     rows = dataset.labels().to_pylist()
     every = frozenset(row["record_id"] for row in rows)
     told = frozenset(_references(rows, secret, name))
-    return Shown({one: int(one not in told) for one in every}, told, every - told)
+    return PublishedRecords({one: int(one not in told) for one in every}, told, every - told)
 
 
 def _references(rows: list[dict[str, Any]], secret: bytes, name: str) -> Iterator[int]:

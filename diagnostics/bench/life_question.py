@@ -16,7 +16,7 @@ import pyarrow as pa
 from diagnostics.bench.conditions import LIFE_CONDITIONS
 from diagnostics.bench.derived_secret import derived
 from diagnostics.bench.life_predictions import life_predictions
-from diagnostics.bench.question import Question, Ranking, Renumbered, Shown, Words
+from diagnostics.bench.question import PublishedRecords, Question, Ranking, Renumbered, Words
 from diagnostics.scoring.remaining_life import EVERY, REMAINING_LIFE
 from siggen.dataset.reading import Dataset
 from siggen.errors import counted
@@ -47,7 +47,7 @@ this part is secret until labels are revealed.
 """
 
 
-def shown_records(dataset: Dataset, secret: bytes, name: str) -> Shown:
+def shown_records(dataset: Dataset, secret: bytes, name: str) -> PublishedRecords:
     """Return the records of every gearbox up to an inspection drawn from all that it has."""
     rows = dataset.labels(columns=["record_id", "specimen_id", "state_id"]).to_pylist()
     numbers: dict[int, set[int]] = {}
@@ -56,7 +56,7 @@ def shown_records(dataset: Dataset, secret: bytes, name: str) -> Shown:
     last = {gearbox: _drawn(sorted(own), secret, name, gearbox) for gearbox, own in numbers.items()}
     state_id = {row["record_id"]: row["state_id"] for row in rows if row["state_id"] <= last[row["specimen_id"]]}
     asked = (row["record_id"] for row in rows if row["state_id"] == last[row["specimen_id"]])
-    return Shown(state_id, frozenset(), frozenset(asked))
+    return PublishedRecords(state_id, frozenset(), frozenset(asked))
 
 
 def _drawn(inspections: list[int], secret: bytes, name: str, gearbox: int) -> int:

@@ -36,7 +36,7 @@ SECRET_FILE, SIMULATED, CARD = "secret", "simulated", "README.md"
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class WantedBench:
     """What is to be made.
 
     Attributes
@@ -62,7 +62,7 @@ class Wanted:
 
 
 def make_benchmark(
-    out: Path, hidden: Path, secret: bytes, wanted: Wanted, workers: int | None = None, stage: Stage = silent_stage
+    out: Path, hidden: Path, secret: bytes, wanted: WantedBench, workers: int | None = None, stage: Stage = silent_stage
 ) -> Benchmark:
     """Make a benchmark, or go on with one.
 

@@ -18,7 +18,7 @@ from siggen.dataset.reading import Dataset
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class PublishedRecords:
     """Which records of a simulated part are published, by their number there.
 
     Attributes
@@ -49,7 +49,7 @@ class Renumbered:
 
     record: Mapping[int, int]
     gearbox: Mapping[int, int]
-    shown: Shown
+    shown: PublishedRecords
 
     def split(self, record: int) -> str:
         """Return the split of a record, by its number in the simulated set."""
@@ -122,6 +122,6 @@ class Question:
     conditions: Mapping[str, Mapping[str, Any]]
     words: Words
     ranking: Ranking
-    shown: Callable[[Dataset, bytes, str], Shown]
+    shown: Callable[[Dataset, bytes, str], PublishedRecords]
     tables: Callable[[Dataset, Renumbered], tuple[dict[str, pa.Table], dict[str, pa.Table]]]
     predictions: Callable[[Benchmark, int, int, Stage], Iterator[pa.Table]]

@@ -26,7 +26,7 @@ from diagnostics.calibration.order_record import (
 )
 from diagnostics.calibration.own_lines import OwnLine, own_lines
 from diagnostics.calibration.path_draws import CEPSTRUM_POINTS, ChannelLines, PathDraw, drawn_path, unlike_db
-from diagnostics.calibration.rig import Rig, check_meshes
+from diagnostics.calibration.rig import CalibratedRig, check_meshes
 from diagnostics.calibration.second_stage import SecondStage, StageLine, second_stage, stage_lines, wave_lines
 from diagnostics.calibration.shaft_multiples import Multiples, machine_multiples
 from diagnostics.calibration.source_library import SourceLibrary, source_library
@@ -82,7 +82,7 @@ class Calibration:
         A pair beside those of the rig on one of its shafts, where the recordings show it.
     """
 
-    rig: Rig
+    rig: CalibratedRig
     operating_point: dict[str, Any]
     random_rms: tuple[float, float]
     grid_hz: np.ndarray
@@ -93,7 +93,7 @@ class Calibration:
 
 
 def calibrated(
-    rig: Rig,
+    rig: CalibratedRig,
     blocks: HealthyBlocks,
     torque_nm: tuple[float, float] | None,
     gearboxes: int,

@@ -14,7 +14,7 @@ from siggen.columns.drivetrain import GearTrain
 
 
 @dataclass(frozen=True, slots=True)
-class Shaft:
+class RigShaft:
     """One shaft: name, turns per turn of the first one, teeth of its gears."""
 
     name: str
@@ -38,7 +38,7 @@ class MeshOrder:
 
     name: str
     order: float
-    shafts: tuple[Shaft, Shaft]
+    shafts: tuple[RigShaft, RigShaft]
 
     def called(self, what: str) -> str:
         """Return the name of its line or of a group of its lines."""
@@ -56,7 +56,7 @@ class MeshOrder:
 class TrainOrders:
     """All shafts and meshes of a machine."""
 
-    shafts: tuple[Shaft, ...]
+    shafts: tuple[RigShaft, ...]
     meshes: tuple[MeshOrder, ...]
 
     @property
@@ -79,7 +79,7 @@ def drivetrain(train: GearTrain) -> TrainOrders:
         turns.append(turns[-1] * Fraction(*mesh.teeth))
         teeth.append((mesh.teeth[1], *(one.teeth[0] for one in meshes[number + 1 : number + 2])))
     named = (shaft.name for shaft in train.shafts)
-    found = tuple(Shaft(*one) for one in zip(named, turns, teeth, strict=True))
+    found = tuple(RigShaft(*one) for one in zip(named, turns, teeth, strict=True))
     return TrainOrders(
         found,
         tuple(

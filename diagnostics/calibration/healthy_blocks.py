@@ -64,7 +64,7 @@ def jackknife(values: np.ndarray, statistic: Callable[[np.ndarray], float] = np.
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class HealthyBlock:
     """One recording: name, channels (n,) [m/s²], rate, pulse times [s] of the first shaft and where they come from."""
 
     name: str
@@ -83,7 +83,7 @@ class Block:
 class HealthyBlocks:
     """All blocks, and the channels' names."""
 
-    blocks: tuple[Block, ...]
+    blocks: tuple[HealthyBlock, ...]
     channels: tuple[str, ...]
     fs_hz: float
 
@@ -115,7 +115,7 @@ def healthy_blocks(
                 "longer"
             )
         name = path.name if row is None else f"{path.name}:{row}"
-        found.append(Block(name, recording.channels, recording.fs_hz, pulses, turning.origin))
+        found.append(HealthyBlock(name, recording.channels, recording.fs_hz, pulses, turning.origin))
     return HealthyBlocks(tuple(found), channels, read[0].fs_hz)
 
 

@@ -24,7 +24,7 @@ import pyarrow as pa
 
 import siggen
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
+from diagnostics.calibration.healthy_blocks import HealthyBlock, HealthyBlocks
 from diagnostics.calibration.path_draws import number_limits
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from siggen.errors import SolverFailure, UsageError
@@ -108,7 +108,7 @@ def injected_rows(
             advance()
 
 
-def _recorded(block: Block) -> dict[str, Any]:
+def _recorded(block: HealthyBlock) -> dict[str, Any]:
     labels = {"state": "healthy", "fault": "healthy", "severity": "healthy", "faulty_gear": "none", "repeat": 0}
     nothing = {"simulated_gearbox": NO_GEARBOX, "path_number": NO_GEARBOX, "identity": ""}
     unknown = {"difference_db": -np.inf, "difference_torque_nm": np.nan}
@@ -122,7 +122,7 @@ def _recorded(block: Block) -> dict[str, Any]:
     }
 
 
-def _injected(block: Block, difference: Difference, start: int, gearbox: int, repeat: int) -> dict[str, Any]:
+def _injected(block: HealthyBlock, difference: DamageEffect, start: int, gearbox: int, repeat: int) -> dict[str, Any]:
     added = sum(float(np.mean(signal**2)) for signal in difference.channels.values())
     own = sum(float(np.var(signal)) for signal in block.channels.values())
     numbers = [value for name, value in difference.labels.items() if name.startswith("path_number_")]
@@ -140,11 +140,11 @@ def _injected(block: Block, difference: Difference, start: int, gearbox: int, re
     }
 
 
-def _origin(block: Block, origin: str) -> dict[str, Any]:
+def _origin(block: HealthyBlock, origin: str) -> dict[str, Any]:
     return {"recording": block.name, "origin": origin}
 
 
-def _signals(block: Block, channels: Mapping[str, np.ndarray]) -> dict[str, Any]:
+def _signals(block: HealthyBlock, channels: Mapping[str, np.ndarray]) -> dict[str, Any]:
     return {"signals": tuple(channels.values()), "tacho_s": block.pulses_s}
 
 
@@ -194,7 +194,7 @@ def _complete(rows: Sequence[dict[str, Any]], config: Any) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class DamageEffect:
     """What one damage does to one gearbox.
 
     Attributes
@@ -223,7 +223,7 @@ def damage_states(mine: Path) -> dict[str, dict[str, Any]]:
     return {name: state for name, state in states.items() if state.get("damage")}
 
 
-def simulated_differences(mine: Path, block: Block, gearbox: int) -> Iterator[Difference]:
+def simulated_differences(mine: Path, block: HealthyBlock, gearbox: int) -> Iterator[DamageEffect]:
     """Yield the difference of every damaged state of a gearbox, at the speed of a recording."""
     wanted = min((block.pulses_s.size - 1 + SPARE_TURNS) / block.speed_hz, LONGEST_S)
     duration = np.ceil(wanted * block.fs_hz) / block.fs_hz
@@ -241,10 +241,10 @@ def simulated_differences(mine: Path, block: Block, gearbox: int) -> Iterator[Di
             continue
         pairs = zip(block.channels, healthy.channels.values(), damaged.channels.values(), strict=True)
         found = {name: b - a for name, a, b in pairs}
-        yield Difference(found, config.fs_hz, damaged.tacho_s, damaged.labels, config.identity)
+        yield DamageEffect(found, config.fs_hz, damaged.tacho_s, damaged.labels, config.identity)
 
 
-def _quiet(mine: Path, block: Block, duration_s: float, gearbox: int) -> dict[str, Any]:
+def _quiet(mine: Path, block: HealthyBlock, duration_s: float, gearbox: int) -> dict[str, Any]:
     """Return a configuration at the recording's speed, without noise, converter and variation of the speed."""
     config = siggen.load_config(mine).canonical()
     off = {"noise_spectrum": None, "lines": None, "bits": None, "range_m_s2": 1e6}
@@ -271,7 +271,7 @@ def _refuse_other_kinds(mine: Path, sensors: Mapping[str, Mapping[str, Any]], of
             )
 
 
-def injected(block: Block, difference: Difference, start_turn: int) -> dict[str, np.ndarray]:
+def injected(block: HealthyBlock, difference: DamageEffect, start_turn: int) -> dict[str, np.ndarray]:
     """Return the recording's channels with the difference at its own course of angle.
 
     Parameters
@@ -288,7 +288,7 @@ def injected(block: Block, difference: Difference, start_turn: int) -> dict[str,
     }
 
 
-def _times(block: Block, difference: Difference, start_turn: int) -> AngleGrid:
+def _times(block: HealthyBlock, difference: DamageEffect, start_turn: int) -> AngleGrid:
     """Return where in the simulation every sample of the recording lies, by the angle of the pinion."""
     time_s = np.arange(next(iter(block.channels.values())).size) / block.fs_hz
     turn = _continued(time_s, block.pulses_s)

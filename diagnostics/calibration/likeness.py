@@ -13,7 +13,7 @@ import numpy as np
 
 import siggen
 from diagnostics.audit.reference_comparison import ReferenceComparison, WindowSet, reference_comparison
-from diagnostics.calibration.healthy_blocks import Block
+from diagnostics.calibration.healthy_blocks import HealthyBlock
 from diagnostics.calibration.order_record import turns_of
 from diagnostics.indicators.background_levels import CYCLIC, SPECTRAL, background_levels
 from diagnostics.signal.window_features import RATE_HZ, signal_windows, window_features
@@ -70,7 +70,7 @@ def band_edges_hz(fs_hz: float) -> np.ndarray:
     return np.asarray(LOWEST_HZ * 2.0 ** (np.arange(count + 1) / BANDS_PER_OCTAVE))
 
 
-def sample_of(blocks: Iterable[Block], teeth: tuple[int, int]) -> Sample:
+def sample_of(blocks: Iterable[HealthyBlock], teeth: tuple[int, int]) -> Sample:
     """Return what records show."""
     bands, levels, values, owners, names = [], [], [], [], []
     for block in blocks:
@@ -89,7 +89,7 @@ def sample_of(blocks: Iterable[Block], teeth: tuple[int, int]) -> Sample:
 
 def simulated_blocks(
     config: Path | Mapping[str, object], channels: tuple[str, ...], gearboxes: int, advance: Callable[[], None]
-) -> list[Block]:
+) -> list[HealthyBlock]:
     """Return one healthy record of each of some gearboxes; channels take the recordings' names in their order."""
     loaded = siggen.load_config(config, ["states={healthy: {}}", f"specimens={gearboxes}", "repeats=1"])
     found = []
@@ -97,7 +97,7 @@ def simulated_blocks(
         with suppress(SolverFailure):
             record = siggen.run(siggen.draw(loaded, number))
             signals = dict(zip(channels, record.channels.values(), strict=True))
-            found.append(Block(str(number), signals, loaded.fs_hz, record.tacho_s))
+            found.append(HealthyBlock(str(number), signals, loaded.fs_hz, record.tacho_s))
         advance()
     return found
 
@@ -121,7 +121,7 @@ def band_levels_db(signal: np.ndarray, fs_hz: float) -> np.ndarray:
     return np.asarray(10.0 * np.log10(np.maximum(means, 1e-30)))
 
 
-def _levels(signal: np.ndarray, block: Block, teeth: tuple[int, int]) -> list[float]:
+def _levels(signal: np.ndarray, block: HealthyBlock, teeth: tuple[int, int]) -> list[float]:
     turns = turns_of(signal.astype(np.float64), block.fs_hz, block.pulses_s)
     found = background_levels(turns, block.speed_hz, teeth, block.fs_hz)
     return [found[name] for name in LEVELS]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Block, Fitted, jackknife
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlock, jackknife
 from diagnostics.calibration.order_record import OrderRecord, turns_of
 from diagnostics.signal.synchronous_average import asynchronous_part, band_signal
 
@@ -43,7 +43,7 @@ class SensorFit:
     bits: int | None
 
 
-def sensor_fit(blocks: Sequence[Block], channel: str) -> SensorFit:
+def sensor_fit(blocks: Sequence[HealthyBlock], channel: str) -> SensorFit:
     """Return the resolution of a channel; its range is not seen, only that it is larger than all values."""
     peak = max(float(np.abs(block.channels[channel]).max()) for block in blocks)
     step = smallest_step(np.concatenate([block.channels[channel][:SEEN] for block in blocks]))
@@ -100,7 +100,7 @@ class NoiseFit:
 
 
 def noise_fit(
-    records: Sequence[OrderRecord], blocks: Sequence[Block], channel: str, teeth: tuple[int, int]
+    records: Sequence[OrderRecord], blocks: Sequence[HealthyBlock], channel: str, teeth: tuple[int, int]
 ) -> NoiseFit:
     """Return the noise of a channel from its spectra and recordings, one of each per block."""
     fs_hz = blocks[0].fs_hz
@@ -125,7 +125,9 @@ def _at_knots(record: OrderRecord, knots: np.ndarray) -> np.ndarray:
     return np.asarray(np.exp(np.interp(np.log(knots), np.log(hz), np.log(record.density[1:]))))
 
 
-def _modulation(block: Block, record: OrderRecord, channel: str, teeth: tuple[int, int]) -> tuple[float, float, float]:
+def _modulation(
+    block: HealthyBlock, record: OrderRecord, channel: str, teeth: tuple[int, int]
+) -> tuple[float, float, float]:
     """Return depth of pinion and gear, and s of the random level, of what averages and lines leave.
 
     Lines a shaft order apart beat, which would pass for modulated noise.

@@ -11,7 +11,7 @@ import numpy as np
 
 import siggen
 from diagnostics.calibration.drivetrain import MeshOrder, TrainOrders, drivetrain
-from diagnostics.calibration.healthy_blocks import Block
+from diagnostics.calibration.healthy_blocks import HealthyBlock
 from diagnostics.calibration.order_record import OrderRecord
 from diagnostics.calibration.path_draws import number_limits
 from diagnostics.recordings.taken import RecordingFacts, file_channels
@@ -24,7 +24,7 @@ SPEED_RATIO = 1.25
 
 
 @dataclass(frozen=True, slots=True)
-class Rig:
+class CalibratedRig:
     """A configuration whose paths, noise and lines recordings tell.
 
     Attributes
@@ -71,7 +71,7 @@ class Rig:
         return tuple(name for name, one in self.config["sensors"].items() if one["kind"] != "accelerometer")
 
 
-def read_rig(file: Path) -> Rig:
+def read_rig(file: Path) -> CalibratedRig:
     """Return the rig of a configuration.
 
     Raises
@@ -88,14 +88,14 @@ def read_rig(file: Path) -> Rig:
         )
     if config.gears.pairs:
         raise UsageError(f"{file}: gears differ within the set; a calibration is of one machine of known teeth")
-    found = Rig(file, config.canonical(), drivetrain(siggen.draw(config).drivetrain), config.places.pressed)
+    found = CalibratedRig(file, config.canonical(), drivetrain(siggen.draw(config).drivetrain), config.places.pressed)
     if not found.sensors:
         raise UsageError(f"{file}: sensors: received {', '.join(found.left_out)}; allowed: at least one accelerometer")
     return found
 
 
 def rig_channels(
-    rig: Rig, source: tuple[Path, int | None], said: Mapping[str, str], facts: RecordingFacts
+    rig: CalibratedRig, source: tuple[Path, int | None], said: Mapping[str, str], facts: RecordingFacts
 ) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the channels of a rig, and the column of each where it has another name.
 
@@ -130,7 +130,7 @@ def rig_channels(
     return names, dict(zip(names, found, strict=True))
 
 
-def check_speeds(rig: Rig, blocks: Iterable[Block]) -> None:
+def check_speeds(rig: CalibratedRig, blocks: Iterable[HealthyBlock]) -> None:
     """Refuse recordings at another speed than the rig's.
 
     Raises
@@ -150,7 +150,7 @@ def check_speeds(rig: Rig, blocks: Iterable[Block]) -> None:
             )
 
 
-def check_meshes(rig: Rig, channels: Mapping[str, Sequence[OrderRecord]]) -> None:
+def check_meshes(rig: CalibratedRig, channels: Mapping[str, Sequence[OrderRecord]]) -> None:
     """Refuse a machine of several meshes of which recordings show one not: its teeth may be others.
 
     A mesh shows where its lines stand out of the shaft's multiples around them. Of other teeth one in nine does.

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnostics.calibration.drivetrain import Shaft, TrainOrders
+from diagnostics.calibration.drivetrain import RigShaft, TrainOrders
 from diagnostics.calibration.order_record import LEAST_SHARE, LINE_BINS, OrderRecord, line_places
 
 BESIDE_MESH = 2
@@ -52,7 +52,7 @@ class ShaftMultiples:
     excess_db: np.ndarray
 
 
-def shaft_multiples(records: Sequence[OrderRecord], shaft: Shaft, drive: TrainOrders) -> ShaftMultiples | None:
+def shaft_multiples(records: Sequence[OrderRecord], shaft: RigShaft, drive: TrainOrders) -> ShaftMultiples | None:
     """Return the multiples of a shaft of a machine; None where recordings are too short to tell them apart.
 
     Parameters
@@ -81,7 +81,7 @@ def shaft_multiples(records: Sequence[OrderRecord], shaft: Shaft, drive: TrainOr
     return ShaftMultiples(level, expected, np.where(mesh, np.nan, excess))
 
 
-def _at_meshes(number: np.ndarray, shaft: Shaft, drive: TrainOrders, told: float) -> np.ndarray:
+def _at_meshes(number: np.ndarray, shaft: RigShaft, drive: TrainOrders, told: float) -> np.ndarray:
     """Return which multiples (k,) are mesh lines or beside them by few turns of a shaft of theirs."""
     found = np.zeros(number.size, dtype=bool)
     for teeth in shaft.teeth:
@@ -95,7 +95,7 @@ def _at_meshes(number: np.ndarray, shaft: Shaft, drive: TrainOrders, told: float
     return found
 
 
-def _also_of(number: np.ndarray, shaft: Shaft, drive: TrainOrders, told: float) -> np.ndarray:
+def _also_of(number: np.ndarray, shaft: RigShaft, drive: TrainOrders, told: float) -> np.ndarray:
     """Return (k, other shafts) of which shafts each multiple is one too, so that it holds their errors as well."""
     order = number * shaft.step
     others = [one.step for one in drive.shafts if one != shaft]

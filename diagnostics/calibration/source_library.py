@@ -12,7 +12,7 @@ import numpy as np
 import siggen
 from diagnostics.calibration.order_record import LINE_BINS, LineGroup, turns_of
 from diagnostics.calibration.path_draws import number_limits
-from diagnostics.calibration.rig import Rig
+from diagnostics.calibration.rig import CalibratedRig
 from siggen.errors import SolverFailure, UsageError
 
 SPEED_MARGIN = 1.02
@@ -41,13 +41,13 @@ class SourceLibrary:
         return np.asarray(10.0 * np.log10(np.maximum(energy, 1e-30)).mean(axis=0))
 
 
-def force_columns(rig: Rig) -> list[str]:
+def force_columns(rig: CalibratedRig) -> list[str]:
     """Return what internals call the bearing forces of a rig."""
     return [f"bearing_force_{force}_n" for force in rig.forces_in_columns]
 
 
 def source_library(
-    rig: Rig,
+    rig: CalibratedRig,
     operating_point: dict[str, Any],
     fs_hz: float,
     groups: tuple[LineGroup, ...],
@@ -85,7 +85,7 @@ def source_library(
     return SourceLibrary(groups, np.array(found))
 
 
-def library_configuration(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
+def library_configuration(rig: CalibratedRig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
     """Return a configuration of healthy gearboxes whose bearing forces are kept, without background and paths."""
     place = rig.forces[0].split("/")[0]
     return {
@@ -96,7 +96,7 @@ def library_configuration(rig: Rig, operating_point: dict[str, Any], fs_hz: floa
     }
 
 
-def at_recordings(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
+def at_recordings(rig: CalibratedRig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
     """Return a configuration of healthy gearboxes of a rig at the speed, torque and rate of recordings."""
     return {
         "extends": str(rig.file.resolve()) if rig.file.is_file() else str(rig.file),
@@ -108,7 +108,7 @@ def at_recordings(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> di
     }
 
 
-def sampled_as(rig: Rig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
+def sampled_as(rig: CalibratedRig, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
     """Return the keys of a rig's configuration at another sampling rate: no more mesh harmonics than it carries."""
     speed_hz = SPEED_MARGIN * number_limits(operating_point["speed_hz"])[1]
     teeth = max(mesh.order for mesh in rig.drive.meshes)

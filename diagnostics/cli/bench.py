@@ -89,7 +89,7 @@ def make(
     from diagnostics.base.progress import terminal_stage
     from diagnostics.bench.conditions import TIERS, Tier
     from diagnostics.bench.derived_secret import read_secret
-    from diagnostics.bench.making import LEARNT, SECRET_FILE, Wanted, make_benchmark
+    from diagnostics.bench.making import LEARNT, SECRET_FILE, WantedBench, make_benchmark
     from diagnostics.scoring.benchmark import SECRET
     from siggen.errors import UsageError
 
@@ -99,7 +99,7 @@ def make(
     chosen = Tier(size.learn or usual.learn, size.test or usual.test)
     numbers = f" ({chosen.learn} gearboxes to learn from, {chosen.test} in a test part)" if chosen != usual else ""
     named = f"{size.tier}{numbers}"
-    wanted = Wanted(named, chosen, config or LEARNT, tuple(overrides or ()), facts=facts)
+    wanted = WantedBench(named, chosen, config or LEARNT, tuple(overrides or ()), facts=facts)
     found = make_benchmark(out, folder, read_secret(folder / SECRET_FILE), wanted, workers, terminal_stage)
     echo(str(found))
     echo(f"publish {out}; never {folder}", err=True)

@@ -28,7 +28,7 @@ class DrawOptions:
 
 
 @dataclass(frozen=True, slots=True)
-class PageOptions:
+class CalibrationPageOptions:
     """What the page compares."""
 
     held_out: Annotated[
@@ -85,7 +85,7 @@ def calibrate(
         str, typer.Option("--torque", metavar="LOW,HIGH", help="Torque of the recordings [Nm]. Default: the rig's.")
     ] = "",
     draws: DrawOptions,
-    page: PageOptions,
+    page: CalibrationPageOptions,
     injection: InjectionOptions,
 ) -> None:
     """Fit a configuration to healthy recordings: `siggen generate` then draws sets that resemble the machine.

@@ -29,7 +29,7 @@ class ComputingOptions:
 
 
 @dataclass(frozen=True, slots=True)
-class TableOptions(RankingOptions):
+class IndicatorTableOptions(RankingOptions):
     """How indicators of a set are ranked, and of which records."""
 
     leave_out: Annotated[
@@ -60,7 +60,7 @@ def indicators(
         ),
     ] = None,
     computing: ComputingOptions,
-    ranking: TableOptions,
+    ranking: IndicatorTableOptions,
     gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
@@ -86,7 +86,7 @@ def indicators(
     _ranked_tables(directory, out, span, computing, ranking)
 
 
-def _refuse_options_of_sets(computing: ComputingOptions, ranking: TableOptions) -> None:
+def _refuse_options_of_sets(computing: ComputingOptions, ranking: IndicatorTableOptions) -> None:
     of_sets = {"--indicator": computing.indicator, "--state": ranking.state, "--leave-out": ranking.leave_out}
     if ignored := [option for option, given in of_sets.items() if given]:
         raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
@@ -106,7 +106,7 @@ def _ranked_tables(
     out: Path | None,
     span: tuple[float, float] | None,
     computing: ComputingOptions,
-    ranking: TableOptions,
+    ranking: IndicatorTableOptions,
 ) -> None:
     """Write values and ranking of a set's indicators, and say which are best."""
     from diagnostics.base.beside import beside

@@ -18,7 +18,7 @@ from diagnostics.explore.chosen_records import chosen_records, missing_parts
 from diagnostics.explore.look import look_of, look_page
 from diagnostics.explore.measured_page import ShownRecording, missing_sentences, recordings_source
 from diagnostics.explore.packed import packed_column, unpacked_column
-from diagnostics.explore.payload import PageSource, Shown
+from diagnostics.explore.payload import PageSource, RecordList
 from diagnostics.explore.set_page import LookOptions, set_name
 from diagnostics.explore.set_source import set_source
 from diagnostics.indicators.table import record_table
@@ -212,7 +212,7 @@ def write_beside_page(
         table = record_table(dataset, own=chosen.own, workers=chosen.workers, advance=advance)
     kept = chosen_records({"specimen_id": np.asarray(labels.column("specimen_id"))}, chosen.limit)
     simulated = set_source(dataset, table, kept)
-    said = Shown(COLUMNS, FILTERS, _missing(shown, measured, simulated))
+    said = RecordList(COLUMNS, FILTERS, _missing(shown, measured, simulated))
     look = look_of(beside_source(measured, simulated), said, stage, full=chosen.full)
     write_file(path, look_page(f"Recordings of {name} beside {set_name(dataset)}", look))
     return path

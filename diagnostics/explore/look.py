@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnostics.base.progress import Stage
-from diagnostics.explore.payload import PageSource, Shown, page_axes, page_details, page_head
+from diagnostics.explore.payload import PageSource, RecordList, page_axes, page_details, page_head
 from diagnostics.page import html
 from diagnostics.page.live import Live
 from diagnostics.page.wording import counted
@@ -39,7 +39,7 @@ class Look:
     source: PageSource
 
 
-def look_of(source: PageSource, shown: Shown, stage: Stage, *, full: bool = False) -> Look:
+def look_of(source: PageSource, shown: RecordList, stage: Stage, *, full: bool = False) -> Look:
     """Return records as a part of a page.
 
     Parameters

@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.look import look_of, look_page
-from diagnostics.explore.payload import PageSource, Shown, packed_indicators
+from diagnostics.explore.payload import PageSource, RecordList, packed_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
 from diagnostics.records.gear_train import gear_names, in_column
@@ -156,7 +156,7 @@ def write_recordings_page(
         If the recordings differ in rate or channels.
     """
     missing = missing_sentences(sum(one.healthy for one in shown))
-    look = look_of(recordings_source(shown), Shown(COLUMNS, FILTERS, missing), stage, full=full)
+    look = look_of(recordings_source(shown), RecordList(COLUMNS, FILTERS, missing), stage, full=full)
     write_file(path, look_page(f"Recordings of {name}", look))
     return path
 

@@ -96,7 +96,7 @@ class PageSource:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class RecordList:
     """How a page lists records: columns of the table and filters (key and title), and sentences on what is missing.
 
     `seen` says of how many records a model knows the gearbox; `code` computes an indicator, which it calls COLUMN;
@@ -126,7 +126,7 @@ def page_axes(source: PageSource, *, full: bool) -> PageAxes:
     )
 
 
-def page_head(source: PageSource, axes: PageAxes, shown: Shown) -> dict[str, Any]:
+def page_head(source: PageSource, axes: PageAxes, shown: RecordList) -> dict[str, Any]:
     """Return what the page reads when it opens: labels and indicators of all records, and what they are called."""
     titles = dict((*shown.columns, *shown.filters))
     return {

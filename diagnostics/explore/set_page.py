@@ -14,7 +14,7 @@ import numpy as np
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.chosen_records import chosen_records, missing_parts
 from diagnostics.explore.look import Look, look_of, look_page
-from diagnostics.explore.payload import PageSource, Shown
+from diagnostics.explore.payload import PageSource, RecordList
 from diagnostics.explore.set_source import set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
@@ -186,13 +186,13 @@ def set_look(
     return look_of(source, shown, stage, full=options.full)
 
 
-def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Lives) -> Shown:
+def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Lives) -> RecordList:
     """Return how the page lists the records."""
     known = options.model is not None
     damaged = bool((source.labels["fault"] != HEALTHY).any()) and hasattr(dataset, "damage")
     missing = missing_parts(source.labels, source.overlay, damaged, bool(source.quantities), named=known)
     own = ", ".join(f'"{one.function.__module__}:{one.function.__name__}"' for one in options.own)
-    return Shown(
+    return RecordList(
         columns=(*COLUMNS[:2], *(NAMED_COLUMNS if known else ()), *lives.titles, *COLUMNS[2:]),
         filters=(*FILTERS, *(NAMED_FILTERS if known else ())),
         missing=missing,

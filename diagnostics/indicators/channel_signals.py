@@ -24,7 +24,7 @@ from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_basebands
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signals
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_lines import ripple_bins, shaft_lines
-from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals, without_mesh_lines
+from diagnostics.signal.shaft_signals import ShaftSignals, SignalShaft, shaft_signals, without_mesh_lines
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES, spectral_kurtosis
 from diagnostics.signal.spectrum import hann_amplitude, power
 
@@ -84,7 +84,7 @@ class ChannelSignals:
         signal: np.ndarray,
         fs_hz: float,
         grid: AngleGrid | None,
-        shafts: tuple[Shaft, ...],
+        shafts: tuple[SignalShaft, ...],
         settings: IndicatorSettings,
         mesh: MeshNames = PAIR[0],
         carrier: Carrier | None = None,
@@ -151,7 +151,7 @@ class ChannelSignals:
         assert self._carrier is not None
         return passing_lines(self.steps, self._carrier)
 
-    def _steps_of(self, shaft: Shaft) -> np.ndarray:
+    def _steps_of(self, shaft: SignalShaft) -> np.ndarray:
         """Return what a shaft's average is taken of: the record, for a gear without the lines of meshes in front.
 
         The lines of a mesh in front are often ten times as strong, and a slow gear turns too seldom to average them
@@ -165,7 +165,7 @@ class ChannelSignals:
             self._without_front = (self.steps.reshape(-1, locked.size) - locked).ravel()
         return self._without_front
 
-    def _shaft(self, name: str) -> Shaft:
+    def _shaft(self, name: str) -> SignalShaft:
         return self._named_shafts[name]
 
     def values(self, indicators: tuple[Indicator, ...]) -> dict[str, float]:

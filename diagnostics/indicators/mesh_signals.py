@@ -13,10 +13,10 @@ import numpy as np
 from diagnostics.indicators.channel_signals import ChannelSignals
 from diagnostics.indicators.indicator import Indicator
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import Mesh, Planets
+from diagnostics.records.gear_train import GearMesh, Planets
 from diagnostics.signal.member_average import PLANET, RING, SUN, Carrier, carrier_turns_needed
 from diagnostics.signal.order_domain import AngleGrid, angle_grid, shaft_grid
-from diagnostics.signal.shaft_signals import Shaft, record_shafts
+from diagnostics.signal.shaft_signals import SignalShaft, record_shafts
 
 FEWEST_TURNS = 8
 """Of a shaft behind the first mesh: what is not locked to it falls as one over the turns, and all other meshes are."""
@@ -29,7 +29,7 @@ class MeshSignals:
     A planetary set counts as one mesh with its members as shafts.
     """
 
-    shafts: tuple[Shaft, ...]
+    shafts: tuple[SignalShaft, ...]
     channels: Mapping[str, ChannelSignals]
     first: bool
 
@@ -51,7 +51,7 @@ def mesh_signals(
     channels: Mapping[str, np.ndarray],
     tacho_s: np.ndarray,
     fs_hz: float,
-    train: tuple[Mesh, ...],
+    train: tuple[GearMesh, ...],
     settings: IndicatorSettings,
 ) -> tuple[MeshSignals, ...]:
     """Return the signals of every mesh, the first one first.
@@ -75,7 +75,7 @@ def mesh_signals(
         grid = _grid(tacho_s, mesh, settings.samples_per_tooth, first=first)
         carrier = _carrier(mesh.planets, settings)
         if carrier is None:
-            shafts: tuple[Shaft, ...] = _shafts(grid, mesh, settings, first=first)
+            shafts: tuple[SignalShaft, ...] = _shafts(grid, mesh, settings, first=first)
         else:
             shafts = _members(grid, mesh, carrier, settings)
         signals = {
@@ -86,21 +86,23 @@ def mesh_signals(
     return tuple(found)
 
 
-def _grid(tacho_s: np.ndarray, mesh: Mesh, samples_per_tooth: int, *, first: bool) -> AngleGrid | None:
+def _grid(tacho_s: np.ndarray, mesh: GearMesh, samples_per_tooth: int, *, first: bool) -> AngleGrid | None:
     if len(tacho_s) < 2:
         return None
     steps = mesh.teeth[0] * samples_per_tooth
     return angle_grid(tacho_s, steps) if first else shaft_grid(tacho_s, steps, mesh.turns)
 
 
-def _shafts(grid: AngleGrid | None, mesh: Mesh, settings: IndicatorSettings, *, first: bool) -> tuple[Shaft, Shaft]:
+def _shafts(
+    grid: AngleGrid | None, mesh: GearMesh, settings: IndicatorSettings, *, first: bool
+) -> tuple[SignalShaft, SignalShaft]:
     driver, driven = record_shafts(grid, mesh.teeth, settings.samples_per_tooth, settings.sidebands, mesh.names.gears)
     if not first:
         driver, driven = _behind(driver), _behind(driven)
     return replace(driver, beside=mesh.before), replace(driven, beside=mesh.behind)
 
 
-def _behind(shaft: Shaft) -> Shaft:
+def _behind(shaft: SignalShaft) -> SignalShaft:
     """Return a shaft of a further mesh, without revolutions where they are too few."""
     if shaft.revolutions >= FEWEST_TURNS:
         return shaft
@@ -114,7 +116,9 @@ def _carrier(planets: Planets | None, settings: IndicatorSettings) -> Carrier | 
     return Carrier(planets.ring, planets.places, planets.passing, settings.samples_per_tooth)
 
 
-def _members(grid: AngleGrid | None, mesh: Mesh, carrier: Carrier, settings: IndicatorSettings) -> tuple[Shaft, ...]:
+def _members(
+    grid: AngleGrid | None, mesh: GearMesh, carrier: Carrier, settings: IndicatorSettings
+) -> tuple[SignalShaft, ...]:
     """Return sun, planets and ring as shafts, without revolutions where those against the carrier are too few."""
     assert mesh.planets is not None
     sun, planet, ring = mesh.planets.teeth
@@ -128,12 +132,12 @@ def _members(grid: AngleGrid | None, mesh: Mesh, carrier: Carrier, settings: Ind
     period = (sun * float(mesh.planets.sun_turns), 0.0, 0.0)  # one turn of the sun's shaft
     rows = zip(mesh.names.gears, mesh.planets.teeth, needed, (SUN, PLANET, RING), period, strict=True)
     return tuple(
-        _member(Shaft(name, teeth, int(periods // teeth), turns <= periods / ring, "", 0, meets, after), turns)
+        _member(SignalShaft(name, teeth, int(periods // teeth), turns <= periods / ring, "", 0, meets, after), turns)
         for name, teeth, turns, meets, after in rows
     )
 
 
-def _member(shaft: Shaft, needed: np.ndarray) -> Shaft:
+def _member(shaft: SignalShaft, needed: np.ndarray) -> SignalShaft:
     """Return a member with what is not defined of it, and why."""
     if shaft.revolutions < FEWEST_TURNS:
         note = f"all {shaft.name} averages undefined, since they need {FEWEST_TURNS} turns against the carrier"

@@ -111,9 +111,9 @@ def own_values(own: Sequence[OwnIndicator], record: Recording) -> Found:
     return values, failed
 
 
-def _gears(record: Recording) -> Gears:
+def _gears(record: Recording) -> GearFacts:
     labels = record.labels
-    return Gears(*record.teeth, record.fs_hz, float(labels["speed_hz"]), float(labels["torque_nm"]))
+    return GearFacts(*record.teeth, record.fs_hz, float(labels["speed_hz"]), float(labels["torque_nm"]))
 
 
 def _check_sendable(own: Sequence[OwnIndicator]) -> None:
@@ -129,7 +129,7 @@ def _check_sendable(own: Sequence[OwnIndicator]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Gears:
+class GearFacts:
     """What an own indicator is told besides signal and pulses: tooth numbers, sampling rate, operating point."""
 
     teeth_pinion: int
@@ -139,7 +139,7 @@ class Gears:
     torque_nm: float
 
 
-IndicatorFunction = Callable[[np.ndarray, np.ndarray, Gears], float]
+IndicatorFunction = Callable[[np.ndarray, np.ndarray, GearFacts], float]
 _REGISTERED: dict[str, OwnIndicator] = {}
 
 
@@ -150,7 +150,7 @@ class OwnIndicator:
     name: str
     function: IndicatorFunction
 
-    def value(self, signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+    def value(self, signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
         """Return the value for one channel of a record.
 
         The function gets copies, so that it cannot change what the next indicator sees.

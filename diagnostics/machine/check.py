@@ -86,7 +86,7 @@ def past_checks(folder: Path) -> list[PastCheck]:
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class MovedIndicator:
     """An indicator that moved: which, on which channel, by what factor, and by how many spreads."""
 
     indicator: str
@@ -123,7 +123,7 @@ class Check:
     reason: str
     speed_hz: float
     score: ChangeScore | None = None
-    moved: tuple[Moved, ...] = ()
+    moved: tuple[MovedIndicator, ...] = ()
     used: int = 0
     angle: str = ""
 
@@ -256,21 +256,21 @@ def _other_level(level_db: float) -> str:
     return f"all channels are {level_db:+.0f} dB off; is the unit, sensitivity or gain that of the references{unit}?"
 
 
-def _moved(machine: Machine, logs: np.ndarray, score: ChangeScore) -> tuple[Moved, ...]:
+def _moved(machine: Machine, logs: np.ndarray, score: ChangeScore) -> tuple[MovedIndicator, ...]:
     found = []
     for k in np.argsort(-np.nan_to_num(np.abs(score.deviation)))[:LISTED]:
         indicator, _, channel = machine.names[k].partition("__")
         factor = float(np.exp(logs[k] - score.mean[k]))
         title = column_title(indicator, gear_names(machine.train))
-        found.append(Moved(indicator, channel, factor, float(score.deviation[k]), title))
+        found.append(MovedIndicator(indicator, channel, factor, float(score.deviation[k]), title))
     return tuple(found)
 
 
-def _reason(score: ChangeScore, moved: tuple[Moved, ...], used: int) -> str:
+def _reason(score: ChangeScore, moved: tuple[MovedIndicator, ...], used: int) -> str:
     side = "above" if score.changed else "not above"
     first = "" if not score.changed else f"; most: {_names(moved)}"
     return f"its distance {score.score:.3g} from {used} references is {side} the limit {score.limit:.3g}{first}"
 
 
-def _names(moved: tuple[Moved, ...]) -> str:
+def _names(moved: tuple[MovedIndicator, ...]) -> str:
     return "; ".join(f"{m.title} on {m.channel} x {m.factor:.3g}" for m in moved[:3])

@@ -27,7 +27,7 @@ from diagnostics.recordings.level_alike import level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
 from diagnostics.recordings.taken import RecordingFacts
-from diagnostics.records.gear_train import Gearing, Mesh, gear_names, meshes_of, train_of
+from diagnostics.records.gear_train import Gearing, GearMesh, gear_names, meshes_of, train_of
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resample_to_angle
 from diagnostics.signal.spectrum import OrderLines, noise_density, order_lines
 from siggen.columns.drivetrain import GearTrain
@@ -135,7 +135,7 @@ def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, train: G
     )
 
 
-def _mesh_orders(mesh: Mesh) -> list[float]:
+def _mesh_orders(mesh: GearMesh) -> list[float]:
     """Return the orders of the first harmonics; planets that pass move them to multiples of their number."""
     if mesh.planets is None:
         return [float(h * mesh.teeth[0]) for h in range(1, HARMONICS + 1)]
@@ -188,7 +188,7 @@ class RecordingIndicators:
     doubts: tuple[str, ...] = ()
 
     @property
-    def mesh(self) -> Mesh:
+    def mesh(self) -> GearMesh:
         """The first mesh."""
         return meshes_of(self.train)[0]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR
-from diagnostics.records.gear_train import Mesh, Planets
+from diagnostics.records.gear_train import GearMesh, Planets
 
 PASSING = "passing planets"
 MARKS = (("v", PINION_COLOUR), ("|", GEAR_COLOUR), ("^", "#6a1b6e"))
@@ -17,21 +17,21 @@ ABOVE = 1.9
 """Marks stand so many times as high as their lines."""
 
 
-def order_words(mesh: Mesh) -> str:
+def order_words(mesh: GearMesh) -> str:
     """Return what the orders of a mesh's spectra count."""
     return f"{mesh.names.gears[0]} orders" if mesh.planets is None else f"orders of {_against_carrier(mesh)}"
 
 
-def turn_words(mesh: Mesh) -> str:
+def turn_words(mesh: GearMesh) -> str:
     """Return what passes between two pulses."""
     return f"{mesh.names.gears[0]} revolution" if mesh.planets is None else f"turn of {_against_carrier(mesh)}"
 
 
-def _against_carrier(mesh: Mesh) -> str:
+def _against_carrier(mesh: GearMesh) -> str:
     return f"the {mesh.names.gears[0]} against the carrier"
 
 
-def sideband_places(mesh: Mesh, harmonic: int, count: int) -> dict[str, np.ndarray]:
+def sideband_places(mesh: GearMesh, harmonic: int, count: int) -> dict[str, np.ndarray]:
     """Return the sidebands 1 ... count on both sides of a mesh harmonic by what has them, as offsets in orders.
 
     Of a planetary set: lines of healthy planets, and those that a tooth of the sun or of one planet adds, through the
@@ -66,7 +66,7 @@ def draw_marks(
         axis.plot(lines, ABOVE * height, linestyle="none", marker=marker, markersize=4.5, color=colour)
 
 
-def mark_handles(mesh: Mesh) -> list[Any]:
+def mark_handles(mesh: GearMesh) -> list[Any]:
     """Return what a legend shows of the marks."""
     from matplotlib.lines import Line2D
 

@@ -27,7 +27,7 @@ from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
-from diagnostics.records.gear_train import Mesh, first_teeth, meshes_of
+from diagnostics.records.gear_train import GearMesh, first_teeth, meshes_of
 from diagnostics.records.record_classes import STATE
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
 from siggen.file_writing import write_file
@@ -201,7 +201,7 @@ def model_provenance(facts: ModelFacts) -> str:
     )
 
 
-def sideband_figure(recording: MeasuredRecording, mesh: Mesh, pulses: ShaftPulses, channel: str) -> Figure:
+def sideband_figure(recording: MeasuredRecording, mesh: GearMesh, pulses: ShaftPulses, channel: str) -> Figure:
     """Return the spectrum of a channel around its first mesh harmonics, one row each, all on one scale."""
     speed_hz, teeth = pulses.pulses_hz, mesh.teeth
     spectrum = order_spectrum(recording.channels[channel], pulses.times_s, recording.fs_hz, teeth[0])
@@ -221,7 +221,7 @@ def sideband_figure(recording: MeasuredRecording, mesh: Mesh, pulses: ShaftPulse
     return figure
 
 
-def _draw(axis: Any, spectrum: OrderSpectrum, mesh: Mesh, harmonic: int) -> float:
+def _draw(axis: Any, spectrum: OrderSpectrum, mesh: GearMesh, harmonic: int) -> float:
     centre = harmonic * mesh.teeth[0]
     near = np.abs(spectrum.order - centre) <= ORDERS_SHOWN
     offset, amplitude = spectrum.order[near] - centre, spectrum.amplitude_m_s2[near]

@@ -18,7 +18,7 @@ from diagnostics.records.gear_train import GearNames
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.recording import names_of, recordings
 from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
-from diagnostics.statistics.scores import Scores
+from diagnostics.statistics.scores import IntervalScores
 from diagnostics.training.baselines import FeatureClassifier
 from diagnostics.training.referenced import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.training.splits import SpecimenSplit
@@ -35,7 +35,7 @@ class ReferencedVariant:
 
     classifier: FeatureClassifier
     distance: TrainingDistance
-    scores: Scores
+    scores: IntervalScores
     distances: np.ndarray
     test: np.ndarray
 

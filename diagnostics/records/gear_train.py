@@ -67,7 +67,7 @@ PAIR: GearNames = (MeshNames("", ("pinion", "gear")),)
 
 
 @dataclass(frozen=True, slots=True)
-class Mesh:
+class GearMesh:
     """One mesh of a gearbox.
 
     Attributes
@@ -134,13 +134,13 @@ def first_teeth(train: GearTrain) -> tuple[Any, Any]:
 
 
 @lru_cache(maxsize=1024)
-def meshes_of(train: GearTrain) -> tuple[Mesh, ...]:
+def meshes_of(train: GearTrain) -> tuple[GearMesh, ...]:
     """Return all meshes of a gearbox whose teeth are known, the first one first."""
     teeth = {gear.name: int(gear.teeth or 0) for gear in train.gears}
     names, planet = gear_names(train), _planet(train)
     if planet is not None:
         sun, of_planet, ring = (teeth[gear] for gear in names[0].gears)
-        return (Mesh(names[0], (sun, ring), planets=Planets((sun, of_planet, ring), planet.places)),)
+        return (GearMesh(names[0], (sun, ring), planets=Planets((sun, of_planet, ring), planet.places)),)
     shaft = {gear.name: gear.shaft for gear in train.gears}
     turns, found = {shaft[names[0].gears[0]]: Fraction(1)}, []
     for name in names:
@@ -152,7 +152,7 @@ def meshes_of(train: GearTrain) -> tuple[Mesh, ...]:
             next((teeth[other] for other in teeth if shaft[other] == shaft[gear] and other != gear), 0)
             for gear in name.gears
         )
-        found.append(Mesh(name, pair, own, before, behind))
+        found.append(GearMesh(name, pair, own, before, behind))
     return tuple(found)
 
 

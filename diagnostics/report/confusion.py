@@ -8,11 +8,11 @@ from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import records_link
 from diagnostics.page.wording import capitalised
 from diagnostics.records.record_classes import STATE
-from diagnostics.statistics.scores import Scores
+from diagnostics.statistics.scores import IntervalScores
 
 
 def confusion_table(
-    scores: Scores, title: str, records: str = "test records", kind: str = STATE, *, linked: bool = False
+    scores: IntervalScores, title: str, records: str = "test records", kind: str = STATE, *, linked: bool = False
 ) -> str:
     """Return the confusion matrix of one classifier.
 

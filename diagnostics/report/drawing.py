@@ -20,7 +20,7 @@ from diagnostics.page.provenance import without_path
 from diagnostics.page.sideband_marks import PASSING, draw_marks, mark_handles, order_words, sideband_places, turn_words
 from diagnostics.page.style import SLANTED, new_figure, state_colours, state_ticks
 from diagnostics.page.tables import records_line, records_link, state_links
-from diagnostics.records.gear_train import Mesh
+from diagnostics.records.gear_train import GearMesh
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures
 from diagnostics.report.examples import Example, ExampleSet, around_mesh, example_set
@@ -166,7 +166,7 @@ def draw_spectrum(axis: Any, example: Example, examples: ExampleSet, harmonic: i
     draw_marks(axis, (offset, amplitude), places, 1.5 / example.spectrum.revolutions)
 
 
-def add_legend(axis: Any, mesh: Mesh) -> None:
+def add_legend(axis: Any, mesh: GearMesh) -> None:
     """Say above an axis what marks and colours mean."""
     from matplotlib.lines import Line2D
 
@@ -246,7 +246,7 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str])
         drawing.behind[f"spectrum_h1_{mesh.names.name}"] = behind
 
 
-def strongest(spectrum: OrderSpectrum, mesh: Mesh) -> int:
+def strongest(spectrum: OrderSpectrum, mesh: GearMesh) -> int:
     """Return the mesh harmonic with the largest line, of a planetary set where passing planets move it to."""
     teeth = mesh.teeth[0]
     if mesh.planets is None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.records.gear_train import Mesh, meshes_of
+from diagnostics.records.gear_train import GearMesh, meshes_of
 from diagnostics.records.recording import Recording, one_recording
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
@@ -40,8 +40,8 @@ class ExampleSet:
     torque_nm: float
     teeth: tuple[int, int]
     fs_hz: float
-    train: tuple[Mesh, ...]
-    mesh: Mesh
+    train: tuple[GearMesh, ...]
+    mesh: GearMesh
 
     @property
     def turns_hz(self) -> float:
@@ -84,7 +84,7 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
     )
 
 
-def around_mesh(examples: ExampleSet, mesh: Mesh) -> ExampleSet:
+def around_mesh(examples: ExampleSet, mesh: GearMesh) -> ExampleSet:
     """Return examples with the teeth, the speed and the orders of a mesh's own driver."""
     turns = float(mesh.turns)
     shown = [

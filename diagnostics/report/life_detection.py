@@ -10,7 +10,7 @@ from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.style import png_bytes
 from diagnostics.report.life_figure import UnitLife, life_figure
-from diagnostics.report.unit_lives import Detection
+from diagnostics.report.unit_lives import FailureDetection
 from diagnostics.statistics.first_detection import IN_A_ROW, QUIET
 from diagnostics.training.life_baselines import Inspections
 
@@ -29,7 +29,7 @@ def shown_gearboxes(found: Inspections) -> list[int]:
     return list(dict.fromkeys(int(order[place]) for place in (0, order.size // 2, order.size - 1)))
 
 
-def detection_table(detected: Mapping[str, Detection]) -> str:
+def detection_table(detected: Mapping[str, FailureDetection]) -> str:
     """Return the table of what sees damage, and when."""
     rows = [
         [

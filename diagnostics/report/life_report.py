@@ -21,7 +21,7 @@ from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.report.life_detection import detection_table, life_block, shown_gearboxes
 from diagnostics.report.life_pictures import lives_of
-from diagnostics.report.unit_lives import PICTURES, Detection, detections, unit_lives, watches
+from diagnostics.report.unit_lives import PICTURES, FailureDetection, detections, unit_lives, watches
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.statistics.evaluation import Interval
@@ -142,7 +142,7 @@ def _page(dataset: Dataset, seed: int, opening: str, parts: Sequence[str], look:
 
 
 def _answer(
-    found: Inspections, scores: Mapping[str, LifeScores], detected: Mapping[str, Detection]
+    found: Inspections, scores: Mapping[str, LifeScores], detected: Mapping[str, FailureDetection]
 ) -> list[tuple[str, str]]:
     """Say which baseline tells remaining lives best, when damage is seen, and how sure that is."""
     sensed = {name: one for name, one in scores.items() if name not in KNOWN}

@@ -34,7 +34,7 @@ def watches(found: Inspections) -> dict[str, Watch]:
 
 
 @dataclass(frozen=True, slots=True)
-class Detection:
+class FailureDetection:
     """What of the failed gearboxes is detected by one thing.
 
     Attributes
@@ -58,19 +58,19 @@ class Detection:
         return {**counts, **{name: value if np.isfinite(value) else None for name, value in medians.items()}}
 
 
-def detections(found: Inspections, seen: Mapping[str, Watch]) -> dict[str, Detection]:
+def detections(found: Inspections, seen: Mapping[str, Watch]) -> dict[str, FailureDetection]:
     """Return what each watch detects of the gearboxes that failed."""
     failed = set(np.unique(found.specimen[np.isfinite(found.rul_h)]).tolist())
     return {name: _detection(found, one, failed) for name, one in seen.items()}
 
 
-def _detection(found: Inspections, watch: Watch, failed: set[int]) -> Detection:
+def _detection(found: Inspections, watch: Watch, failed: set[int]) -> FailureDetection:
     rows = np.array([row for unit, row in watch.detected.items() if unit in failed], dtype=int)
     pitted = found.worst_shares[rows, 0] > 0.0
     right = rows[pitted]
     share, left_h = found.worst_shares[right, 0], found.rul_h[right]
     medians = (float(np.median(values)) if right.size else float("nan") for values in (share, left_h))
-    return Detection(len(failed), int(right.size), int((~pitted).sum()), *medians)
+    return FailureDetection(len(failed), int(right.size), int((~pitted).sum()), *medians)
 
 
 def unit_lives(

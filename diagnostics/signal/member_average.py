@@ -26,7 +26,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, parted, separated_average
+from diagnostics.signal.shaft_signals import ShaftSignals, SignalShaft, parted, separated_average
 from diagnostics.signal.spectrum import HANN_HALF_WIDTH_BINS, line_amplitudes, resolved_lines
 from diagnostics.signal.synchronous_average import hann_weights, synchronous_average
 
@@ -73,7 +73,7 @@ def passing_lines(steps: np.ndarray, carrier: Carrier) -> np.ndarray:
 
 
 def member_signals(
-    steps: np.ndarray, shaft: Shaft, carrier: Carrier, locked: np.ndarray, shaft_orders: int, sidebands: int
+    steps: np.ndarray, shaft: SignalShaft, carrier: Carrier, locked: np.ndarray, shaft_orders: int, sidebands: int
 ) -> ShaftSignals:
     """Return the signals of a member of a planetary set.
 
@@ -150,7 +150,7 @@ def _weight(carrier: Carrier, orders: np.ndarray) -> np.ndarray:
     return np.asarray(np.where(2 * orders == count, 0.5, 1.0)[:, None])
 
 
-def _terms(rest: np.ndarray, shaft: Shaft, carrier: Carrier, orders: np.ndarray) -> np.ndarray:
+def _terms(rest: np.ndarray, shaft: SignalShaft, carrier: Carrier, orders: np.ndarray) -> np.ndarray:
     """Return the complex lines of averages by order of the window, (orders, lines): line j at FFT place j."""
     from scipy import fft
 
@@ -166,7 +166,7 @@ def _terms(rest: np.ndarray, shaft: Shaft, carrier: Carrier, orders: np.ndarray)
     return np.asarray(lines * _weight(carrier, orders) * _together(size, shaft, carrier, orders))
 
 
-def _mesh_terms(locked: np.ndarray, size: int, shaft: Shaft, carrier: Carrier, orders: np.ndarray) -> np.ndarray:
+def _mesh_terms(locked: np.ndarray, size: int, shaft: SignalShaft, carrier: Carrier, orders: np.ndarray) -> np.ndarray:
     """Return the mesh harmonics of a member that passing planets leave, as lines by order of the window.
 
     Mesh harmonic h with order k of the window is order h z_ring + k of the carrier.
@@ -181,7 +181,7 @@ def _mesh_terms(locked: np.ndarray, size: int, shaft: Shaft, carrier: Carrier, o
     return np.asarray(found * _weight(carrier, orders) * _together(size, shaft, carrier, orders))
 
 
-def _together(size: int, shaft: Shaft, carrier: Carrier, orders: np.ndarray) -> np.ndarray:
+def _together(size: int, shaft: SignalShaft, carrier: Carrier, orders: np.ndarray) -> np.ndarray:
     """Return what windows of all planets make of a line, turned back by the planets' places; one planet: 1."""
     if shaft.meets != SUN:
         return np.ones((1, 1))
@@ -201,7 +201,7 @@ def _waves(terms: np.ndarray, angles: np.ndarray) -> np.ndarray:
     return np.asarray((turning @ waves).real, dtype=np.float64)
 
 
-def _window_angle(terms: np.ndarray, shaft: Shaft, carrier: Carrier, shaft_orders: int) -> float:
+def _window_angle(terms: np.ndarray, shaft: SignalShaft, carrier: Carrier, shaft_orders: int) -> float:
     """Return where the window leaves the largest fourth power of the residual [rad]."""
     line = np.abs(np.fft.fftfreq(terms.shape[1], 1.0 / terms.shape[1])).astype(np.int64)
     residual = np.where((line % shaft.teeth == 0) | (line <= shaft_orders), 0.0, terms)
@@ -210,7 +210,9 @@ def _window_angle(terms: np.ndarray, shaft: Shaft, carrier: Carrier, shaft_order
     return float(angles[np.argmax(np.sum(_waves(residual, angles) ** 4, axis=1))])
 
 
-def _ring_signals(steps: np.ndarray, shaft: Shaft, carrier: Carrier, shaft_orders: int, sidebands: int) -> ShaftSignals:
+def _ring_signals(
+    steps: np.ndarray, shaft: SignalShaft, carrier: Carrier, shaft_orders: int, sidebands: int
+) -> ShaftSignals:
     """Return the signals of the ring: one turn of the carrier, of it the orders that equal planets leave."""
     from scipy import fft
 

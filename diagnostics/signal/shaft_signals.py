@@ -99,7 +99,7 @@ def _distance(order: np.ndarray, teeth: int) -> np.ndarray:
 
 
 @dataclass(frozen=True, slots=True)
-class Shaft:
+class SignalShaft:
     """One shaft of a record: its name, teeth, whole revolutions, which sidebands are resolved, and what is not.
 
     `beside` are the teeth of another gear on it, which takes part in another mesh; 0: there is none. `meets` says what
@@ -138,7 +138,7 @@ class ShaftSignals:
         Regular, residual and difference signal of the average.
     """
 
-    shaft: Shaft
+    shaft: SignalShaft
     average: np.ndarray
     lines: np.ndarray
     sideband_average: np.ndarray
@@ -148,7 +148,7 @@ class ShaftSignals:
 
 def record_shafts(
     grid: AngleGrid | None, teeth: tuple[int, int], samples_per_tooth: int, sidebands: int, named: tuple[str, ...]
-) -> tuple[Shaft, Shaft]:
+) -> tuple[SignalShaft, SignalShaft]:
     """Return the shafts of driver and driven gear of a record.
 
     Parameters
@@ -169,9 +169,9 @@ def record_shafts(
     needed = np.array([revolutions_needed(k, teeth[1], teeth[0]) for k in range(1, sidebands + 1)])
     resolved = needed <= turns[1]
     note = "" if turns[0] else "no whole turn of the first shaft between two pulses"
-    driver = Shaft(named[0], teeth[0], turns[0], np.ones(sidebands, dtype=bool), note)
+    driver = SignalShaft(named[0], teeth[0], turns[0], np.ones(sidebands, dtype=bool), note)
     limits = _resolution_note(named[1], resolved, needed, turns[1])
-    return driver, Shaft(named[1], teeth[1], turns[1], resolved, limits, weighted=True)
+    return driver, SignalShaft(named[1], teeth[1], turns[1], resolved, limits, weighted=True)
 
 
 def _resolution_note(gear: str, resolved: np.ndarray, needed: np.ndarray, turns: int) -> str:
@@ -182,7 +182,7 @@ def _resolution_note(gear: str, resolved: np.ndarray, needed: np.ndarray, turns:
 
 
 def shaft_signals(
-    steps: np.ndarray, shaft: Shaft, samples_per_tooth: int, shaft_orders: int, difference_sidebands: int
+    steps: np.ndarray, shaft: SignalShaft, samples_per_tooth: int, shaft_orders: int, difference_sidebands: int
 ) -> ShaftSignals:
     """Return the signals of one shaft from a record in equal steps of angle.
 
@@ -205,12 +205,12 @@ def shaft_signals(
     return ShaftSignals(shaft, average, lines, own_band(weighted, shaft), own_lines(resolved, shaft), parts)
 
 
-def own_lines(lines: np.ndarray, shaft: Shaft) -> np.ndarray:
+def own_lines(lines: np.ndarray, shaft: SignalShaft) -> np.ndarray:
     """Return lines at whole orders of a shaft, NaN where another gear on it has its mesh lines and this one has not."""
     return np.where(_is_foreign(lines.size, shaft), np.nan, lines) if shaft.beside else lines
 
 
-def own_band(average: np.ndarray, shaft: Shaft) -> np.ndarray:
+def own_band(average: np.ndarray, shaft: SignalShaft) -> np.ndarray:
     """Return an average without the mesh lines that only another gear on the shaft has."""
     from scipy import fft
 
@@ -229,6 +229,6 @@ def without_mesh_lines(average: np.ndarray, teeth: int) -> np.ndarray:
     return np.asarray(fft.irfft(spectrum, n=average.size))
 
 
-def _is_foreign(orders: int, shaft: Shaft) -> np.ndarray:
+def _is_foreign(orders: int, shaft: SignalShaft) -> np.ndarray:
     order = np.arange(orders)
     return np.asarray((order > 0) & (order % shaft.beside == 0) & (order % shaft.teeth != 0))

@@ -30,7 +30,7 @@ HONEST_DRAWS = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Calibration:
+class TemperatureScaling:
     """Temperature, and what the probabilities of test specimens are worth without and with it.
 
     Attributes
@@ -167,7 +167,7 @@ def brier_score(predictions: Predictions, weights: np.ndarray) -> np.ndarray:
     return np.asarray(weights @ square / weights.sum(axis=1))
 
 
-def calibration(test: Predictions, temperature: float, seed: int, resamples: int = RESAMPLES) -> Calibration:
+def calibration(test: Predictions, temperature: float, seed: int, resamples: int = RESAMPLES) -> TemperatureScaling:
     """Judge the calibration of uncalibrated test predictions with intervals from resampled specimens."""
     weights = bootstrap_weights(test.specimen, seed, resamples)
     specimens = int(np.unique(test.specimen).size)
@@ -176,7 +176,7 @@ def calibration(test: Predictions, temperature: float, seed: int, resamples: int
     def judged(score: Callable[[Predictions, np.ndarray], np.ndarray], found: Predictions) -> Interval:
         return interval(score(found, weights), specimens)
 
-    return Calibration(
+    return TemperatureScaling(
         temperature,
         before=judged(expected_calibration_error, test),
         after=judged(expected_calibration_error, changed),

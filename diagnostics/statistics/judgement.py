@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.statistics.calibration import Calibration, calibrated, calibration, predictions_of
+from diagnostics.statistics.calibration import TemperatureScaling, calibrated, calibration, predictions_of
 from diagnostics.statistics.detection import Detection, detection, detection_metrics
 from diagnostics.statistics.evaluation import UNKNOWN, Predictions, macro_auroc
-from diagnostics.statistics.scores import Scores, scores
+from diagnostics.statistics.scores import IntervalScores, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK = "indicators", "boosting", "rms", "network"
 NETWORK_REFERENCED, REFERENCED = "network_referenced", "healthy_referenced"
@@ -52,10 +52,10 @@ class Judged:
     """
 
     name: str
-    scores: Scores
+    scores: IntervalScores
     permuted_auroc: np.ndarray
     details: dict[str, Any]
-    calibration: Calibration
+    calibration: TemperatureScaling
     predictions: Predictions
     detection: Detection | None = None
     validation: Predictions | None = None

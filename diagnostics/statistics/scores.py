@@ -73,7 +73,7 @@ def clopper_pearson(share: float, size: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True, slots=True)
-class Scores:
+class IntervalScores:
     """Scores with intervals.
 
     Attributes
@@ -105,13 +105,13 @@ class Scores:
         return bool(np.ptp(counts[counts > 0]) == 0) if self.records else True
 
 
-def scores(predictions: Predictions, seed: int, resamples: int = RESAMPLES) -> Scores:
+def scores(predictions: Predictions, seed: int, resamples: int = RESAMPLES) -> IntervalScores:
     """Judge predictions, with limits for as many specimens as there are."""
     weights = bootstrap_weights(predictions.specimen, seed, resamples)
     right = (predictions.predicted == predictions.truth).astype(np.float64)
     accuracy = weights @ right / weights.sum(axis=1)
     specimens = int(np.unique(predictions.specimen).size)
-    return Scores(
+    return IntervalScores(
         classes=predictions.classes,
         accuracy=area_interval(accuracy, specimens),
         macro_auroc=area_interval(macro_auroc(predictions, weights), specimens),

@@ -19,7 +19,7 @@ import numpy as np
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
-from diagnostics.statistics.scores import Scores, area_interval, scores
+from diagnostics.statistics.scores import IntervalScores, area_interval, scores
 from diagnostics.training.baselines import FOLDS, fitted_classifier, state_index, train_classifier
 from diagnostics.training.splits import SpecimenSplit
 
@@ -56,7 +56,7 @@ class Stranger:
 class Nested:
     """Scores of nested folds over all gearboxes, and what becomes of classes that training lacked."""
 
-    scores: Scores
+    scores: IntervalScores
     folds: int
     strangers: tuple[Stranger, ...]
 
@@ -166,7 +166,7 @@ def held_out(part: np.ndarray) -> list[Fold]:
     return [(part != one, part == one) for one in parts] if parts.size > 1 else []
 
 
-def fold_scores(found: Predictions, fold: np.ndarray, seed: int) -> Scores:
+def fold_scores(found: Predictions, fold: np.ndarray, seed: int) -> IntervalScores:
     """Judge out-of-fold predictions with the macro-AUROC averaged over folds, never ranked across them.
 
     A state that is rare in a fold is frequent in its training; ranked across folds, even a classifier that knows

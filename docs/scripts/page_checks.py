@@ -36,7 +36,7 @@ sys.path.insert(0, str(ROOT))
 from diagnostics.base.progress import silent_stage  # noqa: E402
 from diagnostics.explore.look import look_of, look_page  # noqa: E402
 from diagnostics.explore.packed import packed_column, unpacked_column  # noqa: E402
-from diagnostics.explore.payload import PageSource, Shown  # noqa: E402
+from diagnostics.explore.payload import PageSource, RecordList  # noqa: E402
 from diagnostics.explore.set_page import COLUMNS, FILTERS  # noqa: E402
 from diagnostics.explore.set_source import set_source  # noqa: E402
 from diagnostics.indicators.table import record_table  # noqa: E402
@@ -196,7 +196,7 @@ def many(source: PageSource) -> PageSource:
 def measure(name: str, source: PageSource, axe: str) -> None:
     """Load a page ten times after a warm-up, and print what was found."""
     program = browser()
-    text = look_page("Records", look_of(source, Shown(COLUMNS, FILTERS), silent_stage))
+    text = look_page("Records", look_of(source, RecordList(COLUMNS, FILTERS), silent_stage))
     runs = [measured(program, instrumented(text, ""), (1280, 800)) for _ in range(TIMES + 1)][1:]
     print(f"| measured, {name}, {len(text.encode()) / 1e6:.1f} MB | median of ten (range) |")
     print("|---|---|")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from siggen.config import Config, apply_overrides, config_file, extended_files, inherited, parse, placed, read_yaml
-from siggen.config.gears import Gears
+from siggen.config.gears import GearsSection
 from siggen.errors import ConfigError, Problem
 
 
@@ -21,7 +21,11 @@ def emptied_pairs(raw: Mapping[str, Any]) -> Iterator[Problem]:
         is the default and nobody's slip.
     """
     gears = raw.get("gears")
-    if not isinstance(gears, Mapping) or gears.get("pairs") not in ([], ()) or set(Gears.model_fields) <= set(gears):
+    if (
+        not isinstance(gears, Mapping)
+        or gears.get("pairs") not in ([], ())
+        or set(GearsSection.model_fields) <= set(gears)
+    ):
         return
     yield Problem("gears.pairs", "a list without a pair", "allowed: one pair at least, or null for none")
 

@@ -31,7 +31,7 @@ FORM_FACTOR = 2.5
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class UsualQuantity:
     """A number with its usual range.
 
     Parameters
@@ -99,7 +99,7 @@ def _unusual(gearbox: PossibleGearbox) -> dict[str, str]:
 
 def _of_pairs(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield each implausible quantity once, of the first pair that has it, and how many pairs have."""
-    found: dict[tuple[str, str], list[tuple[int, Quantity]]] = {}
+    found: dict[tuple[str, str], list[tuple[int, UsualQuantity]]] = {}
     for index, own in enumerate(gearbox.pairs):
         for quantity in quantities(own):
             if quantity.implausible:
@@ -110,7 +110,7 @@ def _of_pairs(gearbox: PossibleGearbox) -> Iterator[str]:
         yield f"{quantity}; gears.pairs.{index}, {pairs[index]} ({len(of_pairs)} of {len(pairs)} pairs)"
 
 
-def quantities(gearbox: PossibleGearbox) -> Iterator[Quantity]:
+def quantities(gearbox: PossibleGearbox) -> Iterator[UsualQuantity]:
     """Yield what is compared."""
     compared = _SizesCompared(gearbox)
     for group in (compared.gears, compared.load, compared.rotors, compared.ends, compared.housing, compared.others):
@@ -138,18 +138,20 @@ class _SizesCompared:
         """Mass of both as discs."""
         return sum(disc_mass_kg(gear, self.pair.face_width_m) for gear in (self.pair.pinion, self.pair.gear))
 
-    def of(self, path: str, what: str, usual: tuple[float, float], hint: str, over: float = 1.0) -> Iterator[Quantity]:
+    def of(
+        self, path: str, what: str, usual: tuple[float, float], hint: str, over: float = 1.0
+    ) -> Iterator[UsualQuantity]:
         """Yield the number of a key over something."""
         if (number := self.gearbox.number(path)) is not None:
             low, high = bounds(number)
-            yield Quantity(path, what, (low / over, high / over), *usual, hint)
+            yield UsualQuantity(path, what, (low / over, high / over), *usual, hint)
 
-    def under(self, path: str, what: str, usual: tuple[float, float], hint: str, force: float) -> Quantity:
+    def under(self, path: str, what: str, usual: tuple[float, float], hint: str, force: float) -> UsualQuantity:
         """Return what a force or torque makes of a stiffness."""
         low, high = bounds(self.gearbox.number(path))
-        return Quantity(path, what, (force / high, force / low), *usual, hint)
+        return UsualQuantity(path, what, (force / high, force / low), *usual, hint)
 
-    def gears(self) -> Iterator[Quantity]:
+    def gears(self) -> Iterator[UsualQuantity]:
         """Yield sizes of gears."""
         for at, pair in self.meshes:
             module = 1e3 * pair.pinion.module_m
@@ -162,14 +164,14 @@ class _SizesCompared:
                 what, path = "bore over root circle", f"{at}gears.{role}.bore_radius_mm"
                 yield from self.of(path, what, (0.08, 0.95), "a radius, in mm", 1e3 * pair.member(role).root_radius_m)
 
-    def load(self) -> Iterator[Quantity]:
+    def load(self) -> Iterator[UsualQuantity]:
         """Yield speeds and torques of operating points."""
         pair, radius = self.pair, self.pair.pinion.base_radius_m
         for i, point in enumerate(self.gearbox.config.operating_points):
             at, torque_nm, speed_hz = f"operating_points.{i}", bounds(point.torque_nm), bounds(point.speed_hz)
             low, high = (speed * 2.0 * pi * pair.pinion.pitch_radius_m for speed in speed_hz)
             hint = "speeds are turns of the input shaft per second, not per minute"
-            yield Quantity(f"{at}.speed_hz", "pitch-line velocity [m/s]", (low, high), 0.02, 100.0, hint)
+            yield UsualQuantity(f"{at}.speed_hz", "pitch-line velocity [m/s]", (low, high), 0.02, 100.0, hint)
             force = sorted(abs(torque / radius) for torque in torque_nm)
             if torque_nm[0] <= 0.0 <= torque_nm[1]:  # idle is no mistake: what the largest torque does is judged
                 force = [force[1]] * 2
@@ -178,9 +180,9 @@ class _SizesCompared:
             low, high = (1e-6 * _hertz_pa(pair, value) for value in force)
             what, hint = "contact stress at the pitch point [MPa]", "torques are N m on the input shaft; "
             hint += "1500 MPa is what case-hardened flanks bear"
-            yield Quantity(f"{at}.torque_nm", what, (low, high), 50.0, 2000.0, hint)
+            yield UsualQuantity(f"{at}.torque_nm", what, (low, high), 50.0, 2000.0, hint)
             low, high = (1e-6 * FORM_FACTOR * value / (pair.face_width_m * pair.pinion.module_m) for value in force)
-            yield Quantity(f"{at}.torque_nm", "stress at the tooth root [MPa]", (low, high), 0.5, 600.0)
+            yield UsualQuantity(f"{at}.torque_nm", "stress at the tooth root [MPa]", (low, high), 0.5, 600.0)
 
     def _rotors(self) -> Iterator[tuple[str, SpurGear, GearPair, float]]:
         """Yield path, gear and pair of every rotor, and the force on its teeth per torque of the first shaft [1/m]."""
@@ -190,7 +192,7 @@ class _SizesCompared:
             yield f"{at or 'dynamics.'}gear", pair.gear, pair, ratio / pair.pinion.base_radius_m
             ratio *= pair.gear.teeth / pair.pinion.teeth
 
-    def rotors(self) -> Iterator[Quantity]:
+    def rotors(self) -> Iterator[UsualQuantity]:
         """Yield masses, and bearings, of which a planetary set has none."""
         number, torque = self.gearbox.number, self.gearbox.largest_torque_nm
         for at, gear, pair, of_torque in self._rotors():
@@ -208,9 +210,9 @@ class _SizesCompared:
                 if high > 0.0:
                     ratios = max(low, 1e-3 * high) / least, high / most
                     found, what = (min(ratios), max(ratios)), "damping over stiffness [s]"
-                    yield Quantity(damping, what, found, 5e-7, 2e-4, "is it in N s/m?")
+                    yield UsualQuantity(damping, what, found, 5e-7, 2e-4, "is it in N s/m?")
 
-    def ends(self) -> Iterator[Quantity]:
+    def ends(self) -> Iterator[UsualQuantity]:
         """Yield couplings and machines at both ends."""
         number, pair, torque = self.gearbox.number, self.pair, self.gearbox.largest_torque_nm
         disc_kg_m2 = disc_inertia_kg_m2(pair.pinion, pair.face_width_m)
@@ -228,7 +230,7 @@ class _SizesCompared:
             what = "inertia over the disc of the first gear"
             yield from self.of(inertia, what, (0.3, most), "is it in kg m²?", disc_kg_m2)
 
-    def housing(self) -> Iterator[Quantity]:
+    def housing(self) -> Iterator[UsualQuantity]:
         """Yield what the bearings stand in, and on."""
         config, what = self.gearbox.config, "mass over both discs"
         if config.background is not None and config.background.base is not None:
@@ -238,7 +240,7 @@ class _SizesCompared:
         if config.housing.kind == "modal":
             what, hint = "mass that a seat feels over both discs", "are shapes in 1/sqrt(kg), not of unit length?"
             masses = [mass / self.discs_kg for mass in mode_table(config.housing.modes).seat_masses_kg]
-            yield Quantity("housing.modes", what, (min(masses), max(masses)), 0.5, 500.0, hint)
+            yield UsualQuantity("housing.modes", what, (min(masses), max(masses)), 0.5, 500.0, hint)
         elif config.housing.kind == "rigid":
             yield from self.of("housing.mass_kg", what, (0.5, 500.0), "is it in kg?", self.discs_kg)
             for way in ("shear", "axial"):
@@ -246,12 +248,12 @@ class _SizesCompared:
                 ends = zip(bounds(self.gearbox.number(path)), bounds(config.housing.mass_kg)[::-1], strict=True)
                 low, high = (sqrt(count * stiffness / mass) / (2.0 * pi) for stiffness, mass in ends)
                 hint = "is it in N/m, not N/mm?"
-                yield Quantity(path, "housing on its bolts [Hz]", (low, high), 40.0, 2500.0, hint)
+                yield UsualQuantity(path, "housing on its bolts [Hz]", (low, high), 40.0, 2500.0, hint)
         else:
             what, centre_mm = "thickness over the centre distance", 1e3 * self.pair.working_centre_distance_m
             yield from self.of("housing.wall_mm", what, (0.01, 0.4), "is it in mm?", centre_mm)
 
-    def others(self) -> Iterator[Quantity]:
+    def others(self) -> Iterator[UsualQuantity]:
         """Yield what belongs to the largest torque, clearances of teeth, and what records hold."""
         config, dynamics, pair = self.gearbox.config, self.gearbox.config.dynamics, self.pair
         torque, module = self.gearbox.largest_torque_nm, 1e3 * pair.pinion.module_m
@@ -268,7 +270,7 @@ class _SizesCompared:
                 if (limit := getattr(sensor, key, None)) is not None:
                     found, what = (limit / most, limit / least), "range over what the largest torque makes"
                     path, hint = f"sensors.{sensor.name}.{key}", "is its unit that of the key?"
-                    yield Quantity(path, what, found, 0.2, 300.0, hint)
+                    yield UsualQuantity(path, what, found, 0.2, 300.0, hint)
         rated = [f"sensors.{one.name}.rated_torque_nm" for one in config.sensors if hasattr(one, "rated_torque_nm")]
         for path in (*rated, *(["life.reference_torque_nm"] if config.life else [])) if torque > 0.0 else ():
             what = "torque over the largest of the operating points"
@@ -285,7 +287,7 @@ class _SizesCompared:
         for sensor in config.sensors:
             least, most, hint = sensor.plausible
             path, what = f"sensors.{sensor.name}.{sensor.limit_key}", f"range [{sensor.quantity.shown_unit}]"
-            yield Quantity(path, what, (sensor.limit, sensor.limit), least, most, hint)
+            yield UsualQuantity(path, what, (sensor.limit, sensor.limit), least, most, hint)
 
 
 def missing(gearbox: PossibleGearbox) -> Iterator[str]:

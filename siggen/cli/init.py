@@ -14,7 +14,7 @@ from siggen.cli.option_groups import grouped
 
 
 @dataclass(frozen=True, slots=True)
-class RigNumbers:
+class MachineOptions:
     """The machine."""
 
     teeth: Annotated[str, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")] = ""
@@ -57,7 +57,7 @@ class RigNumbers:
 def init(
     out: Annotated[Path, typer.Option("--out", help="YAML file to write; never one that exists.")],
     *,
-    numbers: RigNumbers,
+    numbers: MachineOptions,
     sensors: Annotated[int, typer.Option("--sensors", help="Number of accelerometers on the casing.")] = 2,
     damage: Annotated[
         str, typer.Option("--damage", metavar="KIND", help="spalls: one that grows; pits: a cluster that grows.")

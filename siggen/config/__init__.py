@@ -2,7 +2,7 @@
 
 from siggen.config.background import (
     Background,
-    Base,
+    BaseSection,
     Bearings,
     Bursts,
     ForeignMesh,
@@ -11,14 +11,22 @@ from siggen.config.background import (
     ShaftLines,
 )
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
-from siggen.config.dynamics import Coupling, Dynamics, Rotor, Shaft, Shafts, Unbalance, by_reference
-from siggen.config.gears import Gears, Pair, Wheel
-from siggen.config.housing import Bolts, Housing, ModalHousing, PlateHousing, RigidHousing
+from siggen.config.dynamics import (
+    CouplingSection,
+    Dynamics,
+    RotorSection,
+    Shafts,
+    ShaftSection,
+    UnbalanceSection,
+    by_reference,
+)
+from siggen.config.gears import GearsSection, Pair, Wheel
+from siggen.config.housing import BoltsSection, Housing, ModalHousing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
 from siggen.config.manufacture import Manufacture
-from siggen.config.mesh import Friction, Mesh
+from siggen.config.mesh import Friction, MeshSection
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.planetary import Planetary
@@ -26,28 +34,28 @@ from siggen.config.presets import config_file
 from siggen.config.stages import Stage
 from siggen.config.states import StateSection
 from siggen.config.stiffness import Stiffness
-from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
+from siggen.config.variation import SpeedVariation, TorqueVariationSection, Variation
 from siggen.config.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
 
 __all__ = [
     "BLOCK",
     "STORED_NUMBERS",
     "Background",
-    "Base",
+    "BaseSection",
     "Bearings",
-    "Bolts",
+    "BoltsSection",
     "Bursts",
     "Config",
-    "Coupling",
+    "CouplingSection",
     "Dynamics",
     "ForeignMesh",
     "Friction",
-    "Gears",
+    "GearsSection",
     "Housing",
     "Internals",
     "Machines",
     "Manufacture",
-    "Mesh",
+    "MeshSection",
     "ModalHousing",
     "OperatingRange",
     "Pair",
@@ -55,18 +63,18 @@ __all__ = [
     "Planetary",
     "PlateHousing",
     "RigidHousing",
-    "Rotor",
+    "RotorSection",
     "Rubbing",
-    "Shaft",
     "ShaftLines",
+    "ShaftSection",
     "Shafts",
     "SpeedVariation",
     "Splits",
     "Stage",
     "StateSection",
     "Stiffness",
-    "TorqueVariation",
-    "Unbalance",
+    "TorqueVariationSection",
+    "UnbalanceSection",
     "Variation",
     "Wheel",
     "apply_overrides",

@@ -19,7 +19,7 @@ from siggen.keys.section import Section
 from siggen.keys.usual import Usual
 
 
-class Base(Section):
+class BaseSection(Section):
     """A rigid base under the bolts, on soft mounts; the machines beside the gearbox stand on it too."""
 
     mass_kg: Annotated[Number, Within(above=0, most=1_000_000)] = Field(
@@ -93,7 +93,7 @@ class Background(Section):
     like: Annotated[str | None, CatalogueWord("background")] = Field(
         default=None, description="word of the catalogue whose parts it takes over beside its own", exclude=True
     )
-    base: Base | None = Field(default=None, description="null: bolts stand on the ground")
+    base: BaseSection | None = Field(default=None, description="null: bolts stand on the ground")
     rubbing: Rubbing | None = Field(default=None, description="null: none")
     bearings: Bearings | None = Field(default=None, description="null: none")
     machines: Machines | None = Field(default=None, description="null: none")

@@ -15,11 +15,11 @@ from siggen.config.background import Background
 from siggen.config.changes import Change
 from siggen.config.consistency import places_of
 from siggen.config.dynamics import Dynamics
-from siggen.config.gears import Gears
+from siggen.config.gears import GearsSection
 from siggen.config.housing import Housing, PlateHousing, RigidHousing
 from siggen.config.internals import Internals
 from siggen.config.life import Life
-from siggen.config.machine import Machine
+from siggen.config.machine import MachineSection
 from siggen.config.manufacture import Manufacture
 from siggen.config.planetary import Planetary
 from siggen.config.short_form import names_in, own_form
@@ -114,10 +114,10 @@ class Config(Section):
         default=1, description="records per state and operating point"
     )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
-    gears: Gears = Field(description="the gear pair; needed without `machine`")
+    gears: GearsSection = Field(description="the gear pair; needed without `machine`")
     stages: SkipJsonSchema[tuple[Stage, ...]] = Field(default=(), exclude=True)
     """Meshes of the machine behind the first one, in the order of power; no key of a file."""
-    machine: Machine | None = Field(
+    machine: MachineSection | None = Field(
         default=None, description="shafts, gears and meshes with names of your own, in place of `gears`"
     )
     planetary: Planetary | None = Field(

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from siggen.config.mesh import Friction, Mesh
+from siggen.config.mesh import Friction, MeshSection
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section, Whole
@@ -15,7 +15,7 @@ from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 
 
-class Shaft(Section):
+class ShaftSection(Section):
     """A round steel shaft of one diameter on two bearings, with its gear between them."""
 
     bearing_span_mm: Annotated[Number, Within(above=0, most=2000)] = Field(
@@ -30,11 +30,11 @@ class Shaft(Section):
 class Shafts(Section):
     """Shafts of both gears; bearing stiffnesses of `dynamics.pinion` and `dynamics.gear` are those of both bearings."""
 
-    pinion: Shaft = Field(default=Shaft(), description="shaft of the pinion")
-    gear: Shaft = Field(default=Shaft(), description="shaft of the gear")
+    pinion: ShaftSection = Field(default=ShaftSection(), description="shaft of the pinion")
+    gear: ShaftSection = Field(default=ShaftSection(), description="shaft of the gear")
 
 
-class Unbalance(Section):
+class UnbalanceSection(Section):
     """Residual unbalance of both shafts by balance quality grade; its phase is drawn per specimen."""
 
     grade_mm_s: Annotated[Number, Within(least=0, most=100), Usual(0.05, 100)] = Field(
@@ -59,7 +59,7 @@ RATED = "rated_torque_nm"
 RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
 
-class Rotor(Section):
+class RotorSection(Section):
     """Mass of a gear, what makes it wobble, and the bearings of its shaft (x along the centre line, y vertical)."""
 
     mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
@@ -97,14 +97,14 @@ class Rotor(Section):
         return {**{key: value[other] for key, other in ALIKE.items() if other in value}, **value}
 
 
-class Coupling(Section):
+class CouplingSection(Section):
     """Torsional spring and damper between a gear and the machine on its shaft."""
 
     stiffness_nm_per_rad: Annotated[Number, Within(above=0)] = Field(default=6300.0, description="torsional stiffness")
     damping_nm_s_per_rad: Annotated[Number, Within(least=0)] = Field(default=0.0984, description="torsional damping")
 
 
-class OutputCoupling(Coupling):
+class OutputCoupling(CouplingSection):
     """The same for the longer shaft to the driven machine; 5 % of critical between the inertias of a small stage."""
 
     stiffness_nm_per_rad: Annotated[Number, Within(above=0)] = Field(default=2100.0, description="torsional stiffness")
@@ -133,14 +133,14 @@ class Dynamics(Section):
     )
     motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=4e-3, description=MACHINE)
     load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=1e-2, description=MACHINE)
-    pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")
-    gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
-    input_coupling: Coupling = Field(default=Coupling(), description="between motor and the first gear")
+    pinion: RotorSection = Field(default=RotorSection(), description="the pinion and its shaft")
+    gear: RotorSection = Field(default=RotorSection(), description="the gear and its shaft")
+    input_coupling: CouplingSection = Field(default=CouplingSection(), description="between motor and the first gear")
     output_coupling: OutputCoupling = Field(default=OutputCoupling(), description="between the last gear and load")
     # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
-    mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
+    mesh: MeshSection = Field(default=MeshSection(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
-    unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")
+    unbalance: UnbalanceSection = Field(default=UnbalanceSection(), description="forces of shafts out of balance")
     shafts: Shafts | None = Field(
         default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
     )

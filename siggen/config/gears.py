@@ -63,7 +63,7 @@ class Pair(ToothForm):
         return (getattr(self, which).teeth,)
 
 
-class Gears(Pair):
+class GearsSection(Pair):
     """The first pair of a gearbox, and what other pairs gearboxes of the set may have."""
 
     pairs: Annotated[Pairs, PAIRS] = Field(
@@ -81,7 +81,7 @@ class Gears(Pair):
         return tuple(dict.fromkeys(pair.teeth[("pinion", "gear").index(which)] for pair in self.pairs))
 
     @model_validator(mode="after")
-    def _each_pair_once(self) -> Gears:
+    def _each_pair_once(self) -> GearsSection:
         again = [i for i, pair in enumerate(self.pairs) if pair in self.pairs[:i]]
         if again:
             problems = [Problem(f"pairs.{i}", str(self.pairs[i]), "allowed: each pair once") for i in again]

@@ -50,7 +50,7 @@ class PlateHousing(Section):
     loose_foot_share: Annotated[Number, Within(above=0, most=1), Usual(0.01, 1)] = Field(default=1.0, description=FOOT)
 
 
-class Bolts(Section):
+class BoltsSection(Section):
     """The bolts between casing and ground, all alike but for a loose one."""
 
     shear_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8e7, description=EACH)
@@ -64,7 +64,7 @@ class Bolts(Section):
     )
 
     @model_validator(mode="after")
-    def _support(self) -> Bolts:
+    def _support(self) -> BoltsSection:
         if len(set(self.positions_mm)) < 2:
             received = f"all bolts at {list(self.positions_mm[0])}"
             allowed = "allowed: at least two different places; about a single one the casing would turn freely"
@@ -82,7 +82,7 @@ class RigidHousing(Section):
         description="about its centre of gravity; null: the mass times the square of 1.15 centre distances, or of the "
         "rim's radius of a planetary set (derived)",
     )
-    bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
+    bolts: BoltsSection = Field(default=BoltsSection(), description="between casing and ground")
     loose_foot_share: Annotated[Number, Within(above=0, most=1), Usual(0.01, 1)] = Field(default=1.0, description=FOOT)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field
 
-from siggen.config.dynamics import Rotor
+from siggen.config.dynamics import RotorSection
 from siggen.config.gears import ToothForm, Wheel
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
@@ -25,7 +25,7 @@ Direction: TypeAlias = Annotated[Number, Within(least=-180, most=180)]
 NAMED: Any = Field(description="its name: in places of sensors, damage, columns, messages and pages")
 
 
-class MachineShaft(Rotor):
+class MachineShaft(RotorSection):
     """A shaft on two bearings; masses are those of the gear that the shaft in front drives, of the first its own."""
 
     name: Name = NAMED
@@ -56,7 +56,7 @@ class MachineMesh(ToothForm):
     )
 
 
-class Machine(Section):
+class MachineSection(Section):
     """Shafts, gears and meshes in any order; takes the place of `gears`.
 
     The motor drives the shaft whose gear none drives, the load hangs on the shaft whose gear drives none.

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from siggen.config.machine import IDLER, Machine, MachineMesh
+from siggen.config.machine import IDLER, MachineMesh, MachineSection
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
 
@@ -23,7 +23,7 @@ class Train:
     shafts: tuple[int, ...]
 
 
-def machine_problems(machine: Machine) -> list[Problem]:
+def machine_problems(machine: MachineSection) -> list[Problem]:
     """Return what is wrong about a machine, the first kind of it: what refers to nothing goes before loops."""
     for check in (_names, _references, _pairs, _gears, _connected, _loops, _branches, _spans):
         if found := list(check(machine)):
@@ -31,7 +31,7 @@ def machine_problems(machine: Machine) -> list[Problem]:
     return []
 
 
-def train(machine: Machine) -> Train:
+def train(machine: MachineSection) -> Train:
     """Return the order of power of a machine without problems."""
     shaft_of = _shaft_of(machine)
     ends = [(shaft_of[mesh.driver], shaft_of[mesh.driven]) for mesh in machine.meshes]
@@ -45,13 +45,13 @@ def train(machine: Machine) -> Train:
     return Train(tuple(meshes), tuple(shafts))
 
 
-def idlers(machine: Machine) -> frozenset[str]:
+def idlers(machine: MachineSection) -> frozenset[str]:
     """Return the names of the gears that one gear drives and that drive another one."""
     return frozenset({mesh.driver for mesh in machine.meshes} & {mesh.driven for mesh in machine.meshes})
 
 
-def _names(machine: Machine) -> Iterator[Problem]:
-    for key in Machine.model_fields:
+def _names(machine: MachineSection) -> Iterator[Problem]:
+    for key in MachineSection.model_fields:
         names = [one.name for one in getattr(machine, key)]
         for index, name in enumerate(names):
             if name in names[:index]:
@@ -75,7 +75,7 @@ def _names(machine: Machine) -> Iterator[Problem]:
             yield Problem(f"machine.shafts.{index}.name", received, "allowed: a name whose columns are its own")
 
 
-def _references(machine: Machine) -> Iterator[Problem]:
+def _references(machine: MachineSection) -> Iterator[Problem]:
     shafts, gears = [one.name for one in machine.shafts], [one.name for one in machine.gears]
     for index, gear in enumerate(machine.gears):
         yield from _unknown(f"machine.gears.{index}.shaft", gear.shaft, shafts)
@@ -89,7 +89,7 @@ def _unknown(path: str, name: str, known: Sequence[str]) -> Iterator[Problem]:
         yield Problem(path, f"'{name}'", f"allowed: one of {', '.join(known)}{nearest(name, known)}")
 
 
-def _pairs(machine: Machine) -> Iterator[Problem]:
+def _pairs(machine: MachineSection) -> Iterator[Problem]:
     """Yield meshes whose gears turn together."""
     names, shaft_of = [one.name for one in machine.shafts], _shaft_of(machine)
     for index, mesh in enumerate(machine.meshes):
@@ -98,7 +98,7 @@ def _pairs(machine: Machine) -> Iterator[Problem]:
             yield Problem(f"machine.meshes.{index}.driven", received, "allowed: a gear on another shaft")
 
 
-def _gears(machine: Machine) -> Iterator[Problem]:
+def _gears(machine: MachineSection) -> Iterator[Problem]:
     """Yield gears that mesh with none or with too many; two that a gear drives, or is driven in, are a branch."""
     meshes: dict[str, list[str]] = {}
     for mesh in machine.meshes:
@@ -113,7 +113,7 @@ def _gears(machine: Machine) -> Iterator[Problem]:
             yield Problem(f"machine.gears.{index}.name", received, allowed)
 
 
-def _connected(machine: Machine) -> Iterator[Problem]:
+def _connected(machine: MachineSection) -> Iterator[Problem]:
     """Yield shafts that no mesh joins with the first one."""
     reached, first = _reached(machine, 0, machine.meshes), machine.shafts[0].name
     for index, shaft in enumerate(machine.shafts):
@@ -122,7 +122,7 @@ def _connected(machine: Machine) -> Iterator[Problem]:
             yield Problem(f"machine.shafts.{index}.name", received, "allowed: shafts joined by meshes of their gears")
 
 
-def _loops(machine: Machine) -> Iterator[Problem]:
+def _loops(machine: MachineSection) -> Iterator[Problem]:
     """Yield each mesh that closes a loop with those before it, and whether its shafts could turn at all."""
     shaft_of = _shaft_of(machine)
     for index, mesh in enumerate(machine.meshes):
@@ -141,7 +141,7 @@ def _loops(machine: Machine) -> Iterator[Problem]:
             yield Problem(f"machine.meshes.{index}.name", received, allowed)
 
 
-def _branches(machine: Machine) -> Iterator[Problem]:
+def _branches(machine: MachineSection) -> Iterator[Problem]:
     """Yield shafts that drive several others, or are driven by several."""
     shaft_of = _shaft_of(machine)
     for key, does in (("driver", "drives"), ("driven", "is driven in")):
@@ -152,7 +152,7 @@ def _branches(machine: Machine) -> Iterator[Problem]:
                 yield Problem(f"machine.shafts.{shaft}.name", received, "allowed: one way from the motor to the load")
 
 
-def _spans(machine: Machine) -> Iterator[Problem]:
+def _spans(machine: MachineSection) -> Iterator[Problem]:
     inner, of_idlers = train(machine).shafts[1:-1], {_shaft_of(machine)[name] for name in idlers(machine)}
     for index, shaft in enumerate(machine.shafts):
         path, received = f"machine.shafts.{index}.span_mm", str(shaft.span_mm)
@@ -164,12 +164,12 @@ def _spans(machine: Machine) -> Iterator[Problem]:
             yield Problem(path, received, "allowed: a number, null, or one gear in two meshes on the shaft")
 
 
-def _shaft_of(machine: Machine) -> dict[str, int]:
+def _shaft_of(machine: MachineSection) -> dict[str, int]:
     places = {shaft.name: index for index, shaft in enumerate(machine.shafts)}
     return {gear.name: places[gear.shaft] for gear in machine.gears}
 
 
-def _ratio(machine: Machine, mesh: MachineMesh) -> Fraction:
+def _ratio(machine: MachineSection, mesh: MachineMesh) -> Fraction:
     """Return turns of the driven gear per turn of the driver, which turns the other way."""
     teeth = {gear.name: gear.teeth for gear in machine.gears}
     return -Fraction(teeth[mesh.driver], teeth[mesh.driven])
@@ -183,7 +183,7 @@ class _Way:
     meshes: tuple[str, ...]
 
 
-def _reached(machine: Machine, first: int, meshes: Sequence[MachineMesh]) -> Mapping[int, _Way]:
+def _reached(machine: MachineSection, first: int, meshes: Sequence[MachineMesh]) -> Mapping[int, _Way]:
     """Return shaft -> the way to it from the first one, for the shafts that meshes join with that."""
     shaft_of, ways, waiting = _shaft_of(machine), {first: _Way(Fraction(1), ())}, [first]
     while waiting:

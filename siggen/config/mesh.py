@@ -18,7 +18,7 @@ DAMPING_PARTS = (
 )
 
 
-class Mesh(Section):
+class MeshSection(Section):
     """The law of the mesh force; everything but `law` is used by the law pairs alone."""
 
     law: Literal["linear", "pairs"] = Field(

@@ -13,7 +13,7 @@ from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import refusal, section_problems
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
-from siggen.seeding import Stage, named_uniforms
+from siggen.seeding import Stream, named_uniforms
 
 SEED = 0
 """Of the pairs alone, so that another seed of the set keeps them."""
@@ -24,7 +24,7 @@ Teeth = Annotated[Whole, Field(ge=5, le=1000)]
 Shift = Annotated[Real, Field(ge=-1, le=1.5)]
 
 
-class Pair(Section):
+class PairSection(Section):
     """One pair: what a drawing of it begins with. All else is carried over from the pair of the section `gears`."""
 
     teeth: Annotated[tuple[Teeth, Teeth], AllowedText("two whole numbers from 5 to 1000, [pinion, gear]")] = Field(
@@ -54,7 +54,7 @@ class DrawnPairs(Section):
         description="face width in modules; the width is rounded to whole mm"
     )
 
-    def pairs(self) -> tuple[Pair, ...]:
+    def pairs(self) -> tuple[PairSection, ...]:
         """Return the pairs.
 
         Raises
@@ -62,9 +62,9 @@ class DrawnPairs(Section):
         PydanticCustomError
             A refusal, if the ranges do not hold as many different pairs.
         """
-        found: dict[Pair, None] = {}
+        found: dict[PairSection, None] = {}
         for index in range(self.count):
-            drawn = self._drawn(named_uniforms(SEED, Stage.PAIRS, index))
+            drawn = self._drawn(named_uniforms(SEED, Stream.PAIRS, index))
             pair = next((one for one in drawn if one not in found), None)
             if pair is None:
                 received = f"{self.count}, of which {len(found)} different ones were found"
@@ -72,7 +72,7 @@ class DrawnPairs(Section):
             found[pair] = None
         return tuple(found)
 
-    def _drawn(self, uniform: Callable[[str], float]) -> Iterator[Pair]:
+    def _drawn(self, uniform: Callable[[str], float]) -> Iterator[PairSection]:
         for attempt in range(ATTEMPTS):
             teeth, ratio, module, width = (
                 at(number, uniform(f"{name}.{attempt}"))
@@ -85,7 +85,9 @@ class DrawnPairs(Section):
             )
             pinion = round(teeth)
             gear = _gear_teeth(pinion, max(5, round(pinion * ratio)))
-            yield Pair(teeth=(pinion, gear), module_mm=module, face_width_mm=float(max(1, round(width * module))))
+            yield PairSection(
+                teeth=(pinion, gear), module_mm=module, face_width_mm=float(max(1, round(width * module)))
+            )
 
 
 def _gear_teeth(pinion: int, wanted: int) -> int:
@@ -110,4 +112,6 @@ PAIRS = AllowedText(
     "a list of mappings with teeth, module_mm and face_width_mm, or one mapping with count, pinion_teeth, ratio, "
     "module_mm and face_width_over_module; null for none"
 )
-Pairs = Annotated[tuple[Pair, ...], BeforeValidator(_listed, json_schema_input_type=list[Pair] | DrawnPairs | None)]
+Pairs = Annotated[
+    tuple[PairSection, ...], BeforeValidator(_listed, json_schema_input_type=list[PairSection] | DrawnPairs | None)
+]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from siggen.config.dynamics import Dynamics, Unbalance
-from siggen.config.gears import Gears
+from siggen.config.dynamics import Dynamics, UnbalanceSection
+from siggen.config.gears import GearsSection
 from siggen.config.housing import PlateHousing
 from siggen.config.planetary import RING, ROLES, Planetary
 from siggen.errors import Problem
@@ -31,13 +31,13 @@ def sets_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
     yield from _of_states(sections)
 
 
-def set_of(gears: Gears, section: Planetary) -> PlanetarySet:
+def set_of(gears: GearsSection, section: Planetary) -> PlanetarySet:
     """Return the teeth of a set and the places of its planets."""
     sun, planet = gears.pinion.teeth, gears.gear.teeth
     return PlanetarySet(sun, planet, section.ring_teeth, typed_places(section.positions_deg, sun + section.ring_teeth))
 
 
-def _of_gears(gears: Gears, section: Planetary) -> Iterator[Problem]:
+def _of_gears(gears: GearsSection, section: Planetary) -> Iterator[Problem]:
     if gears.pairs:
         yield Problem("gears.pairs", f"{len(gears.pairs)} pairs", f"allowed: none {BESIDE}")
     if bounds(gears.helix_deg) != (0.0, 0.0):
@@ -56,7 +56,7 @@ def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
         yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {BESIDE}")
     if dynamics.shafts is not None:
         yield Problem("dynamics.shafts", "a section", f"allowed: null {BESIDE}")
-    if dynamics.unbalance != Unbalance():
+    if dynamics.unbalance != UnbalanceSection():
         yield Problem("dynamics.unbalance", "a section", f"allowed: none {BESIDE}")
     for which in ("pinion", "gear"):
         if getattr(dynamics, which) != type(dynamics).model_fields[which].default:

@@ -10,10 +10,10 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from typing import Any
 
-from siggen.config.dynamics import Rotor
-from siggen.config.gears import Gears, Pair, ToothForm, Wheel
+from siggen.config.dynamics import RotorSection
+from siggen.config.gears import GearsSection, Pair, ToothForm, Wheel
 from siggen.config.inheritance import REPLACED
-from siggen.config.machine import Machine, MachineMesh
+from siggen.config.machine import MachineMesh, MachineSection
 from siggen.config.machine_problems import idlers, train
 from siggen.config.stages import Stage
 from siggen.errors import Problem
@@ -36,7 +36,7 @@ OF_SHAFTS = ("driver", "driven")
 
 
 @cache
-def names_of(machine: Machine) -> Names:
+def names_of(machine: MachineSection) -> Names:
     """Return the names of a machine without problems."""
     found, shared = train(machine), idlers(machine)
     inner = ("", *(machine.meshes[place].name for place in found.meshes[1:]))
@@ -49,7 +49,7 @@ def names_of(machine: Machine) -> Names:
     return Names(meshes, named, tuple(_paths(machine)), given=True)
 
 
-def names_in(machine: Machine | None, *, planetary: bool) -> Names:
+def names_in(machine: MachineSection | None, *, planetary: bool) -> Names:
     """Return the names of a gearbox by valid sections."""
     if machine is not None:
         return names_of(machine)
@@ -64,7 +64,7 @@ def _mesh_name(inner: str, mesh: MachineMesh, shared: Collection[str]) -> MeshNa
     return MeshName(inner, mesh.name, *gears)
 
 
-def _paths(machine: Machine) -> Iterator[tuple[str, str]]:
+def _paths(machine: MachineSection) -> Iterator[tuple[str, str]]:
     """Yield keys of sections and where the machine has them."""
     found, gears = train(machine), {gear.name: index for index, gear in enumerate(machine.gears)}
     for number, place in enumerate(found.meshes):
@@ -127,7 +127,7 @@ def _with_shafts(dynamics: Any, keys: tuple[str, str], to: tuple[str, str]) -> A
     return dynamics if own is None else {**dynamics, "shafts": own}
 
 
-def drivetrain(machine: Machine) -> tuple[Gears, tuple[Stage, ...], dict[str, Rotor]]:
+def drivetrain(machine: MachineSection) -> tuple[GearsSection, tuple[Stage, ...], dict[str, RotorSection]]:
     """Return its first pair, its further meshes, and both shafts of the first mesh by the keys of `dynamics`."""
     found, shafts = train(machine), machine.shafts
     wheels = {gear.name: Wheel(**_values(gear, Wheel)) for gear in machine.gears}
@@ -142,13 +142,13 @@ def drivetrain(machine: Machine) -> tuple[Gears, tuple[Stage, ...], dict[str, Ro
             Stage(
                 name=mesh.name,
                 gears=pair,
-                gear=Rotor(**_values(shafts[own], Rotor)),
+                gear=RotorSection(**_values(shafts[own], RotorSection)),
                 span_mm="idler" if mesh.driver in idlers(machine) else shafts[front].span_mm,
                 direction_deg=mesh.direction_deg,
             )
         )
-    rotors = (Rotor(**_values(shafts[place], Rotor)) for place in found.shafts)
-    return Gears(**_values(pairs[0], Pair)), tuple(stages), dict(zip(ROLES, rotors, strict=False))
+    rotors = (RotorSection(**_values(shafts[place], RotorSection)) for place in found.shafts)
+    return GearsSection(**_values(pairs[0], Pair)), tuple(stages), dict(zip(ROLES, rotors, strict=False))
 
 
 def _values(section: Section, model: type[Section]) -> dict[str, Any]:

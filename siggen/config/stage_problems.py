@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from siggen.config.dynamics import Dynamics, Rotor
-from siggen.config.gears import Gears, Pair, Wheel
+from siggen.config.dynamics import Dynamics, RotorSection
+from siggen.config.gears import GearsSection, Pair, Wheel
 from siggen.config.short_form import names_in
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
@@ -47,7 +47,7 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
         yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
     for index, stage in enumerate(sections["stages"]):
         for key in ("bearing", "eccentricity_um"):
-            if (value := getattr(stage.gear, key)) != Rotor.model_fields[key].default:
+            if (value := getattr(stage.gear, key)) != RotorSection.model_fields[key].default:
                 received = received_text(value)
                 yield Problem(f"stages.{index}.gear.{key}", received, "allowed: none on a shaft behind the second")
     if "gears" in sections:
@@ -73,7 +73,7 @@ def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
             yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null {BESIDE}")
 
 
-def _of_gears(gears: Gears, stages: tuple[Stage, ...]) -> Iterator[Problem]:
+def _of_gears(gears: GearsSection, stages: tuple[Stage, ...]) -> Iterator[Problem]:
     if gears.pairs:
         yield Problem("gears.pairs", f"{len(gears.pairs)} pairs", f"allowed: none {BESIDE}")
     every: dict[str, Pair] = {"gears": gears, **{f"stages.{i}.gears": one.gears for i, one in enumerate(stages)}}

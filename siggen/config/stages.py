@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from siggen.config.dynamics import Rotor
+from siggen.config.dynamics import RotorSection
 from siggen.config.gears import Pair
 from siggen.config.machine import IDLER, Direction, Span
 from siggen.keys.section import Section
@@ -20,7 +20,7 @@ class Stage(Section):
 
     name: str
     gears: Pair
-    gear: Rotor
+    gear: RotorSection
     span_mm: Span
     direction_deg: Direction
 

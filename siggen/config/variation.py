@@ -40,7 +40,7 @@ class SpeedVariation(Section):
     )
 
 
-class TorqueVariation(Section):
+class TorqueVariationSection(Section):
     """Torque about that of the operating point; motor and load balance on the mean."""
 
     random_rms: Annotated[Number, Within(least=0, most=0.1), Usual(0.0002, 0.1)] = Field(
@@ -61,7 +61,7 @@ class Variation(Section):
         default=None, description="word of the catalogue whose numbers it takes over beside its own", exclude=True
     )
     speed: SpeedVariation = Field(default=SpeedVariation(), description="rotation of the input shaft")
-    torque: TorqueVariation = Field(default=TorqueVariation(), description="torque of motor and load")
+    torque: TorqueVariationSection = Field(default=TorqueVariationSection(), description="torque of motor and load")
 
     @model_validator(mode="before")
     @classmethod

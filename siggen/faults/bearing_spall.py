@@ -25,7 +25,7 @@ from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
-from siggen.seeding import Stage, named_uniforms
+from siggen.seeding import Stream, named_uniforms
 
 BEARING_TEXT = AllowedText("one of pinion_bearing, gear_bearing; of a machine SHAFT_bearing of the first two shafts")
 KEYS = {"length_m": "length_mm", "depth_m": "depth_mm"}
@@ -94,7 +94,9 @@ class BearingSpalls(Fault):
     def drawn(self, growth: Growth) -> Parts:
         """Return the spall, with the draws of the one that it has grown from."""
         began = [state for state, older in growth.milder if self._is_of(older)]
-        uniform = named_uniforms(growth.seed, Stage.DAMAGE, growth.specimen_id, began[-1] if began else growth.state_id)
+        uniform = named_uniforms(
+            growth.seed, Stream.DAMAGE, growth.specimen_id, began[-1] if began else growth.state_id
+        )
         name = f"bearing_spall.{self.bearing}.{self.element}"
         spall = draw(self, uniform, name)._spall(BallGeometry().bearing(), uniform(f"{name}.place"))
         for older in in_bearings(growth.before):

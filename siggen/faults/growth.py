@@ -16,7 +16,7 @@ from siggen.gears.damage.part import Parts
 from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.teeth import TeethValue
-from siggen.seeding import Stage, generator, named_generator, named_uniforms
+from siggen.seeding import Stream, generator, named_generator, named_uniforms
 
 
 class OnTeeth(Protocol):
@@ -70,23 +70,23 @@ class Growth:
     def place_of(self, kind: type) -> Callable[[str], float]:
         """Return path -> uniform of the first state of this growth that has such damage, which is of both gears."""
         found = [number for number, older in self.milder if isinstance(older, kind)]
-        return named_uniforms(self.seed, Stage.DAMAGE, self.specimen_id, found[-1] if found else self.state_id)
+        return named_uniforms(self.seed, Stream.DAMAGE, self.specimen_id, found[-1] if found else self.state_id)
 
     def place(self, gear: str, kind: type) -> Callable[[str], float]:
         """Return path -> uniform of the first state of this growth that has such damage on the gear."""
-        return named_uniforms(self.seed, Stage.DAMAGE, self.specimen_id, self.began(gear, kind))
+        return named_uniforms(self.seed, Stream.DAMAGE, self.specimen_id, self.began(gear, kind))
 
     def shape(self, gear: str, kind: type, name: str) -> np.random.Generator:
         """Return the generator of one thing that keeps its shape from the first such state on."""
-        return named_generator(self.seed, Stage.DAMAGE, self.specimen_id, self.began(gear, kind), name=name)
+        return named_generator(self.seed, Stream.DAMAGE, self.specimen_id, self.began(gear, kind), name=name)
 
     def rng(self, name: str) -> np.random.Generator:
         """Return the generator of one thing that this state adds."""
-        return named_generator(self.seed, Stage.DAMAGE, self.specimen_id, self.state_id, name=name)
+        return named_generator(self.seed, Stream.DAMAGE, self.specimen_id, self.state_id, name=name)
 
     def uniforms(self) -> Callable[[str], float]:
         """Return path -> uniform of this state alone."""
-        return named_uniforms(self.seed, Stage.DAMAGE, self.specimen_id, self.state_id)
+        return named_uniforms(self.seed, Stream.DAMAGE, self.specimen_id, self.state_id)
 
     def teeth(self, section: OnTeeth) -> tuple[int, ...]:
         """Return the teeth that are hit: the listed ones, or neighbours from a tooth drawn once per gearbox and gear.
@@ -100,7 +100,7 @@ class Growth:
             return section.teeth
         if not isinstance(section.teeth, int):
             raise TypeError(f"a drawn number of teeth was expected, received {section.teeth}")
-        draws = generator(self.seed, Stage.DAMAGED_TEETH, self.specimen_id).random(2)
+        draws = generator(self.seed, Stream.DAMAGED_TEETH, self.specimen_id).random(2)
         count = self.pair.member(section.gear).teeth
         first = int(draws[("pinion", "gear").index(section.gear)] * count)
         return tuple((first + i) % count for i in range(section.teeth))

@@ -26,7 +26,7 @@ from siggen.keys.drawing import SomeSection, draw, in_si
 from siggen.keys.number import constant
 from siggen.keys.section import Section
 from siggen.names import ROLES
-from siggen.seeding import Stage, named_uniforms
+from siggen.seeding import Stream, named_uniforms
 
 T = TypeVar("T")
 MACHINES = {"motor": "pinion", "load": "gear"}
@@ -135,7 +135,7 @@ def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None
     section = config.background
     if section is None:
         return None
-    uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen_id)
+    uniform = named_uniforms(config.seed, Stream.BACKGROUND, specimen_id)
 
     def drawn(numbers: type[SomeSection], part: Section, path: str, **more: object) -> SomeSection:
         return draw(numbers.model_construct(**{**dict(part), **more}), uniform, f"background.{path}")

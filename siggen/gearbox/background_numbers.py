@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from siggen.config import Base, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
+from siggen.config import BaseSection, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
@@ -16,7 +16,7 @@ BANDS = ("low_um_s", "middle_um_s", "high_um_s")
 Drawn = Annotated[Number, Within()]
 
 
-class BaseNumbers(Base):
+class BaseNumbers(BaseSection):
     """Of the base: natural frequencies on its mounts, and rubber's damping (assumed)."""
 
     horizontal_hz: Drawn = LogUniform(low=10.0, high=60.0)

@@ -12,7 +12,7 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
 from siggen.keys.number import Number, constant
 from siggen.noise.source import Source
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensing.frequency_response import FrequencyResponse
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.path import MeasuredPath
@@ -84,7 +84,7 @@ class DrawnChannel:
 
 def drawn_channels(config: Config, specimen_id: int, sensors: Sequence[SensorBase]) -> Iterator[DrawnChannel]:
     """Yield the channels of drawn sensors."""
-    uniform = named_uniforms(config.seed, Stage.SENSOR, specimen_id)
+    uniform = named_uniforms(config.seed, Stream.SENSOR, specimen_id)
     named = partial(_named, config.seed, specimen_id)
     pressed = config.places.pressed
     for sensor in sensors:
@@ -110,7 +110,7 @@ def drawn_channels(config: Config, specimen_id: int, sensors: Sequence[SensorBas
 
 
 def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:
-    return named_generator(seed, Stage.SENSOR, specimen_id, name=name)
+    return named_generator(seed, Stream.SENSOR, specimen_id, name=name)
 
 
 def _way(

@@ -20,7 +20,7 @@ from siggen.keys.distributions import Choice
 from siggen.keys.teeth import drawn_teeth, most_teeth
 from siggen.names import EITHER, ROLES, Names
 from siggen.rig.carried_over import carried_over
-from siggen.seeding import Stage, generator, named_uniforms
+from siggen.seeding import Stream, generator, named_uniforms
 
 
 def gearbox_config(config: Config, specimen_id: int) -> Config:
@@ -80,16 +80,16 @@ def pair_of(config: Config, specimen_id: int) -> int | None:
 
 @lru_cache(maxsize=256)
 def _order(seed: int, count: int, block: int) -> tuple[int, ...]:
-    return tuple(generator(seed, Stage.PAIR_ORDER, block).permutation(count).tolist())
+    return tuple(generator(seed, Stream.PAIR_ORDER, block).permutation(count).tolist())
 
 
 def with_drawn_parts(config: Config, specimen_id: int) -> Config:
     """Return a configuration in which one gearbox's damaged gear, number of teeth and oil are given."""
     if not has_drawn_parts(config):
         return config
-    teeth = named_uniforms(config.seed, Stage.DAMAGED_TEETH, specimen_id)
+    teeth = named_uniforms(config.seed, Stream.DAMAGED_TEETH, specimen_id)
     oils = oils_of(config.dynamics.friction.oil)
-    supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
+    supports = named_uniforms(config.seed, Stream.SUPPORTS, specimen_id)
     oil = oils[int(supports("dynamics.friction.oil") * len(oils))]
     return _with_oil(_with_damage(config, _drawn_hit(teeth, config.names)), oil)
 
@@ -151,7 +151,7 @@ def state_config(config: Config, specimen_id: int, state_id: int) -> Config:
     if not changes:
         return own
     drawn = [
-        one.drawn(named_uniforms(own.seed, Stage.DAMAGE, specimen_id, origin), own.states[origin].name)
+        one.drawn(named_uniforms(own.seed, Stream.DAMAGE, specimen_id, origin), own.states[origin].name)
         for origin, one in changes
     ]
     sections = {name: getattr(own, name) for name in type(own).model_fields}

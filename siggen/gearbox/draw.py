@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from math import radians
 
-from siggen.config import Config, Dynamics, Gears, Planetary, Rotor
+from siggen.config import Config, Dynamics, GearsSection, Planetary, RotorSection
 from siggen.config.config import rated_nm
 from siggen.config.planetary import RING
 from siggen.config.planetary_problems import set_of
@@ -28,8 +28,7 @@ from siggen.gears.geometry.idler import idler_later_rad
 from siggen.gears.geometry.internal_pair import ring_round
 from siggen.keys.drawing import draw
 from siggen.keys.number import at, constant
-from siggen.seeding import Stage as Consumer
-from siggen.seeding import named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator, named_uniforms
 
 
 def draw_specimen(config: Config, specimen_id: int) -> Specimen:
@@ -52,8 +51,8 @@ def _in_state(config: Config, specimen_id: int, state_id: int) -> Specimen:
 
 def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
     """Return a specimen of a set by its own configuration."""
-    gears = named_uniforms(config.seed, Consumer.GEARS, specimen_id)
-    supports = named_uniforms(config.seed, Consumer.SUPPORTS, specimen_id)
+    gears = named_uniforms(config.seed, Stream.GEARS, specimen_id)
+    supports = named_uniforms(config.seed, Stream.SUPPORTS, specimen_id)
     first, stiffness = draw(own.gears, gears, "gears"), draw(own.stiffness, gears, "stiffness")
     dynamics = draw(own.dynamics, supports, "dynamics")
     stages = tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages)))
@@ -66,7 +65,7 @@ def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
         planets = _planets(own, section, first, dynamics, specimen_id, drawing)
         meshes = ToothMesh("", planets.meshes[0]), ToothMesh(RING, planets.meshes[len(planets.pin_errors_m)])
     balls, law = ball_bearings(dynamics), tooth_law(dynamics)
-    sensor = named_uniforms(config.seed, Consumer.SENSOR, specimen_id)
+    sensor = named_uniforms(config.seed, Stream.SENSOR, specimen_id)
     sensors = tuple(one.drawn(sensor) for one in own.sensors)
     points = tuple(draw_operating_point(own, specimen_id, number) for number in range(len(own.operating_points)))
     return Specimen(
@@ -98,19 +97,19 @@ def _state(config: Config, own: Config, specimen_id: int, number: int) -> DrawnS
     return DrawnState(state.name, state.fault, state.severity, state.sham, state_labels(own, number), changed)
 
 
-def _rotors(dynamics: Dynamics) -> tuple[Rotor, Rotor]:
+def _rotors(dynamics: Dynamics) -> tuple[RotorSection, RotorSection]:
     return dynamics.pinion, dynamics.gear
 
 
 def _meshes(
-    gears: Gears, rotors: Sequence[Rotor], stages: tuple[Stage, ...], seed: int, drawing: Drawing
+    gears: GearsSection, rotors: Sequence[RotorSection], stages: tuple[Stage, ...], seed: int, drawing: Drawing
 ) -> Iterator[ToothMesh]:
     """Yield the meshes of a train; the axis of an idler is that which it has in the mesh in front."""
     front = drawing(gear_pair(gears), rotors, seed, "", 1.0)
     yield ToothMesh("", front)
     for stage, turning in zip(stages, turned(gears, stages), strict=False):
         pair, of_stage = gear_pair(stage.gears), mesh_seed(seed, stage.name)
-        own = drawing(pair, (Rotor(), Rotor()), of_stage, stage.name, float(turning))
+        own = drawing(pair, (RotorSection(), RotorSection()), of_stage, stage.name, float(turning))
         front = on_one_body(own, front, idler_later_rad(front.pair, pair)) if stage.idler else own
         yield ToothMesh(stage.name, front, stage.idler, radians(constant(stage.direction_deg)))
 
@@ -123,11 +122,11 @@ def _train(dynamics: Dynamics, stages: tuple[Stage, ...], meshes: tuple[ToothMes
 
 
 def _planets(
-    config: Config, section: Planetary, gears: Gears, dynamics: Dynamics, specimen_id: int, drawing: Drawing
+    config: Config, section: Planetary, gears: GearsSection, dynamics: Dynamics, specimen_id: int, drawing: Drawing
 ) -> PlanetaryGears:
     teeth, pair = set_of(gears, section), gear_pair(gears)
     ring = ring_round(pair, teeth.ring)
-    rng = named_generator(config.seed, Consumer.GEARS, specimen_id, name="planetary.pin_error_um")
+    rng = named_generator(config.seed, Stream.GEARS, specimen_id, name="planetary.pin_error_um")
     errors = 1e-6 * constant(section.pin_error_um) * rng.standard_normal(len(section.positions_deg))
     stage = planetary_stage(section, dynamics, pair, ring, teeth)
     meshes = planetary_teeth(drawing, _rotors(config.dynamics), config.seed, teeth, pair, ring)
@@ -136,7 +135,7 @@ def _planets(
 
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:
     """Return an operating point of a specimen; the same for all of its states."""
-    uniform = named_uniforms(config.seed, Consumer.OPERATING_POINT, specimen_id, operating_point_id)
+    uniform = named_uniforms(config.seed, Stream.OPERATING_POINT, specimen_id, operating_point_id)
     own = gearbox_config(config, specimen_id)
     ranges = own.operating_points[operating_point_id]
     return OperatingPoint(

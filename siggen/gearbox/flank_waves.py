@@ -12,7 +12,7 @@ from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.names import ROLES
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stream, named_generator
 
 CLAMPING = (2, 3, 4)
 """Waves per revolution that the jaws of a chuck leave."""
@@ -52,7 +52,7 @@ def drawn_waves(seed: int, owner: tuple[int, int], pair: GearPair) -> SpecimenWa
     """Return the waves of a mesh whose draws have this seed and owner, gearbox and state; every draw has a name."""
 
     def draws(name: str) -> np.random.Generator:
-        return named_generator(seed, Stage.MANUFACTURE, *owner, name=f"manufacture.flank_waves.{name}")
+        return named_generator(seed, Stream.MANUFACTURE, *owner, name=f"manufacture.flank_waves.{name}")
 
     pinion, gear = (_drawn(pair.member(which).teeth, which, draws) for which in ROLES)
     counts = {which: drawn.waves.size - len(CLAMPING) for which, drawn in zip(ROLES, (pinion, gear), strict=True)}

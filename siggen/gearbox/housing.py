@@ -24,7 +24,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, at, constant
 from siggen.names import ROLES
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensors.sensor import SensorBase
 
 SCATTER_MM = 15.0
@@ -100,17 +100,17 @@ def drawn_housing(
     config: Config, specimen_id: int, dynamics: Dynamics, pair: GearPair, sensors: Sequence[SensorBase]
 ) -> Housing | None:
     """Return the housing of one gearbox with drawn `dynamics` and `sensors`; None where the ground carries bearings."""
-    section, uniform = config.housing, named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
+    section, uniform = config.housing, named_uniforms(config.seed, Stream.SUPPORTS, specimen_id)
     if dynamics.model != "casing":
         return None
     if isinstance(section, ModalHousing):
         return mode_table(section.modes)
     if isinstance(section, RigidHousing):
         return _block(draw(section, uniform, "housing"), sensors)
-    rng = partial(named_generator, config.seed, Stage.PATH, specimen_id, name="housing.damping_ratio")
+    rng = partial(named_generator, config.seed, Stream.PATH, specimen_id, name="housing.damping_ratio")
     numbers, shafts = plate_numbers(section, uniform), dynamics.shafts
     contents, proportions, material = specimen_layout(numbers, shafts, pair)
-    path = named_uniforms(config.seed, Stage.PATH, specimen_id)
+    path = named_uniforms(config.seed, Stream.PATH, specimen_id)
     return Plates(
         contents,
         proportions,

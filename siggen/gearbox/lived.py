@@ -9,18 +9,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from siggen.config import Config, Gears, StateSection
+from siggen.config import Config, GearsSection, StateSection
 from siggen.config.life import FUNCTIONAL_SHARE, JITTER, Life
 from siggen.faults.registry import HEALTHY
 from siggen.gearbox.pair import gear_pair
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
-from siggen.life.clock import Block, Clock
+from siggen.life.clock import Clock, LoadBlock
 from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
-from siggen.life.law import Course, Named, Wearing
+from siggen.life.law import LifeCourse, Named, Wearing
 from siggen.names import Names
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator, named_uniforms
 
 Event = Literal["failed", "suspended"]
 PHASES = ("no pit", "pitted", "rated")
@@ -50,7 +50,7 @@ class Lived:
         'failed' or 'suspended'.
     """
 
-    course: Course
+    course: LifeCourse
     named: Named
     clock: Clock
     functional_share: float
@@ -82,7 +82,7 @@ def _state(life: Life, found: Lived, number: int, names: Names) -> StateSection:
     return StateSection(name=life.name_of(number), fault=fault, severity=severity, damage=damage)
 
 
-def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:
+def lived(config: Config, nominal: GearsSection, specimen_id: int) -> Lived:
     """Return the life of a gearbox by its own configuration; `nominal` are the gears that the law's numbers hold for.
 
     Raises
@@ -92,16 +92,16 @@ def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:
     """
     life = config.life
     assert life is not None
-    uniform = named_uniforms(config.seed, Stage.LIFE, specimen_id)
-    drawn: Gears = draw(config.gears, named_uniforms(config.seed, Stage.GEARS, specimen_id), "gears")
-    middle: Gears = draw(nominal, lambda _: 0.5, "gears")
+    uniform = named_uniforms(config.seed, Stream.LIFE, specimen_id)
+    drawn: GearsSection = draw(config.gears, named_uniforms(config.seed, Stream.GEARS, specimen_id), "gears")
+    middle: GearsSection = draw(nominal, lambda _: 0.5, "gears")
     wearing = Wearing(
         flanks(gear_pair(drawn)),
         flanks(gear_pair(middle)),
-        lambda name: named_generator(config.seed, Stage.LIFE, specimen_id, name=name),
+        lambda name: named_generator(config.seed, Stream.LIFE, specimen_id, name=name),
     )
     point = config.operating_points[0]
-    of_point = named_uniforms(config.seed, Stage.OPERATING_POINT, specimen_id, 0)
+    of_point = named_uniforms(config.seed, Stream.OPERATING_POINT, specimen_id, 0)
     steady = at(point.speed_hz, of_point("speed_hz")), at(point.torque_nm, of_point("torque_nm"))
     clock = Clock(_blocks(life, *steady), life.damage.torque_exponent, at(life.scale, uniform("scale")))
     share = at(FUNCTIONAL_SHARE, uniform("functional_share"))
@@ -110,12 +110,12 @@ def lived(config: Config, nominal: Gears, specimen_id: int) -> Lived:
     return Lived(course, wearing.named, clock, share, ages_h, observed_h, event)
 
 
-def _blocks(life: Life, speed_hz: float, torque_nm: float) -> tuple[Block, ...]:
+def _blocks(life: Life, speed_hz: float, torque_nm: float) -> tuple[LoadBlock, ...]:
     """Return the blocks of load; without a history that of an operating point all the time."""
     ratio, found = torque_nm / life.reference_torque_nm, []
     for hours, torque, *speed in life.history or ((1.0, 1.0),):
         own = (speed[0], torque / life.reference_torque_nm) if speed else (speed_hz, ratio * torque)
-        found.append(Block(hours, *own))
+        found.append(LoadBlock(hours, *own))
     return tuple(found)
 
 

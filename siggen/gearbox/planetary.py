@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi, sqrt
 
-from siggen.config import Dynamics, Planetary, Rotor
+from siggen.config import Dynamics, Planetary, RotorSection
 from siggen.config.planetary import RING
 from siggen.dynamics.structure.gear_stage import PlanetaryBody, PlanetaryStage
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3
@@ -40,7 +40,7 @@ def planetary_stage(
     section: Planetary, dynamics: Dynamics, pair: GearPair, inner: InternalPair, teeth: PlanetarySet
 ) -> PlanetaryStage:
     """Return the bodies of a drawn set with motor, load and couplings."""
-    sun, planet = (rotor_numbers(Rotor(), gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
+    sun, planet = (rotor_numbers(RotorSection(), gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
     return PlanetaryStage(
         sun_angle_rad=pair.working_pressure_angle_rad,
         ring_angle_rad=inner.working_pressure_angle_rad,
@@ -82,7 +82,7 @@ def _carrier(section: Planetary, pair: GearPair) -> PlanetaryBody:
 
 
 def planetary_teeth(
-    drawing: Drawing, rotors: Sequence[Rotor], seed: int, teeth: PlanetarySet, pair: GearPair, ring: InternalPair
+    drawing: Drawing, rotors: Sequence[RotorSection], seed: int, teeth: PlanetarySet, pair: GearPair, ring: InternalPair
 ) -> tuple[Teeth, ...]:
     """Return the teeth of the sun with each planet, then of each planet with the ring.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from typing import TypeAlias, TypeVar
 
-from siggen.config import Config, OperatingRange, Rotor
+from siggen.config import Config, OperatingRange, RotorSection
 from siggen.gearbox.flank_waves import SpecimenWaves, drawn_waves
 from siggen.gearbox.mesh_damage import LoadsAtRest, MeshDamage, mesh_state
 from siggen.gearbox.pair import mesh_options
@@ -53,7 +53,7 @@ class Teeth:
         return state_id if self.redrawn else 0
 
 
-Drawing: TypeAlias = Callable[[GearPair, Sequence[Rotor], int, str, float], Teeth]
+Drawing: TypeAlias = Callable[[GearPair, Sequence[RotorSection], int, str, float], Teeth]
 """Pair, its rotors, seed of its draws, what damage calls the mesh, turns of its pinion -> teeth of one gearbox."""
 
 
@@ -62,7 +62,7 @@ def draw_teeth(
     specimen_id: int,
     bending: StiffnessOptions,
     pair: GearPair,
-    rotors: Sequence[Rotor],
+    rotors: Sequence[RotorSection],
     seed: int,
     mesh: str,
     turning: float,

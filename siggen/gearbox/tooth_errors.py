@@ -21,7 +21,7 @@ from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, at
 from siggen.names import ROLES
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator, named_uniforms
 
 RUNOUT_SHARE = Uniform(low=0.3, high=0.8)
 """Runout over what class and tolerance share allow; the first harmonic of the pitch deviations (assumed)."""
@@ -110,9 +110,9 @@ def drawn_errors(
     """
 
     def draws(name: str) -> np.random.Generator:
-        return named_generator(seed, Stage.MANUFACTURE, *owner, name=f"manufacture.{name}")
+        return named_generator(seed, Stream.MANUFACTURE, *owner, name=f"manufacture.{name}")
 
-    supports = named_uniforms(seed, Stage.SUPPORTS, owner[0])
+    supports = named_uniforms(seed, Stream.SUPPORTS, owner[0])
     seats = [
         1e-6 * at(number, supports(f"dynamics.{which}.eccentricity_um"))
         for which, number in zip(ROLES, eccentricities_um, strict=True)

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from siggen.config import Coupling as CouplingSection
-from siggen.config import Dynamics, Rotor, Stage
-from siggen.config import Shaft as ShaftSection
+from siggen.config import CouplingSection, Dynamics, RotorSection, ShaftSection, Stage
 from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.structure.gear_stage import Bearing, CommonShaft, Coupling, GearStage, NextStage, Shaft
-from siggen.dynamics.structure.gear_stage import Rotor as RotorNumbers
+from siggen.dynamics.structure.gear_stage import Bearing, CommonShaft, Coupling, GearStage, NextStage, Rotor, Shaft
 from siggen.dynamics.structure.steel_disc import disc_inertia_kg_m2, disc_mass_kg
 from siggen.gearbox.specimen import ToothMesh
 from siggen.gears.geometry.gear_pair import GearPair
@@ -32,10 +29,10 @@ def gear_stage(dynamics: Dynamics, pair: GearPair) -> GearStage:
     )
 
 
-def rotor_numbers(section: Rotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
+def rotor_numbers(section: RotorSection, gear: SpurGear, face_width_m: float) -> Rotor:
     """Return a gear with both bearings of its shaft."""
     mass, inertia = section.mass_kg, section.inertia_kg_m2
-    return RotorNumbers(
+    return Rotor(
         base_radius_m=gear.base_radius_m,
         mass_kg=disc_mass_kg(gear, face_width_m) if mass is None else constant(mass),
         inertia_kg_m2=disc_inertia_kg_m2(gear, face_width_m) if inertia is None else constant(inertia),
@@ -69,7 +66,7 @@ def bending_shafts(dynamics: Dynamics, stage: GearStage, pair: GearPair) -> tupl
     return pinion, gear
 
 
-def shaft_numbers(section: ShaftSection, rotor: RotorNumbers, pair: GearPair) -> Shaft:
+def shaft_numbers(section: ShaftSection, rotor: Rotor, pair: GearPair) -> Shaft:
     """Return a shaft that bends, with its gear."""
     return Shaft(
         span_m=1e-3 * constant(section.bearing_span_mm),
@@ -89,7 +86,7 @@ def next_stages(dynamics: Dynamics, stages: Sequence[Stage], meshes: Sequence[To
         pair, width_m = mesh.pair, (before if mesh.idler else mesh).pair.face_width_m
         yield NextStage(
             working_pressure_angle_rad=pair.working_pressure_angle_rad,
-            pinion=rotor_numbers(seat if mesh.idler else Rotor(), pair.pinion, width_m),
+            pinion=rotor_numbers(seat if mesh.idler else RotorSection(), pair.pinion, width_m),
             gear=rotor_numbers(stage.gear, pair.gear, pair.face_width_m),
             shaft=None if mesh.idler else _common_shaft(stage, before.pair, pair),
             direction_rad=mesh.direction_rad,

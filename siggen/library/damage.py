@@ -14,7 +14,7 @@ from siggen.gears.damage.layouts import clustered_centres, layered_centres
 from siggen.gears.geometry.gear_pair import Gear, GearPair
 from siggen.gears.geometry.root_chord import root_chord
 from siggen.library.arguments import finite, of_kind, refused
-from siggen.seeding import Stage, generator
+from siggen.seeding import Stream, generator
 
 __all__ = [
     "BearingSpall",
@@ -361,7 +361,7 @@ def random_pits(on: str, gear: Gear, *, count: int, seed: int, tooth: int = 0) -
     count, seed : int
     """
     finite("count", count, "1 to 1000", 1, 1000)
-    places, sizes = (generator(seed, Stage.DAMAGE, 0, i) for i in range(2))
+    places, sizes = (generator(seed, Stream.DAMAGE, 0, i) for i in range(2))
     module = 1e3 * gear.module_m
     centres = clustered_centres(places, count, 1e3 * gear.pitch_height_m, 0.1 * module, 0.0, 1e3 * gear.face_width_m)
     shares = sizes.uniform((0.067, 0.033, 0.033), (0.133, 0.1, 0.133), (count, 3)) * module

@@ -11,7 +11,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 
 
-class Block(NamedTuple):
+class LoadBlock(NamedTuple):
     """So many hours of one load: speed of the pinion, and torque over that of the law."""
 
     hours: float
@@ -33,7 +33,7 @@ class Clock:
         By which all times of the law are longer.
     """
 
-    blocks: Sequence[Block]
+    blocks: Sequence[LoadBlock]
     exponent: float
     scale: float
     _ages_h: FloatArray = field(init=False, repr=False, compare=False)

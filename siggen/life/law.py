@@ -79,7 +79,7 @@ class Ends:
     tooth: int
 
 
-class Course(Protocol):
+class LifeCourse(Protocol):
     """Damage of one gearbox over its life."""
 
     @property
@@ -110,5 +110,5 @@ class Law(Section):
     torque_exponent: float
 
     @abstractmethod
-    def course(self, wearing: Wearing, functional_share: float) -> Course:
+    def course(self, wearing: Wearing, functional_share: float) -> LifeCourse:
         """Return the damage of a gearbox that fails at a share of a flank."""

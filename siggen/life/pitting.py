@@ -67,7 +67,7 @@ class Pitting(Law):
 
 
 @dataclass(frozen=True, slots=True)
-class Pit:
+class PitBirth:
     """What a pit is born with; `owner` numbers the teeth of both gears."""
 
     begun: Begun
@@ -108,7 +108,7 @@ class PittingCourse:
         )  # fmt: skip
 
     @property
-    def pits(self) -> list[Pit]:
+    def pits(self) -> list[PitBirth]:
         """The pits that were followed."""
         return self._lived[2]
 
@@ -184,7 +184,7 @@ class PittingCourse:
         )  # fmt: skip
         return failing_times(now, chances, runs, self.wearing.named(f"outlook/{time!r}"))
 
-    def _through(self, pit: Pit) -> float:
+    def _through(self, pit: PitBirth) -> float:
         return through_share(pit.shape, self._flank(pit.begun.gear).area_m2)
 
     @cached_property
@@ -208,16 +208,16 @@ class PittingCourse:
     def _flank(self, gear: str) -> Flank:
         return self.wearing.flanks[("pinion", "gear").index(gear)]
 
-    def _truth(self, pits: list[Pit], outlines: list[Edges]) -> ToothTruth:
+    def _truth(self, pits: list[PitBirth], outlines: list[Edges]) -> ToothTruth:
         one = pits[0].begun
         flank = self._flank(one.gear)
         area = union_m2(outlines, flank.face_m)
         return ToothTruth(one.gear, one.tooth, one.time, len(pits), area, area / flank.area_m2)
 
-    def _outlined(self, time: float) -> Iterable[tuple[list[Pit], list[Edges]]]:
+    def _outlined(self, time: float) -> Iterable[tuple[list[PitBirth], list[Edges]]]:
         return ((pits, outlines) for pits, outlines, _ in self._sized(time))
 
-    def _sized(self, time: float) -> Iterable[tuple[list[Pit], list[Edges], list[float]]]:
+    def _sized(self, time: float) -> Iterable[tuple[list[PitBirth], list[Edges], list[float]]]:
         """Yield the pits of every pitted tooth, the oldest first, with their outlines and sizes."""
         shares = self.shares(time)
         by_tooth: dict[int, list[int]] = {}
@@ -231,7 +231,7 @@ class PittingCourse:
             yield pits, [shape.edges(size) for shape, size in zip(shapes, sizes, strict=True)], sizes
 
     @cached_property
-    def _lived(self) -> tuple[Grown, Ends, list[Pit]]:
+    def _lived(self) -> tuple[Grown, Ends, list[PitBirth]]:
         """Integrate until the gearbox fails; what is drawn does not depend on how far."""
         steps = FORESEEN
         while True:
@@ -243,7 +243,7 @@ class PittingCourse:
                 raise ValueError(f"no end within {steps} steps of {STEP:g} turns; allowed: a larger torque")
             steps += MORE if steps < 4 * FORESEEN else steps
 
-    def _followed(self, steps: int) -> tuple[list[Pit], Grown]:
+    def _followed(self, steps: int) -> tuple[list[PitBirth], Grown]:
         first = self.begins[0].time // STEP
         pits = [self._pit(one) for one in self.begins if one.time < STEP * (first + steps)]
         seeds = Seeds(
@@ -255,20 +255,20 @@ class PittingCourse:
         )
         return pits, grown(seeds, WANDER_SD, steps, sum(one.teeth for one in self.wearing.flanks))
 
-    def _pit(self, one: Begun) -> Pit:
+    def _pit(self, one: Begun) -> PitBirth:
         named = self._named(one)
         own, flank = ("pinion", "gear").index(one.gear), self._flank(one.gear)
         size, rate = named("growth").standard_normal(2).tolist()
         share = self._first_share(one.gear) * np.exp(FIRST_SHARE_SD * size)
         owner = one.tooth + own * self.wearing.flanks[0].teeth
         shape = drawn_shape(flank, self.law.torque_exponent, named)
-        return Pit(one, owner, float(share), float(RATE_PER_REV * np.exp(self.law.rate_sd * rate)), shape)
+        return PitBirth(one, owner, float(share), float(RATE_PER_REV * np.exp(self.law.rate_sd * rate)), shape)
 
     def _named(self, one: Begun) -> Callable[[str], np.random.Generator]:
         return lambda name: self.wearing.named(f"{one.gear}/{one.tooth}/{one.number}/{name}")
 
 
-def _failing(course: PittingCourse, pits: list[Pit], grown_pits: Grown) -> Ends | None:
+def _failing(course: PittingCourse, pits: list[PitBirth], grown_pits: Grown) -> Ends | None:
     """Return the ends of a gearbox, or None if it has not failed yet."""
     flanks = course.wearing.flanks
     teeth = [flanks[0].teeth, flanks[1].teeth]
@@ -323,7 +323,7 @@ def _first(reached: Callable[[float], bool], low: float, high: float) -> float:
     return high
 
 
-def _listed(pit: Pit, edges: Edges, size_m: float) -> ListedIrregular:
+def _listed(pit: PitBirth, edges: Edges, size_m: float) -> ListedIrregular:
     """Return a pit as a user would list it."""
     rows = tuple(tuple(row) for row in (1e3 * np.array(edges).T).tolist())
     return ListedIrregular(

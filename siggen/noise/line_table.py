@@ -14,7 +14,7 @@ from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real
 from siggen.keys.usual import Usual
-from siggen.noise.source import Draws, MeasuredPart, NoisyChannel, Part, Source
+from siggen.noise.source import Draws, MeasuredPart, NoisePart, NoisyChannel, Source
 
 MOST_LINES = 400
 
@@ -55,7 +55,7 @@ class LineTable(Source):
         """Whether angles count: those of its orders do."""
         return True
 
-    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+    def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:
         """Return its lines."""
         lines = TableLines(self, draws, channel.fs_hz, channel.largest_step_rad)
         return MeasuredPart(lambda first, angle: lines.at(angle, first))

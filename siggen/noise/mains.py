@@ -9,7 +9,7 @@ from pydantic import Field
 from siggen.keys.number import Number, Within, at
 from siggen.keys.usual import Usual
 from siggen.noise.lines import LinesPart
-from siggen.noise.source import Draws, NoisyChannel, Part, Source
+from siggen.noise.source import Draws, NoisePart, NoisyChannel, Source
 from siggen.sensing.tones import harmonic_lines
 
 HARMONICS = 5
@@ -30,7 +30,7 @@ class Mains(Source):
         default=50.0, description="frequency, drawn per gearbox for every line"
     )
 
-    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+    def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:
         """Return its lines."""
         rng = draws.record(self.key)
         amplitude = at(self.amplitude_m_s2, draws.level("mains.amplitude_m_s2", rng))

@@ -9,7 +9,7 @@ from pydantic import Field
 from siggen.arrays import FloatArray
 from siggen.keys.number import Number, Within, at
 from siggen.keys.usual import Usual
-from siggen.noise.source import Draws, NoisyChannel, Part, Source
+from siggen.noise.source import Draws, NoisePart, NoisyChannel, Source
 from siggen.sensing.pink_noise import PinkStream
 
 PINK_HZ = 100.0
@@ -29,7 +29,7 @@ class PinkNoise(Source):
         description="one-sided density at 100 Hz, drawn per record and axis; with `background` per gearbox"
     )
 
-    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+    def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:
         """Return its noise behind the coupling."""
         rng = draws.record(self.key)
         density = at(self.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))

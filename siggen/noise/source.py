@@ -64,7 +64,7 @@ class NoisyChannel:
     largest_step_rad: float
 
 
-class Part(Protocol):
+class NoisePart(Protocol):
     """What a source adds to one channel of one record, block after block."""
 
     def take(self, first: int, angle_rad: FloatArray) -> FloatArray:
@@ -125,7 +125,7 @@ class Source(Section):
     """Whether it must know how far the pinion turns in a sample at most."""
 
     @abstractmethod
-    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+    def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:
         """Return what it adds to a channel of one record."""
 
     @property

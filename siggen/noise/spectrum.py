@@ -16,7 +16,7 @@ from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section
-from siggen.noise.source import Draws, MeasuredPart, NoisyChannel, Part, Source
+from siggen.noise.source import Draws, MeasuredPart, NoisePart, NoisyChannel, Source
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
 from siggen.sensing.sensor_response import high_pass_response
@@ -83,7 +83,7 @@ class SensorDensity(Density, Source):
         """Whether its strength follows the shafts."""
         return self.modulation is not None
 
-    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+    def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:
         """Return its noise behind the coupling."""
         rng = draws.record(self.key)
         factor = at(self.factor, draws.level("noise_spectrum.factor", rng))

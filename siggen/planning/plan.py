@@ -15,7 +15,7 @@ from typing import overload
 
 from siggen.config import BLOCK, Config, Splits
 from siggen.gearbox.configured import inspection_count, pair_of
-from siggen.seeding import Stage, generator
+from siggen.seeding import Stream, generator
 from siggen.sensors.converter import FROM_NOISE
 from siggen.sensors.sensor import SensorBase
 
@@ -186,7 +186,7 @@ def _owner(config: Config, specimen_id: int) -> int:
 
 @lru_cache(maxsize=4096)
 def _splits_of_block(seed: int, splits: Splits, block: int) -> tuple[str, ...]:
-    rng = generator(seed, Stage.SPLIT, block)
+    rng = generator(seed, Stream.SPLIT, block)
     labels = _even_sequence(splits)
     shuffled: list[str] = []
     for start in range(0, BLOCK, SUB_BLOCK):

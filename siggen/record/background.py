@@ -18,7 +18,7 @@ from siggen.dynamics.drive.drive import Rotation
 from siggen.gearbox.background import MACHINES, DrawnBackground, ForeignLevels, MachineLevels, ShaftLevels
 from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import PlannedRecord
-from siggen.record.background_course import Course, course_at
+from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import BearingVelocities
 from siggen.record.rubbing import RubbingForce
 from siggen.record.set_rubbing import SetRubbing
@@ -77,7 +77,7 @@ class BackgroundBlocks:
         self._next += count
         return {Input(BACKGROUND, name): force for name, force in forces.items()}
 
-    def _begin(self, course: Course) -> None:
+    def _begin(self, course: BackgroundCourse) -> None:
         drawn, specimen = self._drawn, self._of_record[0]
         if drawn.rubbing is not None:
             of_set = partial(SetRubbing, specimen=specimen)
@@ -87,11 +87,11 @@ class BackgroundBlocks:
         if drawn.machines is not None:
             self._machines = machine_noise(drawn.machines, course)
 
-    def _course(self, count: int) -> Course:
+    def _course(self, count: int) -> BackgroundCourse:
         return course_at(*self._of_record, self._next, count)
 
 
-def machine_noise(machines: MachineLevels, course: Course) -> dict[str, ShapedNoise]:
+def machine_noise(machines: MachineLevels, course: BackgroundCourse) -> dict[str, ShapedNoise]:
     """Return the noise of both machines beside the gearbox, independent of each other."""
 
     def shape(frequency_hz: FloatArray) -> FloatArray:
@@ -104,7 +104,7 @@ def machine_noise(machines: MachineLevels, course: Course) -> dict[str, ShapedNo
 
 
 def line_forces(
-    drawn: DrawnBackground, course: Course, inputs: Collection[str]
+    drawn: DrawnBackground, course: BackgroundCourse, inputs: Collection[str]
 ) -> tuple[dict[str, FloatArray], dict[str, object]]:
     """Return input -> force (length,) of what follows the angle alone, and labels."""
     forces: dict[str, FloatArray] = {}
@@ -127,7 +127,7 @@ def line_forces(
     return forces, labels
 
 
-def _shaft(levels: ShaftLevels, course: Course, shaft: str) -> list[tuple[str, FloatArray]]:
+def _shaft(levels: ShaftLevels, course: BackgroundCourse, shaft: str) -> list[tuple[str, FloatArray]]:
     """Return the forces of one coupling along both axes, and of the rotor on its shaft on the base."""
     order = course.orders[shaft]
     amplitude = levels.coupling_n * 10.0 ** (np.array([0.0, *levels.higher_db]) / 20.0)
@@ -144,7 +144,7 @@ def _shaft(levels: ShaftLevels, course: Course, shaft: str) -> list[tuple[str, F
     return found
 
 
-def _foreign(mesh: ForeignLevels, course: Course, name: str) -> Comb:
+def _foreign(mesh: ForeignLevels, course: BackgroundCourse, name: str) -> Comb:
     number = np.arange(1.0, FOREIGN_LINES + 1.0)
     return Comb(
         mesh.order,

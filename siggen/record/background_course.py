@@ -15,13 +15,13 @@ from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import PlannedRecord
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
 from siggen.specimen.asperities import asperity_share
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class BackgroundCourse:
     """Pinion angle (length,) at the samples of a record and of the history before it, and draws by name.
 
     Or at a part of them, `history` samples from its first one to that of the record. `turns` are exp(i order Θ)
@@ -67,7 +67,9 @@ class Course:
         return harmonic_sum(self.turns[shaft], shaft_phasors(depth, phase_rad))
 
 
-def course_at(specimen: Specimen, record: PlannedRecord, rotation: Rotation, first: int, count: int) -> Course:
+def course_at(
+    specimen: Specimen, record: PlannedRecord, rotation: Rotation, first: int, count: int
+) -> BackgroundCourse:
     """Return the course of one record over `count` samples from sample `first`, below 0 in the history."""
     pair, point, fs_hz = specimen.pair, specimen.points[record.operating_point_id], specimen.sampling.fs_hz
     # a fast length may reach further back than any force is followed; there the shaft stands still
@@ -78,7 +80,7 @@ def course_at(specimen: Specimen, record: PlannedRecord, rotation: Rotation, fir
     if specimen.planets is not None:
         orders["gear"] = float(specimen.planets.teeth.carrier_turns)
         of_mesh = specimen.planets.of_one_mesh(point)
-    return Course(
+    return BackgroundCourse(
         angle_rad,
         orders,
         {shaft: turns_of(angle_rad, order) for shaft, order in orders.items()},
@@ -87,7 +89,7 @@ def course_at(specimen: Specimen, record: PlannedRecord, rotation: Rotation, fir
         pair,
         point,
         asperity_share(specimen.law.friction, pair, of_mesh),
-        named_uniforms(specimen.seed, Stage.BACKGROUND, record.specimen_id),
-        lambda name: named_generator(specimen.seed, Stage.BACKGROUND, record.specimen_id, name=name),
-        lambda name: named_generator(specimen.seed, Stage.BACKGROUND_NOISE, *record.owner, name=name),
+        named_uniforms(specimen.seed, Stream.BACKGROUND, record.specimen_id),
+        lambda name: named_generator(specimen.seed, Stream.BACKGROUND, record.specimen_id, name=name),
+        lambda name: named_generator(specimen.seed, Stream.BACKGROUND_NOISE, *record.owner, name=name),
     )

@@ -23,7 +23,7 @@ from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
 from siggen.gearbox.background import BearingLevels
 from siggen.gearbox.specimen import Specimen
 from siggen.names import ShaftName
-from siggen.record.background_course import Course
+from siggen.record.background_course import BackgroundCourse
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import LevelCourse, shaft_course
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
@@ -82,7 +82,7 @@ class _Seat:
 class BearingVelocities:
     """Velocities [m/s] of each bearing's waves, from the first sample of a course on; by input of the background."""
 
-    def __init__(self, bearings: Mapping[str, BearingLevels], course: Course, specimen: Specimen) -> None:
+    def __init__(self, bearings: Mapping[str, BearingLevels], course: BackgroundCourse, specimen: Specimen) -> None:
         self._bearings = bearings
         self._loaded = specimen_bearings(specimen)
         self._sense = {shaft: cage_sense(shaft, housed=specimen.housed) for shaft in bearings}
@@ -96,7 +96,7 @@ class BearingVelocities:
         self._levels = {shaft: _level(shaft, levels, course) for shaft, levels in bearings.items()}
         self.labels = {f"bearing_velocity_{shaft}_um_s": levels.high_um_s for shaft, levels in bearings.items()}
 
-    def take(self, course: Course) -> dict[str, FloatArray]:
+    def take(self, course: BackgroundCourse) -> dict[str, FloatArray]:
         """Return the next velocities (k,) by input."""
         random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
         found, turned = {}, cache(lambda order: turns_of(course.angle_rad, order))
@@ -106,7 +106,7 @@ class BearingVelocities:
             found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(seat, course, turned)
         return found
 
-    def _passing(self, seat: _Seat, course: Course, turned: Turned) -> FloatArray:
+    def _passing(self, seat: _Seat, course: BackgroundCourse, turned: Turned) -> FloatArray:
         """Return the velocity (k,) of a displacement with every ball that passes the loaded side."""
         shaft = seat.shaft
         if shaft in self._loaded:
@@ -123,7 +123,7 @@ class BearingVelocities:
         phase = 2.0 * pi * course.of_record(path).random(PASSING_LINES)[:count]
         return Comb(order, amplitude, phase).force_n(turned(order))
 
-    def _varying(self, seat: _Seat, loaded: LoadedBearing, course: Course, turned: Turned) -> FloatArray:
+    def _varying(self, seat: _Seat, loaded: LoadedBearing, course: BackgroundCourse, turned: Turned) -> FloatArray:
         """Return the velocity (k,) of what lies in series with both bearings' spring as balls pass under their load.
 
         Its axes are tied: the spring along each of them gets what pushes as both do.
@@ -142,18 +142,18 @@ class BearingVelocities:
         return found
 
 
-def _taps(levels: BearingLevels, course: Course, shaft: str) -> FloatArray:
+def _taps(levels: BearingLevels, course: BackgroundCourse, shaft: str) -> FloatArray:
     shaft_hz = course.point.speed_hz * course.orders[shaft]
     return shape_taps(lambda f: velocity_density(levels, shaft_hz, f), TAPS, course.fs_hz)
 
 
-def _level(shaft: str, levels: BearingLevels, course: Course) -> LevelCourse:
+def _level(shaft: str, levels: BearingLevels, course: BackgroundCourse) -> LevelCourse:
     memory = levels.level_time_s * course.fs_hz
     rng = course.of_record(f"background.bearings.{shaft}.level")
     return LevelCourse(levels.level_std, memory, rng)
 
 
-def _strength(levels: BearingLevels, course: Course, seat: _Seat) -> FloatArray:
+def _strength(levels: BearingLevels, course: BackgroundCourse, seat: _Seat) -> FloatArray:
     """Return the power (k,) of a bearing's noise, of mean 1, as its shaft turns."""
     turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.bearings.{seat.stream}.turn") - 1.0)
     return shaft_course([course.shaft_lines(seat.shaft, levels.shaft_depth, turn)])

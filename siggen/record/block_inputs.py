@@ -8,7 +8,7 @@ import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.drive.drive import Rotation
-from siggen.dynamics.time.response_stream import Pieces
+from siggen.dynamics.time.response_stream import ResponsePieces
 from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background import BackgroundBlocks
@@ -22,7 +22,12 @@ class BlockInputs:
     """Inputs of one record, and what its channels see of them."""
 
     def __init__(
-        self, specimen: Specimen, record: PlannedRecord, rotation: Rotation, response: Pieces, instrument: Instrument
+        self,
+        specimen: Specimen,
+        record: PlannedRecord,
+        rotation: Rotation,
+        response: ResponsePieces,
+        instrument: Instrument,
     ) -> None:
         self._samples, self._grid = specimen.sampling.samples, instrument.blocks.grid
         back = self._grid.back

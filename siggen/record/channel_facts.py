@@ -11,17 +11,17 @@ from siggen.gearbox.channels import DrawnChannel
 from siggen.keys.number import at
 from siggen.noise.source import Draws
 from siggen.planning.plan import PlannedRecord
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensing.measurement import Measurement
 from siggen.specimen.instrument import ChannelInstrument
 
 
 def channel_draws(seed: int, record: PlannedRecord, channel: str, *, levelled: bool) -> Draws:
     """Return where the numbers of a channel come from; noise that is `levelled` has that of the gearbox."""
-    owner, levels = record.owner, named_uniforms(seed, Stage.BACKGROUND, record.specimen_id)
+    owner, levels = record.owner, named_uniforms(seed, Stream.BACKGROUND, record.specimen_id)
     return Draws(
-        named_uniforms(seed, Stage.PATH, record.specimen_id),
-        named_uniforms(seed, Stage.NOISE, *owner),
+        named_uniforms(seed, Stream.PATH, record.specimen_id),
+        named_uniforms(seed, Stream.NOISE, *owner),
         partial(_named, seed, owner, channel),
         partial(_level, levels, channel) if levelled else None,
     )
@@ -31,13 +31,13 @@ def white_noise(
     seed: int, record: PlannedRecord, channel: DrawnChannel, draws: Draws
 ) -> tuple[np.random.Generator, float | None]:
     """Return the generator of a channel's white noise, and its floor; None without one."""
-    rng = named_generator(seed, Stage.NOISE, *record.owner, name=channel.name)
+    rng = named_generator(seed, Stream.NOISE, *record.owner, name=channel.name)
     floor, u = channel.noise_floor, draws.level("noise", rng)
     return rng, None if floor is None else at(floor, u)
 
 
 def _named(seed: int, owner: tuple[int, ...], channel: str, part: str) -> np.random.Generator:
-    return named_generator(seed, Stage.NOISE, *owner, name=f"{channel} {part}")
+    return named_generator(seed, Stream.NOISE, *owner, name=f"{channel} {part}")
 
 
 def _level(levels: Callable[[str], float], channel: str, name: str) -> float:

@@ -12,14 +12,14 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Rotation
-from siggen.dynamics.time.response_stream import Pieces
+from siggen.dynamics.time.response_stream import ResponsePieces
 from siggen.gearbox.channels import DrawnChannel
 from siggen.gearbox.specimen import Specimen
 from siggen.noise.source import Draws, NoisyChannel
 from siggen.planning.plan import PlannedRecord
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
-from siggen.seeding import Stage, named_uniforms
+from siggen.seeding import Stream, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.transducer import Running
@@ -54,7 +54,7 @@ class ChannelDisturbance:
 
 
 def measured_channels(
-    specimen: Specimen, record: PlannedRecord, rotation: Rotation, response: Pieces, instrument: Instrument
+    specimen: Specimen, record: PlannedRecord, rotation: Rotation, response: ResponsePieces, instrument: Instrument
 ) -> tuple[dict[str, np.ndarray], dict[str, object]]:
     """Return channel name -> float32 signal (n,) in its unit, and the labels of all channels.
 
@@ -113,7 +113,7 @@ def _running(specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> R
         specimen.points[record.operating_point_id].torque_nm,
         _base_radii_m(specimen),
         {channel.name: channel.place for channel in specimen.channels},
-        2.0 * np.pi * named_uniforms(specimen.seed, Stage.NOISE, *record.owner)("line.phase"),
+        2.0 * np.pi * named_uniforms(specimen.seed, Stream.NOISE, *record.owner)("line.phase"),
     )
 
 

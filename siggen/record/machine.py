@@ -21,7 +21,7 @@ from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
-class Machine:
+class RecordedMachine:
     """A gearbox, its teeth, structure and instrument, and the labels of all records."""
 
     specimen: Specimen
@@ -30,7 +30,7 @@ class Machine:
     instrument: Instrument
     labels: dict[str, object]
 
-    def at_point(self, operating_point_id: int) -> Machine:
+    def at_point(self, operating_point_id: int) -> RecordedMachine:
         """Return the machine under the load of an operating point; itself where its bearings have one stiffness."""
         specimen = self.specimen.under(self.specimen.points[operating_point_id])
         if specimen is self.specimen:
@@ -39,17 +39,17 @@ class Machine:
             return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
 
 
-def machines(gearbox: Specimen) -> Callable[[int], Machine]:
+def machines(gearbox: Specimen) -> Callable[[int], RecordedMachine]:
     """Return state -> the machine of a gearbox in that state; the healthy one is kept, and the last changed one."""
     shared = lru_cache(maxsize=1)(lambda: _machine(lambda: gearbox))
     changed = lru_cache(maxsize=1)(lambda state: _machine(partial(gearbox.in_state, state)))
     return lambda state: shared() if gearbox.states[state].changed is None else changed(state)
 
 
-def _machine(drawn: Callable[[], Specimen]) -> Machine:
+def _machine(drawn: Callable[[], Specimen]) -> RecordedMachine:
     with refused_as("outside_model"), stage("plan"):
         specimen = drawn()
         labels, assembled = gearbox_labels(specimen), structure(specimen)
     with stage("sensing"):
         instrument = specimen_instrument(specimen)
-    return Machine(specimen, all_teeth(specimen), assembled, instrument, labels)
+    return RecordedMachine(specimen, all_teeth(specimen), assembled, instrument, labels)

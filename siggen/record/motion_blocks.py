@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.time.response_stream import Pieces
+from siggen.dynamics.time.response_stream import ResponsePieces
 from siggen.sensing.inputs import FORCE, MOTION, SHAFT, Input
 
 
-def delivered(response: Pieces) -> tuple[Input, ...]:
+def delivered(response: ResponsePieces) -> tuple[Input, ...]:
     """Return what a response holds, as inputs."""
     kinds = ((MOTION, response.motions), (FORCE, response.places), (SHAFT, response.readings))
     return tuple(Input(kind, name) for kind, names in kinds for name in names)
@@ -21,7 +21,7 @@ class MotionBlocks:
     `offsets` are the means that were taken off.
     """
 
-    def __init__(self, response: Pieces, back: int) -> None:
+    def __init__(self, response: ResponsePieces, back: int) -> None:
         self.inputs = delivered(response)
         self._pieces = response.pieces()
         self._mean = np.zeros((len(self.inputs), 1))

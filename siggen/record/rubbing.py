@@ -18,7 +18,7 @@ from siggen.arrays import FloatArray
 from siggen.compiled import entry
 from siggen.dynamics.friction.rubbing_course import rubbing_course
 from siggen.gearbox.background import BurstLevels, RubbingLevels
-from siggen.record.background_course import Course
+from siggen.record.background_course import BackgroundCourse
 from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter
 from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course
 from siggen.sensing.noise_spectrum import noise_spectrum
@@ -34,7 +34,7 @@ CONTACT_TAPS = 2048
 class RubbingForce:
     """The force of one record from the first sample of `course` on, over `length` samples, and its labels."""
 
-    def __init__(self, rubbing: RubbingLevels, course: Course, length: int) -> None:
+    def __init__(self, rubbing: RubbingLevels, course: BackgroundCourse, length: int) -> None:
         self._rubbing, spectrum = rubbing, force_spectrum(rubbing, course)
         taps = shape_taps(spectrum.density, CONTACT_TAPS, course.fs_hz)
         self._noise = ShapedNoise(taps, course.fs_hz, course.of_record("background.rubbing"))
@@ -56,7 +56,7 @@ class RubbingForce:
         """Bursts that begin within the record."""
         return 0 if self._bursts is None else self._bursts.recorded
 
-    def take(self, course: Course) -> FloatArray:
+    def take(self, course: BackgroundCourse) -> FloatArray:
         """Return the force (k,) [N] over the next samples, those of `course`."""
         noise = sqrt(1.0 - self._share) * self._noise.take(course.length)
         for shaft, pattern in self._patterns.items():
@@ -101,7 +101,7 @@ class ForceSpectrum(NamedTuple):
         return float(np.sqrt(np.trapezoid(self.density(frequency) ** 2, frequency)))
 
 
-def force_spectrum(rubbing: RubbingLevels, course: Course) -> ForceSpectrum:
+def force_spectrum(rubbing: RubbingLevels, course: BackgroundCourse) -> ForceSpectrum:
     """Return the spectrum at the nominal speed and torque."""
     pair = course.pair
     stiffness = MESH_STIFFNESS_PA * pair.face_width_m
@@ -117,7 +117,7 @@ def force_spectrum(rubbing: RubbingLevels, course: Course) -> ForceSpectrum:
     )
 
 
-def shaft_pattern(spectrum: ForceSpectrum, course: Course, shaft: str, order: float) -> FloatArray:
+def shaft_pattern(spectrum: ForceSpectrum, course: BackgroundCourse, shaft: str, order: float) -> FloatArray:
     """Return what one gear replays over its revolution (points,), of the same density as n at the nominal speed.
 
     Four points per sample: read linearly between them, it is damped by 10 % at half the sampling rate at most.
@@ -133,13 +133,13 @@ def shaft_pattern(spectrum: ForceSpectrum, course: Course, shaft: str, order: fl
     return np.asarray(np.fft.irfft(waves * spectrum.density(frequencies(points, rate_hz)), points))
 
 
-def level_process(rubbing: RubbingLevels, course: Course) -> LevelCourse:
+def level_process(rubbing: RubbingLevels, course: BackgroundCourse) -> LevelCourse:
     """Return the random level, from the first sample on."""
     memory = rubbing.level_time_s * course.fs_hz
     return LevelCourse(rubbing.level_std, memory, course.of_record("background.rubbing.level"))
 
 
-def modulation(rubbing: RubbingLevels, course: Course, level: FloatArray) -> FloatArray:
+def modulation(rubbing: RubbingLevels, course: BackgroundCourse, level: FloatArray) -> FloatArray:
     """Return M (length,) of a random level (length,)."""
     table = rubbing_course(course.pair, rubbing.sliding_exponent)
     mesh = periodic_course(course.angle_rad, course.pair.pinion.teeth, table)
@@ -157,7 +157,7 @@ class DrawnBursts(NamedTuple):
     recorded: int
 
 
-def drawn_bursts(bursts: BurstLevels, course: Course, length: int) -> DrawnBursts:
+def drawn_bursts(bursts: BurstLevels, course: BackgroundCourse, length: int) -> DrawnBursts:
     """Return the bursts of `length` samples from the first one of the course on."""
     rng = course.of_record("background.rubbing.bursts")
     count = int(rng.poisson(bursts.rate_hz * length / course.fs_hz))

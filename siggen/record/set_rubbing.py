@@ -17,7 +17,7 @@ from siggen.dynamics.drive.comb import turns_of
 from siggen.gearbox.background import RubbingLevels
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.record.background_course import Course
+from siggen.record.background_course import BackgroundCourse
 from siggen.record.rubbing import RubbingForce
 from siggen.specimen.background import AXES, EVEN, SET_MESHES
 
@@ -25,7 +25,7 @@ from siggen.specimen.background import AXES, EVEN, SET_MESHES
 class SetRubbing:
     """The forces of one record from the first sample of `course` on, over `length` samples, and their labels."""
 
-    def __init__(self, rubbing: RubbingLevels, course: Course, length: int, specimen: Specimen) -> None:
+    def __init__(self, rubbing: RubbingLevels, course: BackgroundCourse, length: int, specimen: Specimen) -> None:
         planets = specimen.planets
         assert planets is not None
         teeth = planets.teeth
@@ -45,7 +45,7 @@ class SetRubbing:
         if rubbing.bursts is not None:
             self.labels["burst_count"] = sum(force.burst_count for force in every)
 
-    def take(self, course: Course) -> dict[str, FloatArray]:
+    def take(self, course: BackgroundCourse) -> dict[str, FloatArray]:
         """Return the next forces (k,) [N] by input of the background."""
         found: dict[str, FloatArray] = {}
         frame = self._carrier * course.angle_rad
@@ -57,7 +57,7 @@ class SetRubbing:
                 found[f"{mesh}/{axis}"] = (noises * wave).sum(axis=0)
         return found
 
-    def _own(self, course: Course, mesh: str, planet: int) -> Course:
+    def _own(self, course: BackgroundCourse, mesh: str, planet: int) -> BackgroundCourse:
         """Return a course as one mesh has it: its driving gear turns against the carrier."""
         pair, point, turning = self._meshes[mesh]
         angle_rad = course.angle_rad * ((1.0 - self._carrier) * turning)

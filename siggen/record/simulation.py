@@ -19,7 +19,7 @@ from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.planning.plan import PlannedRecord
 from siggen.record.channels import measured_channels
 from siggen.record.labels import operating_labels
-from siggen.record.machine import Machine, machines
+from siggen.record.machine import RecordedMachine, machines
 from siggen.record.planetary_state import planetary_labels
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
 from siggen.record.stage_labels import stage_operating_labels
@@ -203,6 +203,6 @@ def simulate_specimen(gearbox: Specimen, records: Sequence[PlannedRecord]) -> It
             yield RecordFailure(record.record_id, failure.status, failure.reason)
 
 
-def _staged_state(machine: Machine, state_id: int) -> SpecimenState:
+def _staged_state(machine: RecordedMachine, state_id: int) -> SpecimenState:
     with stage("tables"):
         return specimen_state(machine.specimen, state_id, (machine.teeth, machine.structure))

@@ -20,8 +20,7 @@ from siggen.record.labels import damage_labels
 from siggen.record.planetary_state import with_ring_labels
 from siggen.record.stage_labels import stage_labels
 from siggen.record.tooth_labels import ring_and_planet_labels, tooth_labels
-from siggen.seeding import Stage as Consumer
-from siggen.seeding import named_uniforms
+from siggen.seeding import Stream, named_uniforms
 from siggen.specimen.back_flanks import with_back_flanks, with_static_back
 from siggen.specimen.clocking import clocked_pitches
 from siggen.specimen.contact import ToothTables, tooth_tables
@@ -134,7 +133,7 @@ def _planetary_state(
 def _with_stages(specimen: Specimen, states: Sequence[SpecimenState]) -> SpecimenState:
     """Return the state of the first mesh with those behind it; how their teeth stand is drawn for the gearbox."""
     first, *behind = states
-    uniform = named_uniforms(specimen.seed, Consumer.GEARS, specimen.specimen_id)
+    uniform = named_uniforms(specimen.seed, Stream.GEARS, specimen.specimen_id)
     names = [mesh.inner for mesh in specimen.behind]
     clockings = clocked_pitches([one.pair for one in states], specimen, uniform)
     meshes = tuple(

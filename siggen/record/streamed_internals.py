@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_force_name
-from siggen.dynamics.time.response_stream import Piece, Pieces, ResponseStream
+from siggen.dynamics.time.response_stream import Piece, ResponsePieces, ResponseStream
 from siggen.gearbox.specimen import Specimen
 from siggen.record.quantities import (
     TRANSMISSION_ERROR,
@@ -25,7 +25,7 @@ class StreamedInternals:
     What is kept is what the configuration asks for, 0.1 MB per second and quantity at 25.6 kHz.
     """
 
-    def __init__(self, specimen: Specimen, stream: ResponseStream, pieces: Pieces) -> None:
+    def __init__(self, specimen: Specimen, stream: ResponseStream, pieces: ResponsePieces) -> None:
         self.motions, self.places, self.before = pieces.motions, pieces.places, pieces.before
         self.readings = pieces.readings
         self._specimen, self._stream, self._pieces = specimen, stream, pieces

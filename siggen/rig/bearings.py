@@ -30,7 +30,7 @@ SERIES_02_MM = (
 BORES_MM = tuple(bore for bore, *_ in SERIES_02_MM)
 
 
-class Bearing(NamedTuple):
+class BearingSize(NamedTuple):
     """Bore, height between bore and outer ring on both sides together, and width [mm]; with rollers or balls."""
 
     bore_mm: float
@@ -59,16 +59,16 @@ class Bearing(NamedTuple):
         return float(1.5e3 * force_n / deflection_mm)
 
 
-def bearing_from(least_bore_mm: float) -> Bearing:
+def bearing_from(least_bore_mm: float) -> BearingSize:
     """Return the smallest ball bearing of the series with at least this bore; beyond the largest, one of its shape."""
     place = bisect_left(BORES_MM, least_bore_mm)
     if place == len(BORES_MM):
         return bearing_like(least_bore_mm)
     bore_mm, outer_mm, width_mm = map(float, SERIES_02_MM[place])
-    return Bearing(bore_mm, outer_mm - bore_mm, width_mm)
+    return BearingSize(bore_mm, outer_mm - bore_mm, width_mm)
 
 
-def life_h(bearing: Bearing, force_n: float, speed_hz: float) -> float:
+def life_h(bearing: BearingSize, force_n: float, speed_hz: float) -> float:
     """Return the basic rating life of a ball bearing at a radial force and speed [h]."""
     rating_n = 1.3 * 59.0 * BALLS ** (2.0 / 3.0) * (0.3 * bearing.height_mm) ** 1.8
     return float(1e6 * (rating_n / force_n) ** 3 / (3600.0 * speed_hz))
@@ -80,6 +80,6 @@ def step_above_mm(bore_mm: float) -> float:
     return float(BORES_MM[place]) if place < len(BORES_MM) else 1.1 * bore_mm
 
 
-def bearing_like(bore_mm: float) -> Bearing:
+def bearing_like(bore_mm: float) -> BearingSize:
     """Return a bearing of any bore, with the mean shape of the series: outer ring 1.6 d + 12 mm."""
-    return Bearing(bore_mm, 0.6 * bore_mm + 12.0, 0.2 * bore_mm + 10.0)
+    return BearingSize(bore_mm, 0.6 * bore_mm + 12.0, 0.2 * bore_mm + 10.0)

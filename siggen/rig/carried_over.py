@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from siggen.config import Gears
-from siggen.config.pairs import Pair
+from siggen.config import GearsSection
+from siggen.config.pairs import PairSection
 from siggen.faults.flank_place import FACE_WIDTH, MODULE, SKEW
 from siggen.keys.scaling import grown, multiplied, scaled
 from siggen.rig.pair_scales import PairScales, pair_scales
 from siggen.sensors.sensor import SIZE
 
 
-def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
+def carried_over(sections: Mapping[str, Any], pair: PairSection) -> dict[str, Any]:
     """Return the sections of a gearbox with another pair, by key; those that do not change are left out.
 
     Parameters
@@ -27,7 +27,7 @@ def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
         by name.
     pair : Pair
     """
-    gears: Gears = sections["gears"]
+    gears: GearsSection = sections["gears"]
     scales = pair_scales(gears, pair, sections["operating_points"])
     found: dict[str, Any] = {
         "gears": _gears(gears, pair, scales),
@@ -61,7 +61,7 @@ def _each(entries: Any, factors: Mapping[str, float]) -> Any:
     return tuple(scaled(entry, factors) for entry in entries)
 
 
-def _gears(gears: Gears, pair: Pair, scales: PairScales) -> Gears:
+def _gears(gears: GearsSection, pair: PairSection, scales: PairScales) -> GearsSection:
     wheels = {
         name: wheel.model_copy(
             update={

@@ -10,8 +10,8 @@ from dataclasses import replace
 from math import ceil
 from typing import NamedTuple
 
-from siggen.config import Gears, OperatingRange
-from siggen.config.pairs import Pair
+from siggen.config import GearsSection, OperatingRange
+from siggen.config.pairs import PairSection
 from siggen.keys.number import Number, at, bounds
 from siggen.rig.rig import Rig
 from siggen.rig.rig_numbers import rig_numbers
@@ -47,7 +47,7 @@ LEAST_TORQUE_NM = 0.01
 """Of a pair that only idles: its shafts are what makers leave, not what the torque needs."""
 
 
-def pair_scales(gears: Gears, pair: Pair, points: tuple[OperatingRange, ...]) -> PairScales:
+def pair_scales(gears: GearsSection, pair: PairSection, points: tuple[OperatingRange, ...]) -> PairScales:
     """Return the factors from the pair that a section `gears` describes to one of its `pairs`."""
     before = _rig(gears, points)
     torque = _torque_ratio(before, pair)
@@ -91,7 +91,7 @@ def _each(new: Two, old: Two) -> Two:
     return new[0] / old[0], new[1] / old[1]
 
 
-def _rig(gears: Gears, points: tuple[OperatingRange, ...]) -> Rig:
+def _rig(gears: GearsSection, points: tuple[OperatingRange, ...]) -> Rig:
     speeds = [speed for point in points for speed in bounds(point.speed_hz)]
     torques = [abs(torque) for point in points for torque in bounds(point.torque_nm)]
     return Rig(
@@ -109,7 +109,7 @@ def _median(number: Number) -> float:
     return at(number, 0.5)
 
 
-def _torque_ratio(before: Rig, pair: Pair) -> float:
+def _torque_ratio(before: Rig, pair: PairSection) -> float:
     """Return the largest ratio at which neither stress grows.
 
     Contact: force/(b d1) (u + 1)/u; root: force/(b m), both by ISO 6336 without its factors, force = 2 T/d1.

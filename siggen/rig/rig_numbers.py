@@ -13,7 +13,7 @@ from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mes
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3
 from siggen.errors import UsageError
 from siggen.rig.rig import Pair, Rig
-from siggen.rig.shafts import Shaft, shafts
+from siggen.rig.shafts import ShaftSize, shafts
 
 MESH_HARMONICS, SPEED_MARGIN = 10, 1.02
 """Carried where no sampling rate is given, at a speed that varies so much."""
@@ -28,7 +28,7 @@ ASSUMED = "scaled from the gearbox of bench, by size or torque"
 class RotorNumbers(NamedTuple):
     """Of one gear with its shaft: mass [kg], inertia [kg m²], both bearings [N/m]."""
 
-    shaft: Shaft
+    shaft: ShaftSize
     mass_kg: float
     inertia_kg_m2: float
     bearing_n_per_m: float
@@ -123,7 +123,7 @@ def duration_s(rig: Rig, longest_s: float = 10.0) -> float:
     return min(max(ceil(10.0 * 1.02 * turns / rig.speed_hz[0]) / 10.0, 1.0), longest_s)
 
 
-def _rotor(rig: Rig, i: int, shaft: Shaft, force_n: float) -> RotorNumbers:
+def _rotor(rig: Rig, i: int, shaft: ShaftSize, force_n: float) -> RotorNumbers:
     pitch_mm, thick_mm = rig.module_mm * rig.teeth[i], shaft.diameter_mm
     disc, rod = (
         STEEL_DENSITY_KG_M3 * 0.25 * pi * 1e-9 * area * length

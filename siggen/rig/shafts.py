@@ -12,7 +12,7 @@ from __future__ import annotations
 from math import cos, pi, radians
 from typing import NamedTuple
 
-from siggen.rig.bearings import BORES_MM, LEAST_LIFE_H, Bearing, bearing_from, bearing_like, life_h, step_above_mm
+from siggen.rig.bearings import BORES_MM, LEAST_LIFE_H, BearingSize, bearing_from, bearing_like, life_h, step_above_mm
 from siggen.rig.rating import rated_torque_nm
 from siggen.rig.rig import Rig
 
@@ -26,7 +26,7 @@ WALL_GAP_MM = 20.0
 """From the face of the gear to the near end of a bearing: 10 mm to the wall, 10 mm of wall (usual; second-hand)."""
 
 
-class Shaft(NamedTuple):
+class ShaftSize(NamedTuple):
     """One shaft of a rig.
 
     `bore_mm`: of its gear, at most 0.6 of the root circle; `diameter_mm`: between the bearings; `span_mm`: between the
@@ -35,11 +35,11 @@ class Shaft(NamedTuple):
 
     bore_mm: float
     diameter_mm: float
-    bearing: Bearing
+    bearing: BearingSize
     span_mm: float
 
 
-def shafts(rig: Rig) -> tuple[Shaft, Shaft]:
+def shafts(rig: Rig) -> tuple[ShaftSize, ShaftSize]:
     """Return the shafts of pinion and gear: as thick as the given bores, or of the catalogue's sizes."""
     if rig.bores_mm is not None:
         first, second = (_given(bore_mm, rig.face_width_mm) for bore_mm in rig.bores_mm)
@@ -48,7 +48,7 @@ def shafts(rig: Rig) -> tuple[Shaft, Shaft]:
     sizes = thinner if _stand_side_by_side(rig, thinner) and not _stand_side_by_side(rig, thicker) else thicker
     span_mm = rig.face_width_mm + 2.0 * WALL_GAP_MM + max(bearing.width_mm for _, bearing in sizes)
     first, second = (
-        Shaft(min(thick_mm, LARGEST_BORE * root_diameter_mm(rig, i)), thick_mm, bearing, span_mm)
+        ShaftSize(min(thick_mm, LARGEST_BORE * root_diameter_mm(rig, i)), thick_mm, bearing, span_mm)
         for i, (thick_mm, bearing) in enumerate(sizes)
     )
     return first, second
@@ -64,11 +64,11 @@ def shaft_end_mm(torque_nm: float, root_mm: float) -> float:
     return max(float((16e3 * torque_nm / (pi * SHEAR_N_MM2)) ** (1.0 / 3.0)), 0.25 * root_mm)
 
 
-def _given(bore_mm: float, face_width_mm: float) -> Shaft:
-    return Shaft(bore_mm, bore_mm, bearing_like(bore_mm), face_width_mm + 3.0 * bore_mm)
+def _given(bore_mm: float, face_width_mm: float) -> ShaftSize:
+    return ShaftSize(bore_mm, bore_mm, bearing_like(bore_mm), face_width_mm + 3.0 * bore_mm)
 
 
-def _sizes(rig: Rig, steps: int) -> tuple[tuple[float, Bearing], tuple[float, Bearing]]:
+def _sizes(rig: Rig, steps: int) -> tuple[tuple[float, BearingSize], tuple[float, BearingSize]]:
     """Return diameter and bearing of both shafts, with seats of bearings so many steps above the shaft end."""
     rated = rated_torque_nm(rig.teeth, rig.module_mm, rig.face_width_mm, rig.pressure_angle_deg)
     torque_nm = max(rig.torque_nm[1], rated)
@@ -83,7 +83,7 @@ def _sizes(rig: Rig, steps: int) -> tuple[tuple[float, Bearing], tuple[float, Be
     return first, second
 
 
-def _size(torque_nm: float, root_mm: float, steps: int) -> tuple[float, Bearing]:
+def _size(torque_nm: float, root_mm: float, steps: int) -> tuple[float, BearingSize]:
     seat_mm = bearing_from(shaft_end_mm(torque_nm, root_mm)).bore_mm
     for _ in range(steps):
         seat_mm = step_above_mm(seat_mm)
@@ -93,5 +93,5 @@ def _size(torque_nm: float, root_mm: float, steps: int) -> tuple[float, Bearing]
     return thick_mm, bearing_from(min(seat_mm, thick_mm))
 
 
-def _stand_side_by_side(rig: Rig, sizes: tuple[tuple[float, Bearing], tuple[float, Bearing]]) -> bool:
+def _stand_side_by_side(rig: Rig, sizes: tuple[tuple[float, BearingSize], tuple[float, BearingSize]]) -> bool:
     return sum(bearing.outer_mm for _, bearing in sizes) < rig.module_mm * sum(rig.teeth)

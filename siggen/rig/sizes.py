@@ -11,9 +11,9 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from siggen.config import Gears
+from siggen.config import GearsSection
 from siggen.config.config import OperatingRange
-from siggen.config.dynamics import RATED, Shaft
+from siggen.config.dynamics import RATED, ShaftSection
 from siggen.errors import Problem
 from siggen.keys.merging import merged
 from siggen.keys.number import Number, bounds
@@ -49,7 +49,7 @@ def with_sizes(raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
         return dict(raw), [Problem(f"dynamics.{RATED}", f"{received_text(rated)}, beside {beside[0]}", allowed)]
     try:
         torque_nm = TypeAdapter(float).validate_python(rated, strict=True)
-        gears = Gears.model_validate(raw.get("gears"))
+        gears = GearsSection.model_validate(raw.get("gears"))
         points = TypeAdapter(tuple[OperatingRange, ...]).validate_python(raw.get("operating_points"))
         diameters = [_diameter_mm(dynamics, wheel) for wheel in WHEELS]
     except ValidationError:
@@ -83,7 +83,7 @@ def sizes(rig: Rig) -> dict[str, Any]:
     }
 
 
-def _rig(gears: Gears, torque_nm: float, speed_hz: tuple[float, float], diameters_mm: list[float | None]) -> Rig:
+def _rig(gears: GearsSection, torque_nm: float, speed_hz: tuple[float, float], diameters_mm: list[float | None]) -> Rig:
     """Return the pair as a rig of spur gears with the same pitch circles: helical ones by their transverse section."""
     across = cos(radians(_middle(gears.helix_deg)))
     first, second = diameters_mm
@@ -104,7 +104,7 @@ def _diameter_mm(dynamics: Mapping[str, Any], wheel: str) -> float | None:
     given = shafts.get(wheel) if isinstance(shafts, Mapping) else None
     if not isinstance(given, Mapping) or "diameter_mm" not in given:
         return None
-    return _middle(Shaft.model_validate({"diameter_mm": given["diameter_mm"]}).diameter_mm)
+    return _middle(ShaftSection.model_validate({"diameter_mm": given["diameter_mm"]}).diameter_mm)
 
 
 def _rotor(rotor: RotorNumbers) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from siggen.keys.section import Section
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.noise.source import Source
-from siggen.seeding import Stage, generator
+from siggen.seeding import Stream, generator
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensing.measurement import converter_step
 from siggen.sensors.converter import BITS_TEXT, FROM_NOISE, Bits, bits_of_noise
@@ -153,7 +153,7 @@ class SensorBase(Section):
     @property
     def shown_inputs(self) -> frozenset[Input]:
         """What of the model it shows along its axes; what a path adds comes by itself."""
-        middle = AxisDraws(lambda _: 0.5, "", lambda _: generator(0, Stage.SENSOR, 0))
+        middle = AxisDraws(lambda _: 0.5, "", lambda _: generator(0, Stream.SENSOR, 0))
         return frozenset(one for axis in self.axes for one in self.shows(axis, middle))
 
     @property

@@ -78,11 +78,11 @@ class TransmissionError(SensorBase):
 
     def transducer(self, axis: str, draw: AxisDraws) -> Transducer:  # noqa: ARG002
         """Return the difference of both channels."""
-        return Difference(f"{self.driver_encoder}_rotation", f"{self.driven_encoder}_rotation")
+        return EncoderDifference(f"{self.driver_encoder}_rotation", f"{self.driven_encoder}_rotation")
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class EncoderDifference:
     """The channels of both encoders."""
 
     pinion: str

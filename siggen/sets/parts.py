@@ -38,14 +38,14 @@ COPIES = 8
 """Shards that `merge` copies at once: hashing lets other threads work, and disks and stores take their time."""
 
 
-class Part(NamedTuple):
+class SetPart(NamedTuple):
     """Part `number`, from 1, of `of`."""
 
     number: int
     of: int
 
 
-def part_of(text: str) -> Part:
+def part_of(text: str) -> SetPart:
     """Return the part that a text such as '3/16' names.
 
     Raises
@@ -54,7 +54,7 @@ def part_of(text: str) -> Part:
         If it is of another form, or the number is not from 1 to the count.
     """
     form = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
-    found = Part(int(form[1]), int(form[2])) if form else Part(0, 0)
+    found = SetPart(int(form[1]), int(form[2])) if form else SetPart(0, 0)
     if not 1 <= found.number <= found.of:
         raise UsageError(f"--part: received {text[:40]!r}; allowed: i/N with i from 1 to N, such as 3/16")
     return found
@@ -63,7 +63,7 @@ def part_of(text: str) -> Part:
 def generate_part(
     config: Config,
     out: Path | str,
-    part: Part | tuple[int, int],
+    part: SetPart | tuple[int, int],
     workers: int | None = None,
     progress: Progress | None = None,
     *,
@@ -87,7 +87,7 @@ def generate_part(
     DatasetError, UsageError, InterruptionError, LossError, EngineError
         As of `generate`.
     """
-    chosen, limit = Part(*part), LossLimit(config, allowed_loss)
+    chosen, limit = SetPart(*part), LossLimit(config, allowed_loss)
     storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):

@@ -24,7 +24,7 @@ from siggen.planning.plan import ShardPlan
 from siggen.record.compilation import CompilationPart, run_part
 from siggen.sets.interruption import Interruption
 from siggen.sets.run_journal import RunJournal
-from siggen.sets.shard_work import Answer, Closing, Excerpting, GroupRows, ShardWork, Stretch, Task, shard_chunks
+from siggen.sets.shard_work import Answer, ChunkStretch, Closing, Excerpting, GroupRows, ShardWork, Task, shard_chunks
 from siggen.sets.under_way import STOP_AT_ONCE_S, UnderWay
 
 STRETCHES_PER_WORKER = 2
@@ -150,7 +150,7 @@ class ShardMaking:
                 for _ in compiled:
                     self.interruption.check()
 
-    def _tasks(self, bare: Sequence[str], stretches: Iterator[Stretch]) -> Iterator[Task | None]:
+    def _tasks(self, bare: Sequence[str], stretches: Iterator[ChunkStretch]) -> Iterator[Task | None]:
         """Yield what is to be done, shards that can be closed first; None where that waits for workers."""
         yield from (Excerpting(shard) for shard in bare)
         while self._open:
@@ -161,7 +161,7 @@ class ShardMaking:
 
     def _stretches(
         self, missing: Sequence[ShardPlan], found: Mapping[str, Sequence[Chunk]], work: ShardWork
-    ) -> Iterator[Stretch]:
+    ) -> Iterator[ChunkStretch]:
         """Cut shards into stretches of what no piece holds."""
         kept = {chunk.records.start: chunk for held in found.values() for chunk in held}
         left = sum(shard.record_count for shard in missing) - sum(len(chunk.records) for chunk in kept.values())
@@ -176,7 +176,7 @@ class ShardMaking:
                     chosen = _taken(gap, self._share(left, work))
                     size = sum(len(chunk.records) for chunk in chosen)
                     left -= size
-                    yield Stretch(shard, chosen, size == shard.record_count)
+                    yield ChunkStretch(shard, chosen, size == shard.record_count)
 
     def _share(self, left: int, work: ShardWork) -> int:
         """Return how many records a stretch may have; a chunk, if it has more, and where parts are not handed in."""

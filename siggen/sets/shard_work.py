@@ -41,7 +41,7 @@ IDLE_S = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class ChunkStretch:
     """Chunks of a shard that follow each other; `is_whole` where they are the whole shard, which is then closed."""
 
     shard: ShardPlan
@@ -82,7 +82,7 @@ class Excerpting:
         return f"the excerpt of shard {self.key}"
 
 
-Task = Stretch | Closing | Excerpting
+Task = ChunkStretch | Closing | Excerpting
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +164,7 @@ class ShardWork:
             return Answer(task.key, error=OSError(error.errno, os.strerror(error.errno)))
 
     def _done(self, task: Task) -> Answer | Unfinished[Task, Answer]:
-        if isinstance(task, Stretch):
+        if isinstance(task, ChunkStretch):
             return self._simulated(task)
         if isinstance(task, Closing):
             return self._closed(task.shard)
@@ -180,7 +180,7 @@ class ShardWork:
                 "it has to write; name a folder that all machines of the cluster share, or s3://bucket/set"
             )
 
-    def _simulated(self, stretch: Stretch) -> Answer | Unfinished[Task, Answer]:
+    def _simulated(self, stretch: ChunkStretch) -> Answer | Unfinished[Task, Answer]:
         results: list[ChunkResult] = []
         rest = deque(stretch.chunks)
         until_s = time.monotonic() + PART_S
@@ -196,7 +196,7 @@ class ShardWork:
                 return self._answer(stretch.key, results, times.seconds, sidecar)
             self.pieces.put(results)
         answer = self._answer(stretch.key, results, times.seconds)
-        return Unfinished(answer, Stretch(stretch.shard, tuple(rest))) if rest else answer
+        return Unfinished(answer, ChunkStretch(stretch.shard, tuple(rest))) if rest else answer
 
     def _is_part(self, results: Sequence[ChunkResult], until_s: float) -> bool:
         size = sum(len(one.rows) + len(one.internals or b"") for one in results)

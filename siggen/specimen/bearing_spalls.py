@@ -22,7 +22,7 @@ from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.damage.part import Part, Parts
 from siggen.planning.plan import PlannedRecord
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stream, named_generator
 from siggen.specimen.loaded_bearings import BEARINGS
 from siggen.specimen.structure import specimen_bearings, supported_stage
 
@@ -98,7 +98,7 @@ def drawn_labels(seed: int, record: PlannedRecord, part: Part) -> dict[str, obje
 
 def _slip_and_walk(seed: int, record: PlannedRecord, spall: RollingSpall) -> tuple[float, float, np.random.Generator]:
     """Return slip and walk of a bearing's cage in a record, and the generator of its steps."""
-    rng = named_generator(seed, Stage.DRIVE, *record.owner, name=f"bearing_spall.{spall.shaft}.cage")
+    rng = named_generator(seed, Stream.DRIVE, *record.owner, name=f"bearing_spall.{spall.shaft}.cage")
     slip, walk = (low + (high - low) * rng.random() for low, high in (SLIP, WALK))
     return slip, walk, rng
 

@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from siggen.dynamics.drive.drive import Drive, Rotation
-from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation
+from siggen.dynamics.drive.excitation import Excitation, InputSource, SpeedDeviation
 from siggen.dynamics.drive.slow_variation import SLOW_CORNER_HZ, SlowVariation, slow_variation
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation
@@ -21,7 +21,7 @@ from siggen.gearbox.specimen import Specimen
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import PlannedRecord
-from siggen.seeding import Stage, generator, named_generator, named_uniforms
+from siggen.seeding import Stream, generator, named_generator, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread
 from siggen.specimen.bearing_spalls import spall_sources
@@ -72,13 +72,17 @@ def record_drive(
         return RecordDrive(rotation, Excitation(forces) if forces else None, None, -1)
     settings = _in_record(specimen, point.variation.torque, record)
     torque = TorqueVariation(structure, point.torque_nm, settings)
-    sources: tuple[Source, ...] = (SpeedDeviation(structure.coordinates, 2.0 * pi * point.speed_hz), torque, *forces)
+    sources: tuple[InputSource, ...] = (
+        SpeedDeviation(structure.coordinates, 2.0 * pi * point.speed_hz),
+        torque,
+        *forces,
+    )
     return RecordDrive(rotation, Excitation(sources), torque, 0)
 
 
 def start_angle_rad(specimen: Specimen, record: PlannedRecord) -> float:
     """Return the pinion angle at the first sample [rad], uniform over the hunting period of all gears."""
-    return float(generator(specimen.seed, Stage.START, *record.owner).random() * 2 * pi * specimen.hunting_turns)
+    return float(generator(specimen.seed, Stream.START, *record.owner).random() * 2 * pi * specimen.hunting_turns)
 
 
 def record_rotation(specimen: Specimen, record: PlannedRecord) -> Rotation:
@@ -92,7 +96,7 @@ def record_rotation(specimen: Specimen, record: PlannedRecord) -> Rotation:
     point, angle_rad = specimen.points[record.operating_point_id], start_angle_rad(specimen, record)
     if point.variation is None:
         return Drive(point.speed_hz, angle_rad)
-    speed, uniform = point.variation.speed, named_uniforms(specimen.seed, Stage.DRIVE, *record.owner)
+    speed, uniform = point.variation.speed, named_uniforms(specimen.seed, Stream.DRIVE, *record.owner)
     carrying_hz = point.speed_hz * (1.0 - speed.slip * point.torque_nm / speed.rated_torque_nm)
     ramp = SpeedRamp(speed.start_ratio * carrying_hz, speed.end_ratio * carrying_hz, specimen.sampling.duration_s)
     ripple = Ripple(
@@ -123,7 +127,7 @@ def variation_labels(sampling: Sampling, driven: RecordDrive) -> dict[str, objec
 
 def _in_record(specimen: Specimen, torque: TorqueSettings, record: PlannedRecord) -> TorqueSettings:
     """Return how the torque varies in one record."""
-    uniform = named_uniforms(specimen.seed, Stage.DRIVE, *record.owner)
+    uniform = named_uniforms(specimen.seed, Stream.DRIVE, *record.owner)
     return replace(
         torque,
         slow=_slow(specimen, record, "variation.torque.random"),
@@ -133,6 +137,6 @@ def _in_record(specimen: Specimen, torque: TorqueSettings, record: PlannedRecord
 
 
 def _slow(specimen: Specimen, record: PlannedRecord, name: str) -> SlowVariation:
-    rng = named_generator(specimen.seed, Stage.DRIVE, *record.owner, name=name)
+    rng = named_generator(specimen.seed, Stream.DRIVE, *record.owner, name=name)
     end_s = specimen.sampling.duration_s + MARGIN_S
     return slow_variation(rng, SLOW_CORNER_HZ, -TRANSIENT_CAP_S - MARGIN_S, end_s)

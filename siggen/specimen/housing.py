@@ -9,7 +9,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.housing.modes import TableModes, table_motion
-from siggen.dynamics.housing.motion import Motion
+from siggen.dynamics.housing.motion import WallMotion
 from siggen.dynamics.structure.makers import SEATS_OF_SET
 from siggen.gearbox.housing import Block, Plates
 from siggen.gearbox.mode_table import BASE, DRIVE, ModeTable, seats_of
@@ -62,7 +62,7 @@ def _modal_housing(table: ModeTable, specimen: Specimen) -> SpecimenHousing:
     )
 
 
-def _seen(places: Mapping[str, Motion], held: Collection[str]) -> dict[str, Motion]:
+def _seen(places: Mapping[str, WallMotion], held: Collection[str]) -> dict[str, WallMotion]:
     """Return the motions of a table's places as sensors call them: at what is `held`, or on the casing by their name.
 
     A sensor on the casing may bear the name of a ring, too.

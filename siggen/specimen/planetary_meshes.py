@@ -12,12 +12,12 @@ from math import cos
 
 from siggen.gearbox.specimen import PlanetaryGears
 from siggen.gears.geometry.internal_pair import ring_begins_pitches
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
 from siggen.specimen.motion import MeshBehind, SpecimenMesh, TeethUnderTorque
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class LateTeeth:
     """Teeth whose planet stands back from its mate by `late_m`; it drives the ring, and the sun drives it."""
 
     teeth: TeethUnderTorque
@@ -31,7 +31,7 @@ class Moved:
             return replace(found, pinion=self._back(found.pinion))
         return replace(found, gear=self._back(found.gear))
 
-    def _back(self, teeth: ToothTables) -> ToothTables:
+    def _back(self, teeth: MissingTables) -> MissingTables:
         return replace(teeth, offset_m=teeth.offset_m + self.late_m)
 
 
@@ -56,4 +56,4 @@ def with_planets(planets: PlanetaryGears, meshes: Sequence[SpecimenMesh]) -> Spe
 
 def _moved(mesh: SpecimenMesh, error_m: float, *, drives: bool) -> SpecimenMesh:
     late_m = error_m * cos(mesh.pair.working_pressure_angle_rad)
-    return mesh if late_m == 0.0 else replace(mesh, missing=Moved(mesh.missing, late_m, drives))
+    return mesh if late_m == 0.0 else replace(mesh, missing=LateTeeth(mesh.missing, late_m, drives))

@@ -18,7 +18,7 @@ from siggen.dynamics.housing.housing_modes import (
 )
 from siggen.dynamics.housing.layout import Contents, Proportions, layout
 from siggen.dynamics.housing.loose_foot import loosened, springs
-from siggen.dynamics.housing.motion import Motion, PlatePlace, motion_at, seat_motions
+from siggen.dynamics.housing.motion import PlatePlace, WallMotion, motion_at, seat_motions
 from siggen.dynamics.structure.gear_stage import Point
 from siggen.gearbox.housing import Mount, Plates
 from siggen.gears.geometry.gear_pair import GearPair
@@ -85,7 +85,7 @@ def _box_modes(
 
 def _seats(
     box: Box, modes: BoxModes, front_share: Mapping[str, float], bearings: Mapping[str, str], *, located: bool
-) -> dict[str, Motion]:
+) -> dict[str, WallMotion]:
     """Return the motion of both seats of every shaft, weighted with what each of them bears of a force on the gear.
 
     Along the axis one bearing of a `located` shaft bears all of it, that in the front wall.
@@ -99,12 +99,12 @@ def _seats(
             if located and axis == "axial":
                 found[f"{bearing}/{axis}"] = first
                 continue
-            none = Motion(0.0 * first.even, 0.0 * first.odd)
+            none = WallMotion(0.0 * first.even, 0.0 * first.odd)
             found[f"{bearing}/{axis}"] = none.plus(first, front).plus(second, 1.0 - front)
     return found
 
 
-def _sensors(box: Box, modes: BoxModes, mounts: Mapping[str, Mount]) -> dict[str, Motion]:
+def _sensors(box: Box, modes: BoxModes, mounts: Mapping[str, Mount]) -> dict[str, WallMotion]:
     """Return the motions of all sensors on plates, along all axes."""
     return {
         f"casing_{name}/{axis}": motion_at(modes.halves, PlatePlace(*sensor_place(box, mount), number))
@@ -125,7 +125,7 @@ def sensor_place(box: Box, mount: Mount) -> tuple[str, float, float]:
     return mount.plate, first, second
 
 
-def _drive(box: Box, modes: BoxModes, shares: tuple[float, float]) -> dict[str, Motion]:
+def _drive(box: Box, modes: BoxModes, shares: tuple[float, float]) -> dict[str, WallMotion]:
     """Return where another drive presses: by the radial forces of its own bearings, in the plane of the front wall."""
     length, height, _ = box.size_m
     return {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from siggen.dynamics.drive.excitation import Source
+from siggen.dynamics.drive.excitation import InputSource
 from siggen.dynamics.drive.external_forces import Unbalance, bearing_places, shaft_mass, turning_sense
 from siggen.dynamics.structure.structure import Structure
 from siggen.gearbox.specimen import Specimen
@@ -13,7 +13,7 @@ RATED_SPEED_HZ = 50.0
 """Of the pinion shaft, to which a grade of balance belongs; that of the others by their ratios."""
 
 
-def force_sources(specimen: Specimen, structure: Structure) -> tuple[Source, ...]:
+def force_sources(specimen: Specimen, structure: Structure) -> tuple[InputSource, ...]:
     """Return the unbalance of all shafts where a gearbox has it.
 
     Raises

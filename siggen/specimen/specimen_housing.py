@@ -13,9 +13,9 @@ import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.housing.box import Box
-from siggen.dynamics.housing.modes import ALL, Modes
-from siggen.dynamics.housing.motion import Motion
-from siggen.dynamics.structure.drivetrain import Modes as LowestModes
+from siggen.dynamics.housing.modes import ALL, NaturalModes
+from siggen.dynamics.housing.motion import WallMotion
+from siggen.dynamics.structure.drivetrain import Modes
 from siggen.dynamics.structure.gear_stage import Point
 from siggen.dynamics.structure.makers import Housing, housing_of_modes
 
@@ -26,7 +26,7 @@ series with the bearings k_b |R - R_0| stays below 0.5 nearly everywhere (drawn 
 SETTLED_DECAYS = 7.0
 """Decay times after which a mode has forgotten how it was started: 1e-3 of it is left."""
 LONGEST_S = 1.2
-BoltMotions = tuple[tuple[Point, str, float, Motion], ...]
+BoltMotions = tuple[tuple[Point, str, float, WallMotion], ...]
 """Place from the middle between both shafts, axis, stiffness [N/m] and motion of what a base takes along."""
 
 
@@ -42,11 +42,11 @@ class SpecimenHousing:
     box : what the modes were computed from; None where they were given
     """
 
-    modes: Modes
+    modes: NaturalModes
     damping_ratio: FloatArray
-    seats: Mapping[str, Motion]
-    motions: Mapping[str, Motion]
-    entries: Mapping[str, Motion]
+    seats: Mapping[str, WallMotion]
+    motions: Mapping[str, WallMotion]
+    entries: Mapping[str, WallMotion]
     bolts: Callable[[], BoltMotions]
     box: Box | None = None
 
@@ -67,7 +67,7 @@ class SpecimenHousing:
         return list(zip(self.modes.frequency_hz.tolist(), self.damping_ratio.tolist(), strict=True))
 
     def accelerance(
-        self, seen: Motion, inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
+        self, seen: WallMotion, inputs: tuple[str, ...], frequency_hz: FloatArray, which: slice = ALL
     ) -> ComplexArray:
         """Return the accelerance (inputs, k) [m/s² per N] from seats, entries or motions, of some of the modes."""
         places = {**self.motions, **self.seats, **self.entries}
@@ -79,7 +79,7 @@ class SpecimenHousing:
     ) -> ComplexArray:
         """Return the accelerance (inputs, k) of what a channel sees: motions times factors."""
         (name, weight), *others = weights.items()
-        total = Motion(weight * self.motions[name].even, weight * self.motions[name].odd)
+        total = WallMotion(weight * self.motions[name].even, weight * self.motions[name].odd)
         for name, weight in others:
             total = total.plus(self.motions[name], weight)
         return self.accelerance(total, inputs, frequency_hz, which)
@@ -101,7 +101,7 @@ def moving_with_gears(housing: SpecimenHousing) -> Housing:
     seats = list(housing.seats.values())
     places = {**housing.seats, **housing.motions, **housing.entries}
     shapes = modes.shapes(list(places.values()))[:, :n]
-    lowest = LowestModes(
+    lowest = Modes(
         name="housing",
         frequency_hz=modes.frequency_hz[:n],
         damping_ratio=housing.damping_ratio[:n],
@@ -128,14 +128,14 @@ def participation(housing: SpecimenHousing) -> FloatArray:
     return taken
 
 
-def second_stage(seats: Mapping[str, Motion], bearings: Sequence[str], pressure_angle_rad: float) -> Motion:
+def second_stage(seats: Mapping[str, WallMotion], bearings: Sequence[str], pressure_angle_rad: float) -> WallMotion:
     """Return where a second mesh presses: opposed forces on the seats of both shafts.
 
     They lie along the line of action of the mesh that is simulated, which stands for its own. `bearings` are those of
     its driver and its driven gear.
     """
     driver, driven = (
-        Motion(0.0 * seats[f"{bearing}/vertical"].even, 0.0 * seats[f"{bearing}/vertical"].odd)
+        WallMotion(0.0 * seats[f"{bearing}/vertical"].even, 0.0 * seats[f"{bearing}/vertical"].odd)
         .plus(seats[f"{bearing}/vertical"], cos(pressure_angle_rad))
         .plus(seats[f"{bearing}/horizontal"], sin(pressure_angle_rad))
         for bearing in bearings

@@ -16,7 +16,7 @@ from siggen.dynamics.mesh.static_loads import loads_at_rest
 from siggen.dynamics.mesh.tooth_law import ToothLaw
 from siggen.gears.damage.wear import AtRest, LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -52,7 +52,7 @@ def _worn(
 ) -> MissingMaterial:
     places = np.linspace(missing.start_m, missing.end_m, missing.pinion.profile_m.shape[1])
 
-    def with_depths(teeth: ToothTables, depths_m: FloatArray) -> ToothTables:
+    def with_depths(teeth: MissingTables, depths_m: FloatArray) -> MissingTables:
         return replace(teeth, profile_m=teeth.profile_m + np.interp(places, position_m, depths_m))
 
     return replace(missing, pinion=with_depths(missing.pinion, pinion_m), gear=with_depths(missing.gear, gear_m))

@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.time.modes import Modes, natural_modes
+from siggen.dynamics.time.modes import MotionModes, natural_modes
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.specimen.structure import structure
@@ -26,7 +26,7 @@ class SpecimenModes:
     coordinates: tuple[str, ...]
     mesh_stiffness_n_per_m: Mapping[str, float]
     mass: FloatArray
-    modes: Modes
+    modes: MotionModes
 
     @property
     def table(self) -> pa.Table:

@@ -6,12 +6,12 @@ from functools import partial
 
 import pytest
 
-from siggen.config import Dynamics, Gears
+from siggen.config import Dynamics, GearsSection
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Within, bounds
 from siggen.keys.section import Section
-from siggen.seeding import Stage, named_uniforms
+from siggen.seeding import Stream, named_uniforms
 from siggen.sensors.accelerometer import Accelerometer
 from tests.config.minimal import config
 
@@ -30,7 +30,7 @@ def numbers(section) -> dict[str, float]:
     return found
 
 
-UNIFORM = named_uniforms(11, Stage.SUPPORTS, 0)
+UNIFORM = named_uniforms(11, Stream.SUPPORTS, 0)
 
 
 def drawn(section):
@@ -106,5 +106,5 @@ def test_corners_are_all_combinations_of_the_bounds():
 def test_a_section_without_distributions_is_its_only_corner():
     gears = config().gears
     assert list(corners(partial(draw, gears, path=""))) == [gears]
-    assert isinstance(gears, Gears)
+    assert isinstance(gears, GearsSection)
     assert bounds(gears.module_mm) == (3.0, 3.0)

@@ -15,7 +15,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.pair_motion import PairMesh
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.geometry.internal_pair import InternalPair, ring_begins_pitches, ring_round
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
 from siggen.gears.geometry.planetary import PlanetarySet
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
@@ -49,7 +49,7 @@ def planetary_stage(planets: int = 3, sun: int = 24, planet: int = 27, ring: int
 
 def exact(tables: MeshTables, teeth: tuple[int, int], offsets_m: tuple[float, float] = (0.0, 0.0)) -> MissingMaterial:
     gears = [
-        ToothTables(np.zeros((1, 2)), np.zeros(z, dtype=np.int32), np.full(z, o))
+        MissingTables(np.zeros((1, 2)), np.zeros(z, dtype=np.int32), np.full(z, o))
         for z, o in zip(teeth, offsets_m, strict=True)
     ]
     return MissingMaterial(tables.start_m, tables.end_m, *gears)

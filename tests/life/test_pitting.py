@@ -8,22 +8,22 @@ from scipy.stats import expon, kstest
 
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.life import pitting
-from siggen.life.clock import Block, Clock
+from siggen.life.clock import Clock, LoadBlock
 from siggen.life.growth import STEP, Seeds, grown
 from siggen.life.initiation import begun, times_of, tooth_scale
 from siggen.life.pitting import FIRST_SHARE_SD, Pitting
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stream, named_generator
 from tests.life.wearing import NOMINAL, course, pair_flanks
 
 
 def steady(torque_ratio: float = 1.0, scale: float = 1.0) -> Clock:
     """Return the clock of one torque all the time."""
-    return Clock((Block(1.0, 23.3, torque_ratio),), 10.0, scale)
+    return Clock((LoadBlock(1.0, 23.3, torque_ratio),), 10.0, scale)
 
 
 def first_pits(slope: float, units: int, scale: float = 6.9e6, own=NOMINAL, nominal=NOMINAL) -> list:
     return [
-        begun(own, nominal, scale, slope, lambda name, i=i: named_generator(3, Stage.LIFE, i, name=name))[0]
+        begun(own, nominal, scale, slope, lambda name, i=i: named_generator(3, Stream.LIFE, i, name=name))[0]
         for i in range(units)
     ]
 
@@ -71,7 +71,7 @@ def test_twice_the_torque_brings_first_pits_earlier_by_its_power_in_the_same_ord
 def test_short_blocks_of_two_torques_wear_as_the_constant_one_of_their_mean_power() -> None:
     constant = steady(((1.0 + 0.7**10) / 2.0) ** 0.1)
     for hours, nearness in ((10.0, 10.0), (0.1, 0.1)):
-        blocks = Clock((Block(hours, 23.3, 1.0), Block(hours, 23.3, 0.7)), 10.0, 1.0)
+        blocks = Clock((LoadBlock(hours, 23.3, 1.0), LoadBlock(hours, 23.3, 0.7)), 10.0, 1.0)
         assert abs(blocks.age_h(5e6) - constant.age_h(5e6)) < nearness
         assert blocks.time(blocks.age_h(5e6)) == pytest.approx(5e6, rel=1e-12)
 

@@ -10,7 +10,7 @@ import pytest
 
 from siggen.life.debris import CAUGHT, STEEL_MG_PER_M3, counted_mg
 from siggen.life.picture import LAND, PIXEL_M
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stream, named_generator
 from tests.life.wearing import course
 
 
@@ -57,7 +57,7 @@ def test_a_counter_never_counts_back_and_counts_half_of_what_leaves() -> None:
     for unit in range(200):
 
         def named(name: str, unit: int = unit) -> np.random.Generator:
-            return named_generator(5, Stage.LIFE, unit, name=name)
+            return named_generator(5, Stream.LIFE, unit, name=name)
 
         readings = [counted_mg(0.0, age_h, named) for age_h in (0.0, 0.5, 3.2, 3.7, 40.0)]
         assert readings == sorted(readings)

@@ -8,7 +8,7 @@ from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.life.flank import Flank, flanks
 from siggen.life.law import Wearing
 from siggen.life.pitting import Pitting, PittingCourse
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stream, named_generator
 
 
 def pair_flanks(pinion: int = 28, gear: int = 28, face_m: float = 6.35e-3) -> tuple[Flank, Flank]:
@@ -30,5 +30,5 @@ def course(
     unit: int, law: Pitting | None = None, share: float = 0.3, own: tuple[Flank, Flank] = NOMINAL
 ) -> PittingCourse:
     """Return the life of a gearbox; the same unit has the same draws under any law."""
-    wearing = Wearing(own, NOMINAL, lambda name: named_generator(7, Stage.LIFE, unit, name=name))
+    wearing = Wearing(own, NOMINAL, lambda name: named_generator(7, Stream.LIFE, unit, name=name))
     return (law or Pitting()).course(wearing, share)

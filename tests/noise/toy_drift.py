@@ -9,7 +9,7 @@ from pydantic import Field
 
 from siggen.arrays import FloatArray
 from siggen.keys.number import Number, Within, at
-from siggen.noise.source import Draws, NoisyChannel, Part, Source
+from siggen.noise.source import Draws, NoisePart, NoisyChannel, Source
 
 
 class ToyDrift(Source):
@@ -22,7 +22,7 @@ class ToyDrift(Source):
 
     size_m_s2_per_s: Annotated[Number, Within(least=0)] = Field(description="drawn per record and axis")
 
-    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+    def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:
         rng = draws.record(self.key)
         return _Slope(at(self.size_m_s2_per_s, draws.level("toy_drift.size_m_s2_per_s", rng)), channel.fs_hz)
 

@@ -21,7 +21,7 @@ from siggen.gearbox.housing import Block
 from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import planned_record
 from siggen.record.background import BackgroundBlocks
-from siggen.record.background_course import Course, course_at
+from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import velocity_density
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.rubbing import RubbingForce, force_spectrum
@@ -87,7 +87,7 @@ def rubbed(changes: dict[str, float], duration_s: float) -> tuple[Config, Rubbin
     return config, replace(drawn.rubbing, **{"level_std": 0.0, **changes})
 
 
-def whole_course(config: Config) -> Course:
+def whole_course(config: Config) -> BackgroundCourse:
     """Return the course of the first record over its samples."""
     specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
     return course_at(specimen, planned, record_rotation(specimen, planned), 0, config.samples)

@@ -9,7 +9,7 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import Config, inherited, parse_yaml
-from siggen.config.pairs import Pair
+from siggen.config.pairs import PairSection
 from siggen.gearbox.configured import pair_config
 from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import GearPair
@@ -81,7 +81,7 @@ def test_the_torque_of_a_pair_stresses_flank_or_root_as_before_and_neither_more(
 def test_a_machine_carried_over_is_the_one_that_siggen_init_writes() -> None:
     """With the bores that the carried-over gearbox has: `siggen init` takes its own from the catalogue, in steps."""
     before = Rig((18, 47), 3.0, 20.0, (30.0, 35.0), (15.0, 60.0), bores_mm=(25.0, 35.0))
-    pair = Pair(teeth=(25, 56), module_mm=4.0, face_width_mm=45.0)
+    pair = PairSection(teeth=(25, 56), module_mm=4.0, face_width_mm=45.0)
     written = _parsed(rig_text(before, "before", "bench"))
     pairs = written.gears.model_copy(update={"pairs": (pair,)})
     own = pair_config(written.model_copy(update={"gears": pairs}), 0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from siggen.seeding import Stage, generator
+from siggen.seeding import Stream, generator
 from siggen.sensing.force_density import (
     contact_bandwidth_hz,
     contact_filter,
@@ -27,7 +27,7 @@ def test_the_power_behind_a_contact_is_its_closed_form(steepness: float) -> None
 
 def test_noise_has_its_density_in_every_band() -> None:
     density = 0.2 * rising_floor(GRID, 100.0, 2.0)
-    noise = np.fft.irfft(density * noise_spectrum(1.0, LENGTH, FS, generator(3, Stage.BACKGROUND, 0)), LENGTH)
+    noise = np.fft.irfft(density * noise_spectrum(1.0, LENGTH, FS, generator(3, Stream.BACKGROUND, 0)), LENGTH)
     power = np.abs(np.fft.rfft(noise)) ** 2 / (LENGTH * FS / 2.0)
     for low, high in ((20.0, 60.0), (60.0, 500.0), (500.0, 5000.0), (5000.0, 12000.0)):
         band = (low < GRID) & (high > GRID)

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import hilbert
 
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
-from siggen.seeding import Stage, generator
+from siggen.seeding import Stream, generator
 from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course, shaft_phasors
 from siggen.sensing.noise_spectrum import noise_spectrum
 
@@ -18,7 +18,7 @@ BAND = np.where((FREQUENCY > 3000.0) & (FREQUENCY < 9000.0), 1.0, 0.0)
 
 
 def rng(name: int) -> np.random.Generator:
-    return generator(5, Stage.BACKGROUND, name)
+    return generator(5, Stream.BACKGROUND, name)
 
 
 def noise(drawn: np.random.Generator) -> np.ndarray:

@@ -18,7 +18,7 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import Config, read_yaml
-from siggen.dynamics.drive.excitation import Source
+from siggen.dynamics.drive.excitation import InputSource
 from siggen.dynamics.drive.external_forces import Unbalance, shaft_mass
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
@@ -228,7 +228,7 @@ def test_all_teeth_meet_as_at_the_start_after_the_hunting_turns_and_not_before()
     assert 0.5 * whole < max(angles) / (2.0 * pi) < whole
 
 
-def balance(sources: Sequence[Source]) -> tuple[list[float], list[float]]:
+def balance(sources: Sequence[InputSource]) -> tuple[list[float], list[float]]:
     """Return order and moment [kg m] of unbalances."""
     orders = [one.order for one in sources if isinstance(one, Unbalance)]
     return orders, [one.moment_kg_m for one in sources if isinstance(one, Unbalance)]

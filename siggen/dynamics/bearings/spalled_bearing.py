@@ -22,7 +22,7 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.bearings.cage_course import CageCourse
 from siggen.dynamics.drive.drive import Turning
-from siggen.dynamics.drive.excitation import Source
+from siggen.dynamics.drive.excitation import InputSource
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class ZoneOfLoad:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SpalledBearing(Source):
+class SpalledBearing(InputSource):
     """A spall in a loaded bearing.
 
     Parameters

@@ -12,7 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Rotation, Turning
 
 
-class Source(Protocol):
+class InputSource(Protocol):
     """One cause of inputs; to be derived from."""
 
     @property
@@ -40,7 +40,7 @@ class Source(Protocol):
 class Excitation:
     """Sources that act together; their inputs stand side by side in this order."""
 
-    sources: tuple[Source, ...]
+    sources: tuple[InputSource, ...]
 
     @property
     def sharp_turn_rad(self) -> float:
@@ -64,7 +64,7 @@ class Excitation:
 
 
 @dataclass(frozen=True, slots=True)
-class SpeedDeviation(Source):
+class SpeedDeviation(InputSource):
     """Ω/Ω_0 - 1, which pushes nothing, but by which tooth pairs slide faster or slower."""
 
     coordinates: Sequence[str]
@@ -80,6 +80,6 @@ class SpeedDeviation(Source):
         return (turning.speed_rad_s / self.nominal_rad_s - 1.0)[:, None]
 
 
-def _rows(source: Source, places: Sequence[str]) -> FloatArray:
+def _rows(source: InputSource, places: Sequence[str]) -> FloatArray:
     none, found = np.zeros(source.vectors.shape[0]), source.seat_forces
     return np.array([found.get(place, none) for place in places]).reshape(len(places), none.size)

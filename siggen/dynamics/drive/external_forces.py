@@ -12,13 +12,13 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Turning
-from siggen.dynamics.drive.excitation import Source
+from siggen.dynamics.drive.excitation import InputSource
 from siggen.dynamics.structure.drivetrain import PLANE, Place
 from siggen.dynamics.structure.structure import Structure
 
 
 @dataclass(frozen=True, slots=True)
-class Unbalance(Source):
+class Unbalance(InputSource):
     """An eccentric mass m e [kg m] on a shaft that turns at `order` times the pinion.
 
     `directions` (2, n) are unit forces along two axes at right angles; the shaft turns from the first to the second, or

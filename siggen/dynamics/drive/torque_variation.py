@@ -18,7 +18,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Turning
-from siggen.dynamics.drive.excitation import Source
+from siggen.dynamics.drive.excitation import InputSource
 from siggen.dynamics.drive.slow_variation import SlowVariation
 from siggen.dynamics.structure.shaft_lines import driven_and_loaded, rigid_rotation, without_drift
 from siggen.dynamics.structure.structure import Structure, vector
@@ -44,7 +44,7 @@ class TorqueSettings:
     line_phase_rad: float = 0.0
 
 
-class TorqueVariation(Source):
+class TorqueVariation(InputSource):
     """Three inputs: slow torque of motor and load in balance, torque of the load, torque of the motor."""
 
     def __init__(self, structure: Structure, torque_nm: float, settings: TorqueSettings) -> None:

@@ -24,8 +24,8 @@ from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.housing.box import SIDES, Box, plane_axes
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.half_functions import HalfFunctions
-from siggen.dynamics.housing.modes import Modes
-from siggen.dynamics.housing.motion import Motion
+from siggen.dynamics.housing.modes import NaturalModes
+from siggen.dynamics.housing.motion import WallMotion
 from siggen.dynamics.housing.ordered_sums import squares
 from siggen.dynamics.housing.plate_energy import sheet
 from siggen.dynamics.housing.shared_functions import Degrees
@@ -44,7 +44,7 @@ BEYOND = 3.0
 """Modes are kept up to so many times the resolved frequency: they serve as a statistical tail."""
 
 
-class BoxModes(Modes, Protocol):
+class BoxModes(NaturalModes, Protocol):
     """Modes of a box in ascending order. To be derived from.
 
     Attributes
@@ -61,10 +61,10 @@ class BoxModes(Modes, Protocol):
         """How many of them may move with the gears: all."""
         return self.frequency_hz.size
 
-    def static_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+    def static_flexibility(self, outputs: Sequence[WallMotion], inputs: Sequence[WallMotion]) -> FloatArray:
         """Return static displacements (outputs, inputs) under unit forces, bolts included [m/N]."""
 
-    def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+    def flexibility_beyond(self, modes: int, outputs: Sequence[WallMotion], inputs: Sequence[WallMotion]) -> FloatArray:
         """Return what all modes above the first so many give way, (outputs, inputs) [m/N]."""
         left, right = (np.ascontiguousarray(self.shapes(side).T[:modes]) for side in (outputs, inputs))
         omega = 2.0 * pi * self.frequency_hz[:modes, None]
@@ -89,12 +89,12 @@ class HousingModes(BoxModes):
     order: IntArray
     resolved_hz: float
 
-    def shapes(self, motions: Sequence[Motion]) -> FloatArray:
+    def shapes(self, motions: Sequence[WallMotion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
         both = [squares(columns(motions, h), self.found[h].shapes) for h in (0, 1)]
         return np.concatenate(both, axis=1)[:, self.order]
 
-    def static_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+    def static_flexibility(self, outputs: Sequence[WallMotion], inputs: Sequence[WallMotion]) -> FloatArray:
         """Return static displacements (outputs, inputs) under unit forces, bolts included [m/N]."""
         total = np.zeros((len(outputs), len(inputs)))
         for h in (0, 1):
@@ -103,7 +103,7 @@ class HousingModes(BoxModes):
         return total
 
 
-def columns(motions: Sequence[Motion], half: int) -> FloatArray:
+def columns(motions: Sequence[WallMotion], half: int) -> FloatArray:
     """Return the rows of motions in one half side by side, (coordinates, motions)."""
     return np.ascontiguousarray(np.array([motion[half] for motion in motions]).T)
 

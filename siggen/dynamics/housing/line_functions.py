@@ -21,7 +21,7 @@ VALUE, SLOPE, BUBBLE = 0, 1, 2
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class FunctionNames:
     """What the functions of a line are, each (functions,): kind, end (0, 1), parity (-1: neither), number of bubble.
 
     `end` is 0 on a mirrored line; `order` is 0 for all that are no bubbles.
@@ -39,11 +39,11 @@ class Names:
 
 
 @lru_cache(maxsize=256)
-def names(bubbles: int, mirrored: bool) -> Names:
+def names(bubbles: int, mirrored: bool) -> FunctionNames:
     """Return what the functions of a line with so many bubbles are."""
     ends, parities = ((0, 0, 0, 0), (0, 1, 0, 1)) if mirrored else ((0, 1, 0, 1), (-1,) * 4)
     within = tuple(k % 2 if mirrored else -1 for k in range(bubbles))
-    return Names(
+    return FunctionNames(
         kind=(VALUE, VALUE, SLOPE, SLOPE, *(BUBBLE,) * bubbles),
         end=(*ends, *(0,) * bubbles),
         parity=(*parities, *within),
@@ -60,7 +60,7 @@ class LineFunctions:
     mirrored: bool
 
     @property
-    def names(self) -> Names:
+    def names(self) -> FunctionNames:
         """What the functions are."""
         return names(self.bubbles, self.mirrored)
 

@@ -22,24 +22,24 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.housing.box import Axis, Bolt, Box
 from siggen.dynamics.housing.half_functions import HalfFunctions
 from siggen.dynamics.housing.housing_modes import BoxModes, HousingModes, columns
-from siggen.dynamics.housing.motion import Motion, bolt_motions
+from siggen.dynamics.housing.motion import WallMotion, bolt_motions
 from siggen.dynamics.housing.ordered_sums import own_squares, squares
 from siggen.dynamics.housing.stiff_pencil import lowest_modes, solve_lower, solve_upper, upper_root
 
 WALLS = ("front", "back")
 
 
-class Spring(NamedTuple):
+class FootSpring(NamedTuple):
     """What a foot does along one axis: its stiffness [N/m], the part of it that is lost, and the floor's motion."""
 
     bolt: Bolt
     axis: Axis
     stiffness_n_per_m: float
     lost_n_per_m: float
-    motion: Motion
+    motion: WallMotion
 
 
-def springs(box: Box, halves: tuple[HalfFunctions, HalfFunctions], share: float) -> Iterator[Spring]:
+def springs(box: Box, halves: tuple[HalfFunctions, HalfFunctions], share: float) -> Iterator[FootSpring]:
     """Yield the springs of all feet; the one at the pinion's end by the back wall has a share left."""
     for bolt in box.bolts:
         motions = bolt_motions(halves, bolt)
@@ -47,7 +47,7 @@ def springs(box: Box, halves: tuple[HalfFunctions, HalfFunctions], share: float)
             for wall in WALLS:
                 whole = bolt.stiffness_n_per_m[axis]
                 left = share * whole if bolt is box.bolts[-1] and wall == WALLS[-1] else whole
-                yield Spring(bolt, axis, left, whole - left, motions[f"{wall}/{axis.name.lower()}"])
+                yield FootSpring(bolt, axis, left, whole - left, motions[f"{wall}/{axis.name.lower()}"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,14 +69,14 @@ class LoosenedModes(BoxModes):
     sound: HousingModes
     beyond: tuple[FloatArray, FloatArray]
     weights: FloatArray
-    foot: tuple[Motion, ...]
+    foot: tuple[WallMotion, ...]
     root: FloatArray
 
-    def shapes(self, motions: Sequence[Motion]) -> FloatArray:
+    def shapes(self, motions: Sequence[WallMotion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
         return squares(_rows(self.sound, self.beyond, motions), self.weights)
 
-    def static_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+    def static_flexibility(self, outputs: Sequence[WallMotion], inputs: Sequence[WallMotion]) -> FloatArray:
         """Return static displacements (outputs, inputs) under unit forces, what is left of bolts included [m/N]."""
         more = [solve_lower(self.root, self.sound.static_flexibility(self.foot, side)) for side in (outputs, inputs)]
         return self.sound.static_flexibility(outputs, inputs) + squares(*more)
@@ -109,7 +109,7 @@ def loosened(sound: HousingModes, box: Box, share: float) -> LoosenedModes:
     )
 
 
-def _beyond(sound: HousingModes, foot: Sequence[Motion]) -> tuple[FloatArray, FloatArray]:
+def _beyond(sound: HousingModes, foot: Sequence[WallMotion]) -> tuple[FloatArray, FloatArray]:
     """Return K⁻¹ b - Σ_r φ_r (φ_rᵀ b)/ω_r² of both halves, each (n, 3), their modal masses together 1 kg."""
     found = []
     for h, modes in enumerate(sound.found):
@@ -138,7 +138,7 @@ def _times(root: FloatArray, right: FloatArray) -> FloatArray:
     return squares(np.ascontiguousarray(root.T), right)
 
 
-def _rows(sound: HousingModes, beyond: tuple[FloatArray, FloatArray], motions: Sequence[Motion]) -> FloatArray:
+def _rows(sound: HousingModes, beyond: tuple[FloatArray, FloatArray], motions: Sequence[WallMotion]) -> FloatArray:
     """Return what motions are on the sound modes and beyond them, (m + 3, motions)."""
     more = sum(squares(own, columns(motions, h)) for h, own in enumerate(beyond))
     return np.concatenate([sound.shapes(motions).T, more])

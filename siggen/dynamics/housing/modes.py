@@ -17,7 +17,7 @@ import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.dynamics.housing.modal_sum import modal_sum
-from siggen.dynamics.housing.motion import Motion
+from siggen.dynamics.housing.motion import WallMotion
 from siggen.dynamics.housing.ordered_sums import squares
 
 ALL = slice(None)
@@ -25,7 +25,7 @@ VIBRATING_HZ = 1e6
 """What lies above in a table is a residual vector: it only gives way."""
 
 
-class Modes(Protocol):
+class NaturalModes(Protocol):
     """Natural modes in ascending order; `frequency_hz` (m,). To be derived from."""
 
     frequency_hz: FloatArray
@@ -34,20 +34,20 @@ class Modes(Protocol):
     def vibrating(self) -> int:
         """How many of them may move with the gears."""
 
-    def shapes(self, motions: Sequence[Motion]) -> FloatArray:
+    def shapes(self, motions: Sequence[WallMotion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
 
-    def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+    def flexibility_beyond(self, modes: int, outputs: Sequence[WallMotion], inputs: Sequence[WallMotion]) -> FloatArray:
         """Return what all modes above the first so many give way, (outputs, inputs) [m/N]."""
 
-    def residual_flexibility(self, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+    def residual_flexibility(self, outputs: Sequence[WallMotion], inputs: Sequence[WallMotion]) -> FloatArray:
         """Return what all modes above the last one give way, (outputs, inputs) [m/N]."""
         return self.flexibility_beyond(self.frequency_hz.size, outputs, inputs)
 
     def accelerance(
         self,
-        outputs: Sequence[Motion],
-        inputs: Sequence[Motion],
+        outputs: Sequence[WallMotion],
+        inputs: Sequence[WallMotion],
         frequency_hz: FloatArray,
         damping_ratio: FloatArray,
         which: slice = ALL,
@@ -74,7 +74,7 @@ class Modes(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class TableModes(Modes):
+class TableModes(NaturalModes):
     """Modes from a table: the shapes at a place are its motion, all of them in the first half; nothing lies above."""
 
     frequency_hz: FloatArray
@@ -84,17 +84,17 @@ class TableModes(Modes):
         """How many of them may move with the gears: residual vectors do not."""
         return int((self.frequency_hz < VIBRATING_HZ).sum())
 
-    def shapes(self, motions: Sequence[Motion]) -> FloatArray:
+    def shapes(self, motions: Sequence[WallMotion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2]."""
         return np.array([motion.even for motion in motions]).reshape(len(motions), -1)
 
-    def flexibility_beyond(self, modes: int, outputs: Sequence[Motion], inputs: Sequence[Motion]) -> FloatArray:
+    def flexibility_beyond(self, modes: int, outputs: Sequence[WallMotion], inputs: Sequence[WallMotion]) -> FloatArray:
         """Return what the modes above the first so many give way, (outputs, inputs) [m/N]."""
         left, right = (np.ascontiguousarray(self.shapes(side).T[modes:]) for side in (outputs, inputs))
         omega = 2.0 * pi * self.frequency_hz[modes:, None]
         return squares(left / (omega * omega), right)
 
 
-def table_motion(shape: FloatArray) -> Motion:
+def table_motion(shape: FloatArray) -> WallMotion:
     """Return the motion of a place by its shapes (m,)."""
-    return Motion(shape, np.empty(0))
+    return WallMotion(shape, np.empty(0))

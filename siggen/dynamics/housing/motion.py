@@ -20,15 +20,15 @@ RIM_POINTS = 16
 """Points around a bore; their means are exact for all that varies less than 16 times around it."""
 
 
-class Motion(NamedTuple):
+class WallMotion(NamedTuple):
     """Rows (coordinates,) of both halves: walls that move alike, and against each other."""
 
     even: FloatArray
     odd: FloatArray
 
-    def plus(self, other: Motion, factor: float = 1.0) -> Motion:
+    def plus(self, other: WallMotion, factor: float = 1.0) -> WallMotion:
         """Return this motion and a multiple of another together: a pair of forces, a relative motion."""
-        return Motion(self.even + factor * other.even, self.odd + factor * other.odd)
+        return WallMotion(self.even + factor * other.even, self.odd + factor * other.odd)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class PlatePlace:
     direction: Axis
 
 
-def motion_at(halves: tuple[HalfFunctions, HalfFunctions], place: PlatePlace) -> Motion:
+def motion_at(halves: tuple[HalfFunctions, HalfFunctions], place: PlatePlace) -> WallMotion:
     """Return the motion of a place of the middle surface.
 
     Raises
@@ -55,27 +55,27 @@ def motion_at(halves: tuple[HalfFunctions, HalfFunctions], place: PlatePlace) ->
     if not all(0.0 <= distance <= length for distance, length in zip(at, size, strict=True)):
         raise ValueError(f"{place.plate}: received a place at {at} m; allowed: 0 to {size} m")
     even, odd = (_at(half, place)[0] for half in halves)
-    return Motion(even, odd)
+    return WallMotion(even, odd)
 
 
-def seat_motions(halves: tuple[HalfFunctions, HalfFunctions], seat: Seat, wall: str) -> dict[str, Motion]:
+def seat_motions(halves: tuple[HalfFunctions, HalfFunctions], seat: Seat, wall: str) -> dict[str, WallMotion]:
     """Return the motions of a bearing in its seat in the front or back wall: x, y, z and the slopes along x and y.
 
     The rim of the bore moves the bearing as its mean. Radial motion is that of the bearing's middle, which overhangs:
     its force has a moment about the wall. The force of a slope is a moment: `slope_x` turns about y.
     """
     found = [_seat_rows(half, seat, wall) for half in halves]
-    return {name: Motion(found[0][name], found[1][name]) for name in found[0]}
+    return {name: WallMotion(found[0][name], found[1][name]) for name in found[0]}
 
 
-def bolt_motions(halves: tuple[HalfFunctions, HalfFunctions], bolt: Bolt) -> dict[str, Motion]:
+def bolt_motions(halves: tuple[HalfFunctions, HalfFunctions], bolt: Bolt) -> dict[str, WallMotion]:
     """Return the motions along x, y, z of the floor at a bolt (front half) and at its mirror image."""
     even, odd = (bolt_rows(bolt, half) for half in halves)
     found = {}
     for axis in Axis:
         mirrored = [half.mirror_sign(axis) for half in halves]
-        found[f"front/{axis.name.lower()}"] = Motion(even[axis], odd[axis])
-        found[f"back/{axis.name.lower()}"] = Motion(mirrored[0] * even[axis], mirrored[1] * odd[axis])
+        found[f"front/{axis.name.lower()}"] = WallMotion(even[axis], odd[axis])
+        found[f"back/{axis.name.lower()}"] = WallMotion(mirrored[0] * even[axis], mirrored[1] * odd[axis])
     return found
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.housing.box import SIDES, Axis, plane_axes
-from siggen.dynamics.housing.line_functions import BUBBLE, SLOPE, VALUE, Names, names
+from siggen.dynamics.housing.line_functions import BUBBLE, SLOPE, VALUE, FunctionNames, names
 
 PLATES = tuple(name for name in SIDES if name != "back")
 """Plates that are assembled; the back wall is the front's mirror image."""
@@ -87,7 +87,7 @@ def parity(component: Axis, odd: bool) -> int:
 
 
 def _products(
-    lines: tuple[Names, ...], degrees: Degrees, normal: Axis, end: int, component: Axis, odd: bool
+    lines: tuple[FunctionNames, ...], degrees: Degrees, normal: Axis, end: int, component: Axis, odd: bool
 ) -> Iterator[tuple[int, int, Key, float]]:
     """Yield both functions, the key and the sign of every product of a component on a plate."""
     first, second = plane_axes(normal)
@@ -103,11 +103,11 @@ def _products(
             yield i, j, *key
 
 
-def _functions(line: Names, even: int) -> list[int]:
+def _functions(line: FunctionNames, even: int) -> list[int]:
     return [i for i, own in enumerate(line.parity) if own in (-1, even)]
 
 
-def _serves(lines: tuple[Names, ...], degrees: Degrees, normal: Axis, across: bool, key: Key) -> bool:
+def _serves(lines: tuple[FunctionNames, ...], degrees: Degrees, normal: Axis, across: bool, key: Key) -> bool:
     """Return whether a product is kept: with higher bubbles only where a plate bends or an edge turns."""
     component, functions = key
     kinds = [lines[axis].kind[functions[axis]] for axis in Axis]
@@ -122,7 +122,9 @@ def _serves(lines: tuple[Names, ...], degrees: Degrees, normal: Axis, across: bo
     return ((bends or turns) and within) or max(orders) <= degrees.in_plane
 
 
-def _shared(lines: tuple[Names, ...], component: Axis, functions: list[int], odd: bool) -> tuple[Key, float] | None:
+def _shared(
+    lines: tuple[FunctionNames, ...], component: Axis, functions: list[int], odd: bool
+) -> tuple[Key, float] | None:
     """Return the key under which plates share a product, and its sign; None for a twist at a corner.
 
     Of both ways to write the turning of an edge, the one with the lower component counts.

@@ -9,7 +9,7 @@ from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_law import PairLaw
 
 
-class Part(NamedTuple):
+class LoadPart(NamedTuple):
     """Share of the load of a pair, and the mean of its places [m]."""
 
     share: float
@@ -17,7 +17,7 @@ class Part(NamedTuple):
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def spread(law: PairLaw, position_m: float) -> tuple[Part, Part]:
+def spread(law: PairLaw, position_m: float) -> tuple[LoadPart, LoadPart]:
     """Return the load before and behind the pitch point of a pair whose middle of the face is at a position [m]."""
     scalars, numbers, points = law.scalars, law.numbers, law.places[layout.POINTS]
     along = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M] * scalars[layout.PER_PITCH]
@@ -30,4 +30,4 @@ def spread(law: PairLaw, position_m: float) -> tuple[Part, Part]:
     before = numbers[first] + weight * (numbers[first + 1] - numbers[first])
     first += points
     behind = numbers[first] + weight * (numbers[first + 1] - numbers[first])
-    return Part(share, position_m + before), Part(1.0 - share, position_m + behind)
+    return LoadPart(share, position_m + before), LoadPart(1.0 - share, position_m + behind)

@@ -14,7 +14,7 @@ from siggen.arrays import FloatArray
 from siggen.compiled import entry, njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import Spring
-from siggen.dynamics.mesh.load_spread import Part, spread
+from siggen.dynamics.mesh.load_spread import LoadPart, spread
 from siggen.dynamics.mesh.pair_columns import (
     ARM,
     ASPERITY_SHARE,
@@ -189,7 +189,7 @@ def _rub(law: PairLaw, pairs: FloatArray, slot: int, slots: int, node: FloatArra
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _rub_part(law: PairLaw, pairs: FloatArray, i: int, node: FloatArray, q: int, part: Part) -> None:
+def _rub_part(law: PairLaw, pairs: FloatArray, i: int, node: FloatArray, q: int, part: LoadPart) -> None:
     """Add the friction of the slices on one side of the pitch point; all have the pair's line load."""
     if part.share <= 0.0:
         return

@@ -20,7 +20,7 @@ EXCITED_SHARE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Modes:
+class MotionModes:
     """Undamped modes, ascending; rigid ones have frequency 0.
 
     `frequency_hz` (k,); `shapes` (k, n), mass-normalised, their largest entry positive; `mesh_share` (k,): share of the
@@ -32,7 +32,7 @@ class Modes:
     mesh_share: FloatArray
 
 
-def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float | Sequence[float]) -> Modes:
+def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float | Sequence[float]) -> MotionModes:
     """Return the modes of the structure with a constant stiffness [N/m] of the mesh, or of each of its meshes."""
     of_meshes = np.atleast_1d(np.asarray(mesh_stiffness_n_per_m, dtype=np.float64))
     stiffness = structure.stiffness + mesh_springs(structure, of_meshes)
@@ -48,7 +48,7 @@ def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float | Sequence
     # Mass-normalised, so the strain energy of a mode is half its eigenvalue.
     mesh = sum(k * (shapes @ one.vector) ** 2 for k, one in zip(of_meshes, structure.meshes, strict=True))
     share = np.where(rigid, 0.0, mesh / np.where(rigid, 1.0, values))
-    return Modes(np.sqrt(values) / (2.0 * np.pi), shapes, share)
+    return MotionModes(np.sqrt(values) / (2.0 * np.pi), shapes, share)
 
 
 def _orthonormal(vectors: FloatArray, mass: FloatArray) -> FloatArray:

@@ -36,7 +36,7 @@ HERMITE_DIP = 4.0 / 27.0
 """Largest value of the Hermite functions of the end slopes: how far, times the slopes, a cubic dips below its ends."""
 
 
-class Scheme(NamedTuple):
+class ProductScheme(NamedTuple):
     """Constants of the method for one step length (a named tuple, since compiled code takes no dataclass).
 
     The columns of `transition` and `response` are z_1, then x_1 - x_s and h ẋ_1, then zeros up to a multiple of four.
@@ -65,13 +65,13 @@ class ProductIntegration:
         _advance(self._equations, self._law, self._scheme, pitches, inputs, trajectory)
 
 
-def scheme(equations: Equations, law: MeshLaw, step_s: float) -> Scheme:
+def scheme(equations: Equations, law: MeshLaw, step_s: float) -> ProductScheme:
     """Return the constants of the method for the step length [s]."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
     products = np.array([w * _legendre(t)[:, None] * _hermite(t)[None, :] for t, w in zip(nodes, weights, strict=True)])
     transition, response = _exponentials(equations, law, step_s)
-    return Scheme(
+    return ProductScheme(
         step_s=step_s,
         transition=_with_approach(transition.T, equations.mesh_vector[0], step_s),
         response=_with_approach(response, equations.mesh_vector[0], step_s),
@@ -179,7 +179,7 @@ def _legendre_value(degree: int, t: float) -> float:
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _stiffness_moments(
-    law: MeshLaw, scheme: Scheme, k_ref: float, start: float, end: float, nodal: FloatArray, moments: FloatArray
+    law: MeshLaw, scheme: ProductScheme, k_ref: float, start: float, end: float, nodal: FloatArray, moments: FloatArray
 ) -> None:
     """Write ∫ P_l H_b Δk dτ into `moments` (4, 4) for the step from pinion angle `start` to `end` (in base pitches).
 
@@ -207,7 +207,7 @@ def _stiffness_moments(
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _add_clipped_pair(
-    law: MeshLaw, scheme: Scheme, row: int, place: float, advance: float, moments: FloatArray
+    law: MeshLaw, scheme: ProductScheme, row: int, place: float, advance: float, moments: FloatArray
 ) -> None:
     """Add the moments of a pair that enters or leaves within the step, over the part in which it is in contact."""
     low = max(-place / advance, 0.0)
@@ -221,7 +221,7 @@ def _add_clipped_pair(
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _free_motion(scheme: Scheme, start: FloatArray, free: FloatArray) -> None:
+def _free_motion(scheme: ProductScheme, start: FloatArray, free: FloatArray) -> None:
     """Write the state after one step without input, with its approach, into `free` (columns,), four at a time."""
     for i in range(0, free.size, 4):
         a, b, c, d = 0.0, 0.0, 0.0, 0.0
@@ -236,7 +236,7 @@ def _free_motion(scheme: Scheme, start: FloatArray, free: FloatArray) -> None:
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _end_of_step(
-    scheme: Scheme, moments: FloatArray, size: int, rest: float, x_0: float, v_0: float, state: FloatArray
+    scheme: ProductScheme, moments: FloatArray, size: int, rest: float, x_0: float, v_0: float, state: FloatArray
 ) -> None:
     """Turn the free motion `state` (columns,) into the state after the step; v stands for h ẋ, `rest` for x_s."""
     x_1, v_1 = rest + state[size], state[size + 1]
@@ -283,7 +283,7 @@ def _substeps(
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _add_inputs(scheme: Scheme, start: FloatArray, end: FloatArray, state: FloatArray) -> None:
+def _add_inputs(scheme: ProductScheme, start: FloatArray, end: FloatArray, state: FloatArray) -> None:
     """Add to the motion after one step (columns,) what inputs (m,), linear over the step, contribute."""
     for k in range(start.size):
         for i in range(state.size):
@@ -294,7 +294,7 @@ def _add_inputs(scheme: Scheme, start: FloatArray, end: FloatArray, state: Float
 def _advance(
     equations: Equations,
     law: MeshLaw,
-    scheme: Scheme,
+    scheme: ProductScheme,
     pitches: FloatArray,
     inputs: FloatArray,
     trajectory: FloatArray,

@@ -93,7 +93,7 @@ class Piece(NamedTuple):
     shaft_reading: FloatArray
 
 
-class Stepped(NamedTuple):
+class SteppedStates(NamedTuple):
     """States (steps, 2n) from step `first` on, inputs (steps, m); `apart` (meshes, steps): where no teeth touch."""
 
     first: int
@@ -102,7 +102,7 @@ class Stepped(NamedTuple):
     apart: NDArray[np.bool_] | None
 
 
-class Pieces(Protocol):
+class ResponsePieces(Protocol):
     """Pieces of the named motions, forces and readings, the first one from `before` samples before sample 0."""
 
     @property
@@ -182,7 +182,7 @@ class ResponseStream:
             if piece.acceleration_m_s2.shape[1]:
                 yield piece
 
-    def _count(self, block: Stepped) -> None:
+    def _count(self, block: SteppedStates) -> None:
         first, states = block.first, block.states
         recorded = slice(max(0, -first), max(0, self.samples * self.run.steps_per_sample - first))
         self.run.motion.refuse_outside(states[recorded])
@@ -207,7 +207,7 @@ class BearingForces:
         return forces if self._of_inputs is None else forces + self._of_inputs.take(inputs)
 
 
-def _steps_apart(run: Run, block: Stepped, recorded: slice) -> NDArray[np.int64]:
+def _steps_apart(run: Run, block: SteppedStates, recorded: slice) -> NDArray[np.int64]:
     """Return at how many of the recorded steps of a block no teeth of each mesh touch (meshes,)."""
     if block.apart is None:
         pitches = run.pitches(block.first, len(block.states))
@@ -215,7 +215,7 @@ def _steps_apart(run: Run, block: Stepped, recorded: slice) -> NDArray[np.int64]
     return np.asarray(block.apart[:, recorded].sum(axis=1))
 
 
-def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterator[Stepped]:
+def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterator[SteppedStates]:
     """Yield blocks from step `start` up to without `stop`; their states are valid until the next one is asked for.
 
     Leaves `state` at `stop`.
@@ -236,7 +236,7 @@ def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterat
         if beyond >= 0:
             raise _divergence(run, first + beyond, trajectory[beyond])
         state[:] = trajectory[count]
-        yield Stepped(first, trajectory[:count], inputs[:count], apart)
+        yield SteppedStates(first, trajectory[:count], inputs[:count], apart)
 
 
 def _with_middles(values: FloatArray) -> FloatArray:

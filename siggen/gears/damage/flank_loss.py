@@ -15,7 +15,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.damage.part import NO_TOOTH, Part
 from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, MissingMaterial, MissingTables
 
 
 class FlankLoss(Part, Protocol):
@@ -108,7 +108,7 @@ def turned(part: SomePart, pair: GearPair) -> SomePart:
     return replace(part, gear="pinion", tooth=(part.tooth - 1) % pair.pinion.teeth)  # type: ignore[type-var]
 
 
-def _without(teeth: ToothTables, pair: GearPair, position_m: FloatArray, losses: list[FlankLoss]) -> ToothTables:
+def _without(teeth: MissingTables, pair: GearPair, position_m: FloatArray, losses: list[FlankLoss]) -> MissingTables:
     everywhere = _most(pair, position_m, [one for one in losses if one.tooth == NO_TOOTH])
     profiles, kind, offset = [*(teeth.profile_m + everywhere)], teeth.kind_of_tooth.copy(), teeth.offset_m.copy()
     for tooth in sorted({one.tooth for one in losses} - {NO_TOOTH}):
@@ -120,7 +120,7 @@ def _without(teeth: ToothTables, pair: GearPair, position_m: FloatArray, losses:
             profile = profile + 2.0 * pair.base_pitch_m
         kind[tooth] = len(profiles)
         profiles.append(profile)
-    return ToothTables(np.stack(profiles), kind, offset)
+    return MissingTables(np.stack(profiles), kind, offset)
 
 
 def _most(pair: GearPair, position_m: FloatArray, losses: list[FlankLoss]) -> FloatArray:

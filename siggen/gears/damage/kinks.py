@@ -98,7 +98,7 @@ def roots_between(poly: FloatArray, low: float, high: float, touching: float) ->
     return found[:count].copy()
 
 
-class Ellipse(NamedTuple):
+class PitEllipse(NamedTuple):
     """Height and face coordinate of the centre, semi-axis across and semi-axis along the height [m]."""
 
     mu: float
@@ -108,12 +108,12 @@ class Ellipse(NamedTuple):
 
 
 @njit(cache=True)
-def _outline(row: FloatArray) -> Ellipse:
-    return Ellipse(row[HEIGHT], row[FACE], row[SEMI_FACE], row[SEMI_HEIGHT])
+def _outline(row: FloatArray) -> PitEllipse:
+    return PitEllipse(row[HEIGHT], row[FACE], row[SEMI_FACE], row[SEMI_HEIGHT])
 
 
 @njit(cache=True)
-def _ellipse_points(one: Ellipse, two: Ellipse, points: list[tuple[float, float]]) -> None:
+def _ellipse_points(one: PitEllipse, two: PitEllipse, points: list[tuple[float, float]]) -> None:
     """Append the points where two ellipse outlines cross; in t = (x - mu)/b over their common height range."""
     (mu, w, a, b), (mu2, w2, a2, b2) = one, two
     low, high = max(mu - b, mu2 - b2), min(mu + b, mu2 + b2)
@@ -141,7 +141,7 @@ def _ellipse_points(one: Ellipse, two: Ellipse, points: list[tuple[float, float]
 
 
 @njit(cache=True)
-def _points_at(t: float, one: Ellipse, two: Ellipse, points: list[tuple[float, float]]) -> None:
+def _points_at(t: float, one: PitEllipse, two: PitEllipse, points: list[tuple[float, float]]) -> None:
     """Append the points of a crossing's height where the outlines (nearly) meet; without face coordinate if none do."""
     (mu, w, a, b), (mu2, w2, a2, b2) = one, two
     x = mu + b * t
@@ -159,7 +159,7 @@ def _points_at(t: float, one: Ellipse, two: Ellipse, points: list[tuple[float, f
 
 
 @njit(cache=True)
-def _face_points(ellipse: Ellipse, face_width: float, points: list[tuple[float, float]]) -> None:
+def _face_points(ellipse: PitEllipse, face_width: float, points: list[tuple[float, float]]) -> None:
     """Append the points where an ellipse outline leaves the face."""
     mu, w, a, b = ellipse
     for end in (0.0, face_width):
@@ -183,7 +183,7 @@ def _crossing_points(one: FloatArray, two: FloatArray, points: list[tuple[float,
 
 
 @njit(cache=True)
-def _ellipse_side_points(ellipse: Ellipse, trapezoid: FloatArray, points: list[tuple[float, float]]) -> None:
+def _ellipse_side_points(ellipse: PitEllipse, trapezoid: FloatArray, points: list[tuple[float, float]]) -> None:
     mu, w, a, b = ellipse
     low, high = max(mu - b, trapezoid[LOWEST]), min(mu + b, trapezoid[HIGHEST])
     square = (a / b) ** 2
@@ -202,7 +202,7 @@ def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
         if flat[DEPTH] >= dish[DEPTH]:
             return
         scale = sqrt(1.0 - (flat[DEPTH] / dish[DEPTH]) ** 2)
-        ellipse = Ellipse(dish[HEIGHT], dish[FACE], scale * dish[SEMI_FACE], scale * dish[SEMI_HEIGHT])
+        ellipse = PitEllipse(dish[HEIGHT], dish[FACE], scale * dish[SEMI_FACE], scale * dish[SEMI_HEIGHT])
         mu, w, _, b = ellipse
         level = [(mu - b, w), (mu + b, w)]
         if dish[TRAPEZOID] != 0.0:

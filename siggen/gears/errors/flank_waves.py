@@ -23,7 +23,7 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables, nearest_place_m
+from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables, nearest_place_m
 
 ORDERS = np.arange(1, 31)
 """Cycles of the form over the active flank: down to L/30, where the profile filter of ISO 1328-1 ends."""
@@ -146,8 +146,8 @@ def half_width_m(pair: GearPair, position_m: FloatArray, line_load_n_per_m: floa
     return np.asarray(np.sqrt(4.0 * line_load_n_per_m * radius / (np.pi * modulus)))
 
 
-def _added(teeth: ToothTables, profile: FloatArray) -> ToothTables:
-    return ToothTables(
+def _added(teeth: MissingTables, profile: FloatArray) -> MissingTables:
+    return MissingTables(
         profile_m=teeth.profile_m[teeth.kind_of_tooth] + profile,
         kind_of_tooth=np.arange(len(profile), dtype=np.int32),
         offset_m=teeth.offset_m,

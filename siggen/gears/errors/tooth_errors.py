@@ -22,7 +22,7 @@ from siggen.gears.errors.error_shapes import FLANK_POINTS
 from siggen.gears.errors.gear_errors import GearErrors, eccentric_m
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
 from siggen.uniform_spline import UniformSpline
 
 
@@ -47,12 +47,12 @@ def with_errors(
 
 def _with_errors(
     missing: MissingMaterial,
-    teeth: ToothTables,
+    teeth: MissingTables,
     pair: GearPair,
     which: str,
     errors: GearErrors,
     shares: FaceShares | None,
-) -> ToothTables:
+) -> MissingTables:
     position = np.linspace(missing.start_m, missing.end_m, teeth.profile_m.shape[1])
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
     standing = eccentric_m(pair, which, errors, middle)
@@ -63,7 +63,7 @@ def _with_errors(
     profile = profile - _profiles(pair, which, errors, middle)
     profile += eccentric_m(pair, which, errors, position) - standing
     cosine = float(np.cos(pair.member(which).pressure_angle_rad))
-    return ToothTables(
+    return MissingTables(
         profile_m=teeth.profile_m[teeth.kind_of_tooth] + profile,
         kind_of_tooth=np.arange(len(profile), dtype=np.int32),
         offset_m=teeth.offset_m + cosine * errors.pitch_m + standing[:, 0],

@@ -18,7 +18,7 @@ import numpy as np
 
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
 
 
 def driven_pair(pair: GearPair) -> GearPair:
@@ -44,14 +44,14 @@ def back_flanks(missing: MissingMaterial, pair: GearPair) -> MissingMaterial:
     return MissingMaterial(line - missing.end_m, line - missing.start_m, *mirrored)
 
 
-def _mirrored(missing: MissingMaterial, pair: GearPair, which: str) -> ToothTables:
+def _mirrored(missing: MissingMaterial, pair: GearPair, which: str) -> MissingTables:
     """Return the tables of a gear; tooth k + 1 of the gear takes part in the pair of tooth k."""
     teeth, later, role = (missing.pinion, 0, "gear") if which == "pinion" else (missing.gear, 1, "pinion")
     place = np.linspace(missing.start_m, missing.end_m, teeth.profile_m.shape[1])
     form = teeth.profile_m - touching_gap_m(pair, which, place)
     corner = touching_gap_m(driven_pair(pair), role, pair.line_of_action_m - place[::-1])
     number = np.arange(teeth.kind_of_tooth.size) + later
-    return ToothTables(
+    return MissingTables(
         profile_m=form[:, ::-1] + corner,
         kind_of_tooth=teeth.kind_of_tooth[-number % number.size],
         offset_m=0.0 - teeth.offset_m[number % number.size],

@@ -34,7 +34,7 @@ class TipRelief:
 
 
 @dataclass(frozen=True, slots=True)
-class ToothTables:
+class MissingTables:
     """What the teeth of one gear miss.
 
     `profile_m` (kinds, points) [m] over the positions of the pair, `kind_of_tooth` (z,) its row for each tooth,
@@ -52,8 +52,8 @@ class MissingMaterial:
 
     start_m: float
     end_m: float
-    pinion: ToothTables
-    gear: ToothTables
+    pinion: MissingTables
+    gear: MissingTables
 
 
 @lru_cache(maxsize=4)  # states of a gearbox share them
@@ -112,9 +112,9 @@ def missing_at_m(pair: GearPair, which: str, relief: TipRelief | None, position_
     return np.asarray(profile + relief.amount_m * share**2)
 
 
-def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:
+def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> MissingTables:
     profile, teeth = missing_at_m(pair, which, relief, position_m), pair.member(which).teeth
-    made = ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
+    made = MissingTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
     for array in (made.profile_m, made.kind_of_tooth, made.offset_m):
         array.setflags(write=False)
     return made

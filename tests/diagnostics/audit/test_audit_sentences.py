@@ -12,15 +12,15 @@ from diagnostics.audit.audit_report import Audit
 from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.bank_detections import ChanceLimit, StateChance, gearboxes_needed
 from diagnostics.audit.best_indicator import BestIndicator
-from diagnostics.audit.detectability import Detection
+from diagnostics.audit.detectability import Detectability
 from diagnostics.audit.separability_findings import verdict
 from diagnostics.audit.sham import ShamFound
 from diagnostics.statistics.evaluation import Interval
 
 
-def detection(state: str, length_mm: float, auc: float) -> Detection:
+def detection(state: str, length_mm: float, auc: float) -> Detectability:
     sizes = {"damaged_area_mm2": 20 * length_mm, "damage_profile_length_mm": length_mm}
-    return Detection(state, "spalling", sizes, Interval(auc, auc - 0.05, auc + 0.05), 24)
+    return Detectability(state, "spalling", sizes, Interval(auc, auc - 0.05, auc + 0.05), 24)
 
 
 ENTRIES = [detection("mild", 0.5, 0.5), detection("severe", 1.0, 0.9)]

@@ -10,7 +10,7 @@ import pytest
 from planted_set import Plant, measured
 
 from diagnostics.audit.detectability import (
-    Detection,
+    Detectability,
     dealt,
     detections,
     features,
@@ -107,9 +107,9 @@ def test_paired_differences_and_waveforms_find_the_pulse(repeated: MeasuredSet) 
         assert found["severe"] > 0.95
 
 
-def entry(length: float, auc: float, fault: str = "spalling") -> Detection:
+def entry(length: float, auc: float, fault: str = "spalling") -> Detectability:
     sizes = {"damaged_area_mm2": length, "damage_profile_length_mm": length}
-    return Detection(f"s{length}", fault, sizes, Interval(auc, auc - 0.1, auc + 0.1), 20)
+    return Detectability(f"s{length}", fault, sizes, Interval(auc, auc - 0.1, auc + 0.1), 20)
 
 
 def test_damage_through_the_face_is_a_kind_of_its_own(repeated: MeasuredSet) -> None:

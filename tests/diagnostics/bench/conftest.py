@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from diagnostics.bench.conditions import Tier
-from diagnostics.bench.making import SIMULATED, Wanted, make_benchmark
+from diagnostics.bench.making import SIMULATED, WantedBench, make_benchmark
 from diagnostics.bench.revealing import commit
 from diagnostics.scoring.benchmark import SEALED, Benchmark, open_benchmark
 from tests.shared import shared_folder
@@ -63,7 +63,7 @@ class Made(NamedTuple):
 def make(folder: Path, size: Tier = SMALL, secret: bytes = SECRET, facts: Path | None = None) -> Made:
     """Make a benchmark; without an argument a small one of one test part, in which attackers would see nothing."""
     conditions: dict[str, Any] = {"same": {}, **(OTHERS if size != SMALL else {})}
-    wanted = Wanted("tiny", size, CONFIG, (), conditions, facts)
+    wanted = WantedBench("tiny", size, CONFIG, (), conditions, facts)
     return Made(make_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
 
 

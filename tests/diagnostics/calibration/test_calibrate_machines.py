@@ -13,10 +13,10 @@ import yaml
 from typer.testing import CliRunner
 
 import siggen
-from diagnostics.calibration.healthy_blocks import Block
+from diagnostics.calibration.healthy_blocks import HealthyBlock
 from diagnostics.calibration.likeness import simulated_blocks
 from diagnostics.calibration.order_record import group_levels, line_groups, order_record
-from diagnostics.calibration.rig import Rig, read_rig
+from diagnostics.calibration.rig import CalibratedRig, read_rig
 from diagnostics.cli.app import app
 from siggen.errors import SiggenError
 from tests.command import command
@@ -118,7 +118,7 @@ def said(folder: Path) -> str:
     return calibrate(folder, "mill.yaml", "mine.yaml", "--held-out", folder / "run3.npz", "--compared", 2)
 
 
-def levels_db(block: Block, rig: Rig) -> np.ndarray:
+def levels_db(block: HealthyBlock, rig: CalibratedRig) -> np.ndarray:
     """Return the power of the first lines of each mesh in every channel, (channels, meshes) [dB]."""
     groups = [one for one in line_groups(rig.drive, 0.4 * FS_HZ / 30.0) if one.is_line]
     found = []
@@ -138,11 +138,11 @@ def distances_db(folder: Path) -> tuple[float, float]:
     return float(found[0]), float(found[1])
 
 
-def off_db(folder: Path, rig: Rig, channels: dict[str, str]) -> np.ndarray:
+def off_db(folder: Path, rig: CalibratedRig, channels: dict[str, str]) -> np.ndarray:
     """Return levels of meshes in gearboxes of the result, their median, less those of the recording held out."""
     held_out = np.load(folder / "run3.npz")
     own = {name: held_out[f"{name}_{axis}"] for name, axis in channels.items()}
-    wanted = levels_db(Block("run3", own, FS_HZ, held_out["tacho_s"]), rig)
+    wanted = levels_db(HealthyBlock("run3", own, FS_HZ, held_out["tacho_s"]), rig)
     made = simulated_blocks(folder / "mine.yaml", tuple(channels), GEARBOXES, lambda: None)
     return np.asarray(np.median([levels_db(one, rig) for one in made], axis=0) - wanted)
 

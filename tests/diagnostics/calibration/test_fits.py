@@ -9,7 +9,7 @@ import pytest
 
 from diagnostics.calibration.calibration import path_gains
 from diagnostics.calibration.drivetrain import pair
-from diagnostics.calibration.healthy_blocks import Block, healthy_blocks, jackknife
+from diagnostics.calibration.healthy_blocks import HealthyBlock, healthy_blocks, jackknife
 from diagnostics.calibration.noise_fit import noise_fit, smallest_step
 from diagnostics.calibration.order_record import order_record
 from diagnostics.calibration.own_lines import own_lines
@@ -21,8 +21,8 @@ TIME_S = np.arange(SAMPLES) / FS_HZ
 PAIR = pair(TEETH)
 
 
-def block(signal: np.ndarray, speed_hz: float) -> Block:
-    return Block("run", {"c": signal}, FS_HZ, np.arange(0.0, SAMPLES / FS_HZ, 1.0 / speed_hz))
+def block(signal: np.ndarray, speed_hz: float) -> HealthyBlock:
+    return HealthyBlock("run", {"c": signal}, FS_HZ, np.arange(0.0, SAMPLES / FS_HZ, 1.0 / speed_hz))
 
 
 def test_minimum_phase_gives_back_a_response_that_has_it() -> None:

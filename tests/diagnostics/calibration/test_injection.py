@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import siggen
-from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
+from diagnostics.calibration.healthy_blocks import HealthyBlock, HealthyBlocks
 from diagnostics.calibration.injection import (
-    Difference,
+    DamageEffect,
     injected,
     simulated_differences,
     splits_of,
@@ -48,12 +48,12 @@ def mine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def simulated(mine: Path) -> tuple[Block, Difference]:
+def simulated(mine: Path) -> tuple[HealthyBlock, DamageEffect]:
     """Return a noise-free healthy record as a recording, and the difference of its own gearbox."""
     pulses = np.arange(0.0, 0.6, 1.0 / SPEED_HZ)
     rng = np.random.default_rng(0)
     channels = {name: rng.standard_normal(round(0.6 * FS_HZ)) for name in ("lid_vertical", "side_horizontal")}
-    block = Block("run", channels, FS_HZ, pulses)
+    block = HealthyBlock("run", channels, FS_HZ, pulses)
     return block, next(simulated_differences(mine, block, 0))
 
 
@@ -66,7 +66,7 @@ def test_a_sensor_of_another_kind_is_refused_before_anything_is_simulated(monkey
         next(simulated_differences(Path("mine.yaml"), block, 0))
 
 
-def test_the_difference_is_that_of_one_gearbox_at_one_course(simulated: tuple[Block, Difference]) -> None:
+def test_the_difference_is_that_of_one_gearbox_at_one_course(simulated: tuple[HealthyBlock, DamageEffect]) -> None:
     """It lies under the damaged tooth alone: once per turn, and nothing before the damage is in mesh."""
     _, difference = simulated
     signal = difference.channels["lid_vertical"]
@@ -80,10 +80,10 @@ def test_the_difference_is_that_of_one_gearbox_at_one_course(simulated: tuple[Bl
 
 
 def test_at_the_simulations_own_course_the_recording_plus_difference_is_exact(
-    simulated: tuple[Block, Difference],
+    simulated: tuple[HealthyBlock, DamageEffect],
 ) -> None:
     block, difference = simulated
-    own = Block(
+    own = HealthyBlock(
         "own", {k: v[: block.channels[k].size] for k, v in difference.channels.items()}, FS_HZ, difference.pulses_s
     )
     twice = injected(own, difference, 0)
@@ -94,10 +94,10 @@ def test_at_the_simulations_own_course_the_recording_plus_difference_is_exact(
         assert np.sqrt(np.mean(error**2)) < 0.02 * signal.std()
 
 
-def test_a_faster_recording_gets_the_difference_at_its_own_angle(simulated: tuple[Block, Difference]) -> None:
+def test_a_faster_recording_gets_the_difference_at_its_own_angle(simulated: tuple[HealthyBlock, DamageEffect]) -> None:
     block, difference = simulated
     silent = {name: np.zeros(signal.size) for name, signal in block.channels.items()}
-    faster = Block("fast", silent, FS_HZ, np.arange(0.0, 0.5, 1.0 / (1.05 * SPEED_HZ)))
+    faster = HealthyBlock("fast", silent, FS_HZ, np.arange(0.0, 0.5, 1.0 / (1.05 * SPEED_HZ)))
     found = injected(faster, difference, 0)["lid_vertical"]
     turns = [np.sqrt(np.mean(found[int(a * FS_HZ) : int(b * FS_HZ)] ** 2)) for a, b in pairwise(faster.pulses_s[:9])]
     own = difference.pulses_s
@@ -109,12 +109,12 @@ def test_a_faster_recording_gets_the_difference_at_its_own_angle(simulated: tupl
 
 
 def test_every_row_says_what_it_was_made_of_and_a_recording_is_on_one_side(
-    mine: Path, simulated: tuple[Block, Difference], tmp_path: Path
+    mine: Path, simulated: tuple[HealthyBlock, DamageEffect], tmp_path: Path
 ) -> None:
     block, _ = simulated
     rng = np.random.default_rng(1)
     longer = {name: np.append(rng.permutation(signal), signal[:100]) for name, signal in block.channels.items()}
-    blocks = HealthyBlocks((block, Block("other", longer, FS_HZ, block.pulses_s)), tuple(block.channels), FS_HZ)
+    blocks = HealthyBlocks((block, HealthyBlock("other", longer, FS_HZ, block.pulses_s)), tuple(block.channels), FS_HZ)
     found = siggen.open(write_injected(blocks, mine, 1, tmp_path / "set", 0, lambda: None))
     rows = found.labels(columns=["recording", "origin", "state", "split", "specimen_id", "difference_db"]).to_pylist()
     assert [row["origin"] for row in rows] == ["recorded", "injected"] * 2
@@ -142,7 +142,7 @@ def test_two_recordings_train_and_the_last_is_the_test(recordings: int) -> None:
 
 
 def test_publishing_injected_recordings_is_refused(
-    mine: Path, simulated: tuple[Block, Difference], tmp_path: Path
+    mine: Path, simulated: tuple[HealthyBlock, DamageEffect], tmp_path: Path
 ) -> None:
     block, _ = simulated
     blocks = HealthyBlocks((block,), tuple(block.channels), FS_HZ)

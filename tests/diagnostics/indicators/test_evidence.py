@@ -18,17 +18,17 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.gear_train import PAIR
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
-from diagnostics.signal.shaft_signals import Shaft, record_shafts
+from diagnostics.signal.shaft_signals import SignalShaft, record_shafts
 
 TEETH, PER_TOOTH, FS_HZ = (18, 47), 128, 25_600.0
 Z, PER_TURN = TEETH[0], TEETH[0] * PER_TOOTH
 TURNS = TEETH[1]
 ANGLE = 2 * np.pi * np.arange(PER_TURN) / PER_TURN
 SETTINGS = IndicatorSettings()
-PINION = Shaft("pinion", Z, 1, np.ones(6, dtype=bool), "")
+PINION = SignalShaft("pinion", Z, 1, np.ones(6, dtype=bool), "")
 TAKEN = taken_of(RECORDED.word)
 """Indicators of accelerations; those of angles: test_angle_indicators.py."""
-NO_GEAR = Shaft("gear", TEETH[1], 0, np.zeros(6, dtype=bool), "", weighted=True)
+NO_GEAR = SignalShaft("gear", TEETH[1], 0, np.zeros(6, dtype=bool), "", weighted=True)
 
 
 def tone(order: int, amplitude: float = 1.0) -> np.ndarray:

@@ -10,7 +10,7 @@ import pytest
 from diagnostics.indicators.record import RecordValues, record_values
 from diagnostics.indicators.registry import columns, indicator_columns, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.records.gear_train import PAIR, Mesh, MeshNames, gear_names, meshes_of, with_teeth
+from diagnostics.records.gear_train import PAIR, GearMesh, MeshNames, gear_names, meshes_of, with_teeth
 from diagnostics.signal.order_domain import angle_grid, shaft_grid
 from siggen import load_config
 from siggen.columns.drivetrain import GearTrain
@@ -55,8 +55,8 @@ def three() -> GearTrain:
 
 def test_a_gear_train_has_exact_turns_and_the_gears_that_share_a_shaft() -> None:
     first, slow, last = meshes_of(three())
-    assert first == Mesh(MeshNames("fast", ("pinion", "gear")), (18, 47), Fraction(1), 0, 17)
-    assert slow == Mesh(MeshNames("slow", ("slow_pinion", "slow_gear")), (17, 52), Fraction(18, 47), 47, 17)
+    assert first == GearMesh(MeshNames("fast", ("pinion", "gear")), (18, 47), Fraction(1), 0, 17)
+    assert slow == GearMesh(MeshNames("slow", ("slow_pinion", "slow_gear")), (17, 52), Fraction(18, 47), 47, 17)
     assert last.names == MeshNames("last_one", ("last_one_pinion", "last_one_gear"))
     assert (last.turns, last.before, last.behind) == (Fraction(18 * 17, 47 * 52), 52, 0)
 

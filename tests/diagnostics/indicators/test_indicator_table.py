@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from diagnostics.indicators.history import central_moments, dominant_harmonic, moment_over_history
-from diagnostics.indicators.own_indicator import Gears, OwnIndicator, own_values, register, unregister
+from diagnostics.indicators.own_indicator import GearFacts, OwnIndicator, own_values, register, unregister
 from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
 from diagnostics.indicators.record import record_result, record_values
 from diagnostics.indicators.registry import ALL, BY_NAME, indicator_columns, taken_of
@@ -129,7 +129,7 @@ def test_the_arrow_table_has_labels_values_and_settings(table: IndicatorTable) -
     assert b"samples_per_tooth" in arrow.schema.metadata[b"diagnostics.indicators"]
 
 
-def peak(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+def peak(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
     return float(np.abs(signal).max()) * gears.teeth_pinion * tacho_s.size
 
 
@@ -145,7 +145,7 @@ def test_own_indicator_stands_beside_the_others(small: Any) -> None:
     assert column(found, "other__bearing_horizontal")[0] == pytest.approx(expected)
 
 
-def broken(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+def broken(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
     return float(signal[10**9])
 
 
@@ -169,7 +169,7 @@ def test_function_that_other_processes_cannot_find_is_refused_before_any_starts(
 
 
 def test_own_indicator_cannot_change_what_the_next_one_sees(small: Any) -> None:
-    def greedy(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+    def greedy(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
         signal[:], tacho_s[:] = 0.0, 0.0
         return 0.0
 

@@ -10,10 +10,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnostics.indicators.own_indicator import Gears, OwnIndicator, load_indicator, register, registered, unregister
+from diagnostics.indicators.own_indicator import (
+    GearFacts,
+    OwnIndicator,
+    load_indicator,
+    register,
+    registered,
+    unregister,
+)
 from siggen.errors import UsageError
 
-GEARS = Gears(18, 47, 12_800.0, 30.0, 60.0)
+GEARS = GearFacts(18, 47, 12_800.0, 30.0, 60.0)
 
 
 @pytest.mark.parametrize(
@@ -105,12 +112,12 @@ def test_names_that_a_column_cannot_start_with_are_refused(name: str) -> None:
         register(name)
 
 
-def level(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+def level(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
     return 1.0
 
 
 def test_a_registered_name_belongs_to_one_function_until_it_is_given_back() -> None:
-    def other(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+    def other(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
         return 2.0
 
     register("mine")(level)

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.rig.bearings import BALLS, Bearing
+from siggen.rig.bearings import BALLS, BearingSize
 
 BEARING = BallBearing(9, 7.94e-3, 39.04e-3)
 
@@ -60,7 +60,7 @@ def test_without_clearance_the_largest_ball_load_is_that_of_stribeck_at_any_load
 
 
 def test_the_deflection_is_that_of_the_catalogues_formula_of_a_whole_bearing() -> None:
-    whole = Bearing(bore_mm=25.0, height_mm=7.94 / 0.3, width_mm=15.0)
+    whole = BearingSize(bore_mm=25.0, height_mm=7.94 / 0.3, width_mm=15.0)
     slope = whole.stiffness_n_per_m(600.0)
     step = 1.0
     ours = 2.0 * step / (BEARING.deflection_m(600.0 + step) - BEARING.deflection_m(600.0 - step))

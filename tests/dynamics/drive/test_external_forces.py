@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.drive.excitation import Excitation, Source
+from siggen.dynamics.drive.excitation import Excitation, InputSource
 from siggen.dynamics.drive.external_forces import (
     Unbalance,
     bearing_direction,
@@ -36,7 +36,7 @@ def single_mass(stage: GearStage) -> Structure:
     return replace(structure, meshes=(replace(structure.mesh, vector=rotations),))
 
 
-def respond(structure: Structure, tables: MeshTables, drive: Drive, *sources: Source, samples: int) -> Response:
+def respond(structure: Structure, tables: MeshTables, drive: Drive, *sources: InputSource, samples: int) -> Response:
     excitation = Excitation(sources)
     motion = LinearMotion(
         structure, tables, torque_nm=60.0, mesh_damping_ratio=0.07, backlash_m=80e-6, step_s=1.0 / (4 * FS),

@@ -7,7 +7,7 @@ from dataclasses import replace
 from siggen.dynamics.housing.box import Bolt, Box, Material, Seat, Thicknesses
 from siggen.dynamics.housing.half_functions import HalfFunctions
 from siggen.dynamics.housing.housing_modes import degrees
-from siggen.dynamics.housing.motion import Motion, seat_motions
+from siggen.dynamics.housing.motion import WallMotion, seat_motions
 
 IRON = Material(1.1e11, 0.26, 7200.0)
 STEEL = Material(2.06e11, 0.3, 7850.0)
@@ -26,7 +26,7 @@ def halves_of(box: Box) -> tuple[HalfFunctions, HalfFunctions]:
     return HalfFunctions(box.size_m, own, False), HalfFunctions(box.size_m, own, True)
 
 
-def box_motions(box: Box, halves: tuple[HalfFunctions, HalfFunctions]) -> dict[str, Motion]:
+def box_motions(box: Box, halves: tuple[HalfFunctions, HalfFunctions]) -> dict[str, WallMotion]:
     """Return the motions of all seats as shaft/wall/direction."""
     return {
         f"{shaft}/{wall}/{name}": motion

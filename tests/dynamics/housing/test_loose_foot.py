@@ -12,7 +12,7 @@ from siggen.dynamics.housing.box import Axis
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.housing_modes import HousingModes, housing_modes
 from siggen.dynamics.housing.loose_foot import LoosenedModes, loosened, springs
-from siggen.dynamics.housing.motion import Motion, PlatePlace, bolt_motions, motion_at
+from siggen.dynamics.housing.motion import PlatePlace, WallMotion, bolt_motions, motion_at
 from tests.dynamics.housing.boxes import IRON, box_motions, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
 from tests.reference.housing.solid_box import solid_box
@@ -41,18 +41,18 @@ class Joint:
         squared = eigh(self.stiffness, self.mass, eigvals_only=True, subset_by_index=(0, count - 1))
         return np.sqrt(squared) / (2.0 * np.pi)
 
-    def static(self, outputs: list[Motion], inputs: list[Motion]) -> np.ndarray:
+    def static(self, outputs: list[WallMotion], inputs: list[WallMotion]) -> np.ndarray:
         left, right = (np.array([np.concatenate(motion) for motion in side]) for side in (outputs, inputs))
         return left @ cho_solve(cho_factor(self.stiffness), right.T)
 
-    def accelerance(self, output: Motion, force: Motion, hz: np.ndarray) -> np.ndarray:
+    def accelerance(self, output: WallMotion, force: WallMotion, hz: np.ndarray) -> np.ndarray:
         """Return it by a direct solution at each frequency, undamped."""
         row, load = np.concatenate(output), np.concatenate(force)
         omegas = 2.0 * np.pi * hz
         return np.array([-w * w * row @ np.linalg.solve(self.stiffness - w * w * self.mass, load) for w in omegas])
 
 
-def seen(modes: HousingModes | LoosenedModes) -> list[Motion]:
+def seen(modes: HousingModes | LoosenedModes) -> list[WallMotion]:
     place = PlatePlace("lid", 0.6 * BOX.size_m[0], 0.3 * BOX.size_m[2], Axis.Y)
     motions = box_motions(BOX, modes.halves)
     return [motions["gear/front/y"], motions["pinion/back/x"], motion_at(modes.halves, place)]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.drive.drive import Drive, Turning
-from siggen.dynamics.drive.excitation import Excitation, Source
+from siggen.dynamics.drive.excitation import Excitation, InputSource
 from siggen.dynamics.drive.external_forces import bearing_direction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
@@ -21,7 +21,7 @@ FS = 51200.0
 MOTIONS = ("pinion_bearing/vertical", "casing_lid/vertical", "gear_bearing/horizontal")
 
 
-class HarmonicForce(Source):
+class HarmonicForce(InputSource):
     """A force that is a harmonic of the pinion's rotation."""
 
     def __init__(self, direction: np.ndarray, amplitude_n: float, order: float) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
 
 
 def unloaded_transmission_error_m(pair: GearPair, missing: MissingMaterial, pitches: FloatArray) -> FloatArray:
@@ -34,7 +34,7 @@ def unloaded_transmission_error_m(pair: GearPair, missing: MissingMaterial, pitc
 
 
 def _missing(
-    missing: MissingMaterial, teeth: ToothTables, pair: GearPair, number: NDArray[np.int64], place: FloatArray
+    missing: MissingMaterial, teeth: MissingTables, pair: GearPair, number: NDArray[np.int64], place: FloatArray
 ) -> FloatArray:
     """Return what one gear's tooth of every pair misses (k,), `place` base pitches after entering contact [m]."""
     tooth = number % teeth.kind_of_tooth.size
