@@ -84,8 +84,7 @@ def _outside_tolerances(mesh: PossibleMesh) -> Iterator[Problem]:
         for which in members:
             for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which, pair.helix_rad):
                 received = f"tolerances for a {mesh.name.gear(which).word} with {problem.name} {problem.received}"
-                at = "" if isinstance(pair, InternalPair) else mesh.at
-                yield Problem(f"{at}manufacture", received, f"{problem.allowed}; or null")
+                yield Problem("manufacture", received, f"{problem.allowed}; or null")
 
 
 def _coupling_problems(mesh: PossibleMesh, gearbox: PossibleGearbox) -> Iterator[Problem]:

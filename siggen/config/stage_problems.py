@@ -48,7 +48,7 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
     for index, stage in enumerate(sections["stages"]):
         for key in ("bearing", "eccentricity_um"):
             if (value := getattr(stage.gear, key)) != RotorSection.model_fields[key].default:
-                received = received_text(value)
+                received = received_text(value) if isinstance(value, float) else "a section"
                 yield Problem(f"stages.{index}.gear.{key}", received, "allowed: none on a shaft behind the second")
     if "gears" in sections:
         yield from _of_gears(sections["gears"], sections["stages"])

@@ -45,6 +45,9 @@ class Fault(Section):
     acts: ClassVar[str] = ""
     """A sentence of the card on how it acts, where it is anything else."""
 
+    one_flank: ClassVar[bool] = False
+    """Whether each of its gears is a single one, never either of a mesh."""
+
     needs_bearings: ClassVar[bool] = False
     """Whether it acts on balls of bearings, which a planetary set has not."""
 
@@ -116,6 +119,11 @@ class Fault(Section):
     def hit_gear(self) -> str:
         """The gear that it is on, as the file calls it; empty for none."""
         return str(getattr(self, "gear", ""))
+
+    @property
+    def hit_gears(self) -> tuple[str, ...]:
+        """All gears that it names."""
+        return (self.hit_gear,)
 
     def with_gears(self, name: Callable[[str], str]) -> Fault:
         """Return the same on a gear of another name."""

@@ -49,6 +49,7 @@ class ListedPits(Fault):
 
     words: ClassVar[tuple[str, ...]] = ("pitting", "spalling")
     nouns: ClassVar[str] = "pits and spalls"
+    one_flank: ClassVar[bool] = True
 
     kind: Literal["list"] = "list"
     height_reading: HeightReading = Field(default="axial", description=READING)
@@ -74,10 +75,11 @@ class ListedPits(Fault):
     @property
     def hit_gear(self) -> str:
         """The gear of the first entry: all are in one mesh."""
-        return self._gears[0]
+        return self.hit_gears[0]
 
     @property
-    def _gears(self) -> tuple[str, ...]:
+    def hit_gears(self) -> tuple[str, ...]:
+        """Those of all entries."""
         return (*(one.gear for one in self.pits), *(one.gear for one in self.outlines))
 
     def with_gears(self, name: Callable[[str], str]) -> ListedPits:

@@ -19,7 +19,7 @@ from siggen.gears.damage.part import Part, Parts
 from siggen.gears.damage.tooth_damage import goes_through
 from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.names import Names
+from siggen.names import EITHER, Names
 
 LoadsAtRest: TypeAlias = Callable[[float], LoadAtRest]
 """Force of all pairs [N] -> how the teeth, without errors, share it."""
@@ -53,13 +53,17 @@ def sections_on(state: StateSection, mesh: str, names: Names) -> tuple[Fault, ..
 
 
 def on_mesh(damage: Fault, mesh: str, names: Names) -> Fault | None:
-    """Return damage with gears called pinion and gear; None of another mesh. What is on no gear is on the first."""
+    """Return damage with gears called pinion and gear; None of another mesh. What is on no gear is on the first.
+
+    None too where it names what is no gear, which is refused with its path elsewhere.
+    """
     flanks = {"": ("", ""), **names.flanks}
     if damage.needs_bearings:
         seats = {word: seat for seat, word in names.bearings.items()}
         damage = damage.model_copy(update={"bearing": seats.get(damage.position, damage.position)})
-    here = damage.hit_gear in flanks and flanks[damage.hit_gear][0] == mesh
-    return damage.with_gears(lambda gear: flanks.get(gear, ("", gear))[1]) if here else None
+    hit = [flanks.get(gear, (None, "")) for gear in damage.hit_gears]
+    here = all(name == mesh and not (damage.one_flank and role == EITHER) for name, role in hit)
+    return damage.with_gears(lambda gear: flanks[gear][1]) if here else None
 
 
 @dataclass(frozen=True, slots=True)

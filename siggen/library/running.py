@@ -12,10 +12,12 @@ import numpy as np
 from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.config import Config
+from siggen.config.config import rated_nm
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
 from siggen.config.stage_problems import most_teeth_per_turn
 from siggen.errors import SolverFailure
 from siggen.gearbox.draw import draw_specimen
+from siggen.keys.number import bounds
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.gearbox import Case, Gearbox, Point
 from siggen.library.record import LineOrders, Record
@@ -159,7 +161,11 @@ def _config_of(
     harmonics = min(carried_mesh_harmonics(rate, teeth, highest_hz), base.mesh_harmonics)
     changes: dict[str, object] = {"fs_hz": rate, "duration_s": samples / rate, "mesh_harmonics": harmonics}
     if isinstance(point, Point):
-        changes["operating_points"] = [{"speed_hz": point.speed_hz, "torque_nm": point.torque_nm}]
+        points = [point]
+        if bounds(base.variation.speed.slip)[1] > 0.0 and base.dynamics.rated_torque_nm is None:
+            # never simulated: a motor slips by the rated torque, which is the largest of the file
+            points.append(Point(point.speed_hz, rated_nm(base.dynamics, base.operating_points)))
+        changes["operating_points"] = [{"speed_hz": one.speed_hz, "torque_nm": one.torque_nm} for one in points]
     if truth:
         if not isinstance(truth, Sequence):
             raise refused("truth", repr(truth), "names such as mesh_force_n, or all")

@@ -117,9 +117,9 @@ class NoiseStrength:
         }
         time_ms = at(LEVEL_TIME_MS, draws.level("noise_spectrum.modulation.level_time_ms", rng))
         self._phasors = []
-        for shaft, order in (("pinion", 1.0), ("gear", gear_order)):
+        for shaft, depth, order in (("pinion", "driver_depth", 1.0), ("gear", "driven_depth", gear_order)):
             uniforms = [draws.specimen(f"noise_spectrum.modulation.{shaft}.{k}") for k in range(SHAFT_LINES)]
-            self._phasors.append((order, shaft_phasors(numbers[f"{shaft}_depth"], 2.0 * pi * np.array(uniforms))))
+            self._phasors.append((order, shaft_phasors(numbers[depth], 2.0 * pi * np.array(uniforms))))
         self._level = LevelCourse(numbers["level_std"], 1e-3 * time_ms * fs_hz, rng)
 
     def take(self, angle_rad: FloatArray) -> FloatArray:

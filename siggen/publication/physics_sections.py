@@ -80,7 +80,7 @@ def _numbers(path: str, section: Section) -> Iterator[_Row]:
         value = getattr(section, name)
         below = f"{path}.{name}" if path else name
         items = value if isinstance(value, tuple) and value and all(isinstance(item, Section) for item in value) else ()
-        if (name in NOT_NUMBERS and not path) or name == section.key_field:
+        if (name in NOT_NUMBERS and not path) or name == section.key_field or field.exclude:
             continue
         if items:
             for place, item in enumerate(items):

@@ -39,11 +39,11 @@ class RecordedMachine:
             return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
 
 
-def machines(gearbox: Specimen) -> Callable[[int], RecordedMachine]:
-    """Return state -> the machine of a gearbox in that state; the healthy one is kept, and the last changed one."""
+def machines(gearbox: Specimen) -> Callable[[int | None], RecordedMachine]:
+    """Return state -> the machine of a gearbox in that state; that of states that change nothing (None) is kept."""
     shared = lru_cache(maxsize=1)(lambda: _machine(lambda: gearbox))
     changed = lru_cache(maxsize=1)(lambda state: _machine(partial(gearbox.in_state, state)))
-    return lambda state: shared() if gearbox.states[state].changed is None else changed(state)
+    return lambda state: shared() if state is None or gearbox.states[state].changed is None else changed(state)
 
 
 def _machine(drawn: Callable[[], Specimen]) -> RecordedMachine:

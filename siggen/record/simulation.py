@@ -194,7 +194,7 @@ def simulate_specimen(gearbox: Specimen, records: Sequence[PlannedRecord]) -> It
     for record in records:
         try:
             drawn = gearbox.states[record.state_id]
-            machine = loaded(0 if drawn.changed is None else record.state_id, record.operating_point_id)
+            machine = loaded(None if drawn.changed is None else record.state_id, record.operating_point_id)
             made = simulated(machine.specimen, machine.instrument, state_of(record.state_id), record)
             labels = {**made.labels, **machine.labels, **{one.name: value for one, value in drawn.labels.items()}}
             labels |= {"faulty_gear": gearbox.names.gear(str(labels["faulty_gear"]))}

@@ -27,7 +27,7 @@ class ForceWasher(SensorBase):
     kind: Literal["bearing_force"] = Field(description="force of a shaft's bearings on the housing")
     place: Annotated[str, AT_BEARINGS] = Field(
         default="pinion_bearing",
-        description="whose bearings, NAME_bearing: of the shaft of NAME.gear",
+        description="whose bearings; of a machine, SHAFT_bearing",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="what it measures, one channel each"

@@ -76,7 +76,11 @@ def simulated(config: Config, record_ids: Sequence[int]) -> Iterator[SimulatedRe
 def damage_rows(config: Config, record_ids: Sequence[int]) -> Iterator[dict[str, object]]:
     """Return the rows of damage of records of one gearbox."""
     records = [planned_record(config, i) for i in record_ids]
-    return rows.damage_rows(draw_specimen(config, records[0].specimen_id), records)
+    try:
+        gearbox = draw_specimen(config, records[0].specimen_id)
+    except ValueError:  # its records are told as failures
+        return iter(())
+    return rows.damage_rows(gearbox, records)
 
 
 def life_rows(config: Config, specimen_id: int) -> dict[str, list[lives.Row]]:
@@ -86,8 +90,11 @@ def life_rows(config: Config, specimen_id: int) -> dict[str, list[lives.Row]]:
 
 
 def damage_sizes(config: Config, specimen_id: int) -> dict[str, Mapping[str, object]]:
-    """Return the sizes of damage of the states of a gearbox."""
-    return sizes.damage_sizes(draw_specimen(config, specimen_id))
+    """Return the sizes of damage of the states of a gearbox; none of one that cannot be drawn."""
+    try:
+        return sizes.damage_sizes(draw_specimen(config, specimen_id))
+    except ValueError:
+        return {}
 
 
 def stored_quantities(config: Config) -> tuple[Column, ...]:

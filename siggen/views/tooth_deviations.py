@@ -42,8 +42,9 @@ def gear_charts(specimen: Specimen, state: str | None = None, mesh: int = 0) -> 
     names = [one.name for one in specimen.states]
     if state is not None and state not in names:
         raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}{nearest(state, names)}")
-    teeth = specimen.meshes[mesh].teeth
-    errors = teeth.errors(teeth.drawn_for(0 if state is None else names.index(state)))
+    number = 0 if state is None else names.index(state)
+    teeth = specimen.in_state(number).meshes[mesh].teeth
+    errors = teeth.errors(teeth.drawn_for(number))
     if errors is None:
         raise UsageError("gears: received perfect ones; allowed: gears with errors, --set manufacture.accuracy_class=6")
     driver, driven = specimen.names.meshes[mesh].gears

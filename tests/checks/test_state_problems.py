@@ -42,3 +42,15 @@ def test_gears_that_are_drawn_for_each_state_cannot_be_the_healthy_ones() -> Non
     said = refused({"dynamics.backlash_um": 90}, manufacture={"accuracy_class": 5, "draw": "state"})
     assert "states.changed.changes: " in said
     assert "draw: specimen" in said
+
+
+@pytest.mark.parametrize("gear", ["either", "foo"])
+@pytest.mark.parametrize("place", [0, 1])
+def test_a_listed_pit_on_no_single_gear_is_told_with_its_entry(gear: str, place: int) -> None:
+    pit = {"face_mm": 3.0, "semi_axis_face_mm": 0.5, "semi_axis_profile_mm": 0.4, "depth_mm": 0.1}
+    pits = [{**pit, "gear": "pinion"}, {**pit, "gear": "pinion"}]
+    pits[place]["gear"] = gear
+    with pytest.raises(
+        ConfigError, match=rf"states\.listed\.damage\.pits\.{place}\.gear: received '{gear}'; allowed: "
+    ):
+        load_config({"extends": "quickstart", "states": {"listed": {"damage": {"kind": "list", "pits": pits}}}})

@@ -195,3 +195,14 @@ def test_channels_and_harmonics_that_are_not_there_are_refused(record: siggen.Re
         record.plot("lid")
     with pytest.raises(UsageError, match="around: received 70; allowed: 1 to 6"):
         record.spectrum().plot(around=70)
+
+
+def test_a_motor_slips_by_the_torque_of_its_gearbox_at_any_torque_that_is_asked_for() -> None:
+    points = [{"speed_hz": 20.0, "torque_nm": torque} for torque in (10.0, 60.0)]
+    raw = {"extends": "quickstart", "duration_s": 0.3, "operating_points": points}
+    gearbox = siggen.draw(siggen.load_config({**raw, "variation": {"speed": {"slip": 0.05}, "torque": {}}}))
+    of_set = siggen.run(gearbox, point=0)
+    asked = siggen.run(gearbox, speed_hz=20.0, torque_nm=10.0)
+    expected = 20.0 * (1.0 - 0.05 * 10.0 / 60.0)
+    for found in (of_set, asked):
+        assert 1.0 / np.diff(found.tacho_s).mean() == pytest.approx(expected, rel=2e-3)

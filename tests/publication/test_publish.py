@@ -172,3 +172,9 @@ def test_class_labels_name_the_gears_of_every_mesh_and_of_planetary_sets() -> No
     named = [class_names(load_config(raw))["faulty_gear"] for raw in (staged(), planets())]
     assert named[0] == ("none", "pinion", "gear", "slow_pinion", "slow_gear", "several")
     assert named[1] == ("none", "sun", "planet", "ring", "several")
+
+
+def test_every_number_of_a_machine_is_assumed_once() -> None:
+    rows = assumed_numbers_section(siggen.load_config("two_stage")).splitlines()
+    keys = [row.split("|")[1].strip() for row in rows if row.startswith("|")]
+    assert len(keys) == len(set(keys))

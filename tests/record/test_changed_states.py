@@ -131,3 +131,11 @@ def test_what_may_not_change_is_refused_by_its_key(path: str, change: object, sa
     text = str(refused.value)
     assert f"states.hot.changes{'' if 'columns' in said else f'.{path}'}" in text
     assert said in text
+
+
+def test_what_the_first_state_changes_stays_with_it_in_any_order_of_states() -> None:
+    quiet = changed({"sensors.bearing.gain": {"times": 0.25}})
+    raw = {"states": by_name([quiet, {"name": "healthy"}])}
+    first, second = record(config(**raw), 1), record(config({"name": "again"}), 1)
+    assert first.labels["changed_keys"] == []
+    assert signals(first) == signals(second)
