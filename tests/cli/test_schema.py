@@ -52,14 +52,14 @@ def test_every_key_of_every_section_is_described(schema):
 
 
 def test_a_number_may_be_a_constant_in_range_or_a_distribution(schema):
-    width = schema["$defs"]["Gears"]["properties"]["face_width_mm"]
+    width = schema["$defs"]["GearsSection"]["properties"]["face_width_mm"]
     number, *ranges = width["anyOf"]
     assert number == {"exclusiveMinimum": 0, "type": "number"}
     assert [resolved(schema, choice)["title"] for choice in ranges] == ["Uniform", "LogUniform", "Normal", "Choice"]
 
 
 def test_words_beside_numbers_are_shown(schema):
-    assert {"type": "null"} in schema["$defs"]["Gears"]["properties"]["centre_distance_mm"]["anyOf"]
+    assert {"type": "null"} in schema["$defs"]["GearsSection"]["properties"]["centre_distance_mm"]["anyOf"]
     height = schema["$defs"]["LayeredPits"]["properties"]["first_height_mm"]
     assert any(choice.get("const") == "pitch" for choice in height["anyOf"])
 
@@ -124,7 +124,7 @@ def test_expert_keys_are_those_that_no_shipped_file_sets(schema):
     needed = {key for section in sections for key in section.get("required", ())}
     needed |= {"kind", "extends"}
     assert {key for _, key in marked} - used - needed <= experts
-    assert not marked["Mesh", "damage"]
+    assert not marked["MeshSection", "damage"]
     assert not marked["Config", "seed"]
     assert not marked["Stiffness", "beam"]
     assert {

@@ -78,4 +78,4 @@ def test_a_run_compiles_before_its_first_record(short: Config, monkeypatch: pyte
     storage = LocalFolder(tmp_path / "set")
     with storage.writing(), Interruption() as interruption:
         set_run(short, storage, Noting(1), None, interruption).finish()
-    assert [kind.__name__ for kind in mapped] == ["CompilationPart", "CompilationPart", "Stretch"]
+    assert [kind.__name__ for kind in mapped] == ["CompilationPart", "CompilationPart", "ChunkStretch"]
