@@ -94,7 +94,7 @@ def test_a_damage_with_nothing_removed_is_healthy_to_the_byte(kind: str, records
 
 @pytest.mark.parametrize("kind", DAMAGES)
 def test_a_vanishing_damage_is_healthy_in_the_limit(kind: str, gearbox: siggen.Gearbox, records: Records) -> None:
-    """Sizes a thousandth: the change falls to less than their square root, far less than contacts of points ask for."""
+    """Sizes a thousandth: the change falls at least as their square root; a halo or a sink of fixed size would not."""
     healthy, tiny, full = (
         signals(records[what, kind], gearbox)["pinion_vertical"] for what in ("none", "tiny", "full")
     )
