@@ -1,4 +1,4 @@
-"""What somebody writes who has just installed siggen; the tests run it in a fresh process and check its types."""
+"""What somebody writes who has just installed siggen; a test runs it, and mypy checks its types."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A page as a reader follows it: its blocks in order, each a process of its own in one folder, from what is installed.
+"""A page as a reader follows it: its blocks in order, in one folder, from what is installed.
+
+Commands have processes of their own, and so have scripts that take long or other packages.
 
 The folder holds what a checkout holds beside the packages; so `import siggen` finds the installed one.
 """
@@ -12,9 +14,11 @@ import shutil
 import signal
 import subprocess
 import sys
+import traceback
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from tests.command import script
 from tests.pages.blocks import ROOT, Block
 from tests.pages.printed import difference
 
@@ -49,12 +53,13 @@ def run_block(block: Block, folder: Path, environment: Mapping[str, str]) -> str
         (folder / block.title).write_text(block.source, encoding="utf-8")
         return None
     if block.language == "python":
-        script = folder / f"block_{block.line}.py"
-        script.write_text(block.source, encoding="utf-8")
-        command = ["python", script.name]
+        file = folder / f"block_{block.line}.py"
+        file.write_text(block.source, encoding="utf-8")
+        fresh = block.is_slow or block.marked("needs")
+        ended = _ended(["python", file.name], folder, environment) if fresh else _ended_here(file)
     else:
-        command = ["bash", "-c", SHELL + block.source]
-    code, printed, said = _ended(command, folder, environment)
+        ended = _ended(["bash", "-c", SHELL + block.source], folder, environment)
+    code, printed, said = ended
     wanted = [int(text) for text in block.marked("exit")] or [0]
     if code not in wanted:
         return f"exit code {code}\n{printed[-2000:]}\n{said[-4000:]}"
@@ -68,6 +73,15 @@ def failing(blocks: Sequence[Block], folder: Path, environment: Mapping[str, str
         if wrong is not None:
             return f"the block at line {block.line}:\n{block.source}\n{wrong}"
     return ""
+
+
+def _ended_here(file: Path) -> tuple[int, str, str]:
+    """Return code, output and messages of a script in this process."""
+    with contextlib.chdir(file.parent):
+        try:
+            return 0, script(file), ""
+        except Exception:
+            return 1, "", traceback.format_exc()
 
 
 def _ended(command: list[str], folder: Path, environment: Mapping[str, str]) -> tuple[int, str, str]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Container, Iterable
-from contextlib import chdir
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,13 +19,11 @@ from _pytest.mark import ParameterSet
 from scipy.io import wavfile
 
 from diagnostics.scoring.benchmark import COMMITMENT, open_benchmark
-from tests.command import Ended, command
 from tests.diagnostics.bench.conftest import CONFIG, committed_benchmark
 from tests.publication.conftest import FACTS
 from tests.shared import shared_folder
-from tests.walks.walking import FS_HZ, recorded
+from tests.walks.walking import FS_HZ, recorded, run
 
-PACKAGES = {"siggen": "siggen", "siggen-diagnostics": "diagnostics"}
 DESCRIBED = "--unit g --teeth 18,47 --speed-range 28,32"
 
 
@@ -93,13 +90,6 @@ LINES = {
 def lines(names: Iterable[str], quick: Container[str]) -> list[ParameterSet]:
     """Return names of commands as parameters of a test; those that are not quick are marked slow."""
     return [pytest.param(name, marks=[] if name in quick else [pytest.mark.slow]) for name in names]
-
-
-def run(folder: Path, line: str) -> Ended:
-    """Run a line in a folder, in this process."""
-    program, *words = line.split()
-    with chdir(folder):
-        return command(PACKAGES[program], *words)
 
 
 def lay(folder: Path, words: str, factory: pytest.TempPathFactory) -> None:

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from siggen.file_writing import LEFTOVER_SUFFIX
-from tests.walks.lines import LINES, lay, lines, run
+from tests.walks.lines import LINES, lay, lines
+from tests.walks.walking import run
 
 WRITERS = [name for name, line in LINES.items() if line.writes]
 QUICK = {

@@ -12,7 +12,7 @@ from siggen.engines.processes import ProcessEngine
 from tests.engines import tasks
 from tests.every_command import LEAVES
 from tests.walks.lines import LINES, lay, lines
-from tests.walks.walking import walk
+from tests.walks.walking import fresh
 
 EXECUTED = "executed"
 PACKAGES = {"dask": "distributed", "ray": "ray"}
@@ -38,7 +38,7 @@ def executed_by(line: str, folder: Path, factory: pytest.TempPathFactory, code: 
     """Return the names of modules that a line executed, in a folder with what it needs and the traps."""
     lay(folder, line, factory)
     lay_traps(folder)
-    walk(folder, line.replace("OUT/", "").replace("IN/", ""), code)
+    fresh(folder, line.replace("OUT/", "").replace("IN/", ""), code)
     return executed(folder)
 
 

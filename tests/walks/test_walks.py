@@ -1,4 +1,4 @@
-"""What a user comes for, from beginning to end in at most five commands, each in a fresh process."""
+"""What a user comes for, from beginning to end in at most five commands."""
 
 from __future__ import annotations
 

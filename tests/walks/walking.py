@@ -1,4 +1,4 @@
-"""Commands as a user gives them: installed programs, in a folder of its own, with nothing of the checkout in reach."""
+"""Commands as a user gives them, in a folder of its own: in this process, or installed programs in a fresh one."""
 
 from __future__ import annotations
 
@@ -13,32 +13,46 @@ from typing import Any
 
 import numpy as np
 
-from tests.command import command
+from tests.command import Ended, command, script
 
+PACKAGES = {"siggen": "siggen", "siggen-diagnostics": "diagnostics"}
 PROGRAMS = Path(sys.executable).parent
 CLEAN = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 FS_HZ = 12_800.0
 
 
-def walk(folder: Path, line: str, code: int = 0) -> str:
-    """Run one command in a fresh process, `python FILE` or an installed program; return all that it said."""
+def fresh(folder: Path, line: str, code: int = 0) -> None:
+    """Run an installed program in a fresh process, with nothing of the checkout in reach."""
     program, *rest = shlex.split(line)
-    python = [sys.executable, "-P"] if program == "python" else [str(PROGRAMS / program)]
     environment = {**CLEAN, "OMP_NUM_THREADS": "1"}
     done = subprocess.run(
-        [*python, *rest], cwd=folder, env=environment, capture_output=True, text=True, timeout=500, check=False
-    )
-    said = done.stdout + done.stderr
-    assert done.returncode == code, f"{line}: exit code {done.returncode}\n{said}"
-    assert "Traceback" not in said
-    return said
+        [PROGRAMS / program, *rest], cwd=folder, env=environment, capture_output=True, text=True, timeout=500,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == code, f"{line}: exit code {done.returncode}\n{done.stdout}{done.stderr}"
+    assert "Traceback" not in done.stdout + done.stderr
+
+
+def run(folder: Path, line: str) -> Ended:
+    """Run a command in a folder, in this process: a start costs more than most commands."""
+    program, *rest = shlex.split(line)
+    with chdir(folder):
+        return command(PACKAGES[program], *rest)
+
+
+def walk(folder: Path, line: str, code: int = 0) -> str:
+    """Run one command, or a script by `python FILE`; return all that it said."""
+    if line.startswith("python "):
+        with chdir(folder):
+            return script(folder / line.removeprefix("python "))
+    done = run(folder, line)
+    assert done.returncode == code, f"{line}: exit code {done.returncode}\n{done.stderr}"
+    return done.stdout + done.stderr
 
 
 def printed(folder: Path, line: str, code: int = 0) -> dict[str, Any]:
-    """Return the JSON object that a command prints, read from its standard output alone; here no process is fresh."""
-    program, *rest = shlex.split(line)
-    with chdir(folder):
-        done = command({"siggen": "siggen", "siggen-diagnostics": "diagnostics"}[program], *rest, "--json")
+    """Return the JSON object that a command prints, read from its standard output alone."""
+    done = run(folder, f"{line} --json")
     assert done.returncode == code, f"{line}: exit code {done.returncode}\n{done.stderr}"
     found: dict[str, Any] = json.loads(done.stdout)
     return found
