@@ -29,8 +29,8 @@ def clean() -> PlantedSet:
 def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few steps of training and few permutations: what they find is tested with the attackers."""
     monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
-    monkeypatch.setattr(bank_detections, "PERMUTATIONS", 99)
-    monkeypatch.setattr(signal_attackers, "SHOWN", 40)
+    monkeypatch.setattr(bank_detections, "PERMUTATIONS", 19)
+    monkeypatch.setattr(signal_attackers, "SHOWN", 0)
     monkeypatch.setattr(signal_attackers, "FEWEST_EPOCHS", 1)
 
 
