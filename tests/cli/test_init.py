@@ -59,12 +59,12 @@ def test_an_editor_completes_and_checks_a_rig_by_the_schema_beside_it(tmp_path: 
     assert first == "# yaml-language-server: $schema=siggen.schema.json"
     schema = json.loads((file.parent / first.partition("$schema=")[2]).read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
-    rig = read_yaml(file)
-    jsonschema.validate(rig, schema)
+    editor, rig = jsonschema.Draft202012Validator(schema), read_yaml(file)
+    editor.validate(rig)
     with pytest.raises(jsonschema.ValidationError, match="modul_mm"):
-        jsonschema.validate({**rig, "gears": {**rig["gears"], "modul_mm": 2.0}}, schema)
+        editor.validate({**rig, "gears": {**rig["gears"], "modul_mm": 2.0}})
     with pytest.raises(jsonschema.ValidationError, match="'seed' is a required property"):
-        jsonschema.validate({key: value for key, value in rig.items() if key != "extends"}, schema)
+        editor.validate({key: value for key, value in rig.items() if key != "extends"})
 
 
 SIGGEN = str(Path(sys.executable).parent / "siggen")

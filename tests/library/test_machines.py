@@ -54,7 +54,7 @@ def test_a_machine_runs_under_its_own_names_and_bears_damage_on_any_gear() -> No
     assert hoist.channels == ("input_vertical", "output_horizontal")
     pits = tuple(Pit("c", face_mm=z, semi_axes_mm=(0.9, 0.3)) for z in np.linspace(1.0, 23.0, 12))
     hoist = hoist.with_(State("c_pitted", pits), State("d_cracked", (Crack("d", depth_mm=1.0),)))
-    healthy, pitted, cracked = (siggen.run(hoist, one.name, 16, 50, duration_s=0.1) for one in hoist.states)
+    healthy, pitted, cracked = (siggen.run(hoist, one.name, 16, 50, duration_s=0.07) for one in hoist.states)
     assert {record.labels["faulty_gear"] for record in (healthy, pitted, cracked)} == {"none", "c", "d"}
     assert pitted.labels["damage_count"] == 12
     fast, slow = healthy.lines
@@ -70,7 +70,7 @@ def test_a_planetary_set_runs_with_damage_on_sun_and_ring() -> None:
         State("ring_spalled", (Spall("ring", 3, ((3.5, 2.0), (4.3, 2.0), (4.3, 14.0), (3.5, 14.0))),)),
     )
     assert gearbox.gears == ("sun", "planet", "ring")
-    found = [siggen.run(gearbox, one.name, 25, 60, duration_s=0.1).labels["faulty_gear"] for one in gearbox.states]
+    found = [siggen.run(gearbox, one.name, 25, 60, duration_s=0.05).labels["faulty_gear"] for one in gearbox.states]
     assert found == ["none", "sun", "ring"]
 
 

@@ -23,7 +23,7 @@ from tests.dataset.fake_set import file_bytes, write_fake_set
 from tests.dataset.s3_server import BUCKET, object_bytes, s3_server
 from tests.publication.conftest import facts_file
 
-MOMENTS = 10
+MOMENTS = 5
 PICTURES = {f"previews/{name}.png": name.encode() for name in ("healthy", "slight", "moderate")}
 """Drawn elsewhere: of a whole `publish` they take nearly all the time."""
 PUBLISHED = f"""
@@ -75,7 +75,7 @@ def whole(place: Path) -> dict[str, bytes]:
     return file_bytes(place / "whole")
 
 
-def test_killed_at_ten_moments_and_run_again_it_ends_with_the_same_bytes(place: Path, whole: dict[str, bytes]) -> None:
+def test_killed_at_five_moments_and_run_again_it_ends_with_the_same_bytes(place: Path, whole: dict[str, bytes]) -> None:
     moments = np.linspace(1, 2 * len(whole), MOMENTS).round().astype(int).tolist()  # two flushes for every file
     done = subprocess.run(
         [sys.executable, "-P", "-c", PUBLISHED, place, *map(str, moments), "0"],

@@ -11,7 +11,7 @@ from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.sensors.runs import GEAR_RATIO, line, loaded, problems, record
 
-PERFECT = {"kind": "encoder", "pulses_per_turn": 100_000, "pitch_error": 0, "eccentricity": 0}
+PERFECT = {"kind": "encoder", "pulses_per_turn": 20_000, "pitch_error": 0, "eccentricity": 0}
 PINION, GEAR = {**PERFECT, "name": "first"}, {**PERFECT, "name": "second", "place": "gear"}
 
 

@@ -23,6 +23,8 @@ from siggen.sets.drawn import compilation_parts, simulated, to_compile
 from siggen.sets.interruption import Interruption
 from siggen.sets.set_run import set_run
 
+HEALTHY = ["specimens=1", "duration_s=0.05", "states={healthy: {}}"]
+
 
 @pytest.fixture(scope="module")
 def short() -> Config:
@@ -62,7 +64,7 @@ def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: Config, monkeypat
     assert [part.name for part in to_compile(short)] == [compilation.TEETH, compilation.MOTION]
 
 
-def test_a_run_compiles_before_its_first_record(short: Config, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_run_compiles_before_its_first_record(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     mapped: list[type] = []
 
     class Noting(ProcessEngine):
@@ -75,7 +77,7 @@ def test_a_run_compiles_before_its_first_record(short: Config, monkeypatch: pyte
             return SerialEngine().map(function, noted())
 
     monkeypatch.setattr(drawn, "is_compiled", lambda method: False)
-    storage = LocalFolder(tmp_path / "set")
+    storage, short = LocalFolder(tmp_path / "set"), siggen.load_config("quickstart", HEALTHY)
     with storage.writing(), Interruption() as interruption:
         set_run(short, storage, Noting(1), None, interruption).finish()
     assert [kind.__name__ for kind in mapped] == ["CompilationPart", "CompilationPart", "ChunkStretch"]

@@ -35,9 +35,9 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return file_bytes(path)
 
 
-def start(folder: Path, workers: int = 2) -> subprocess.Popen[str]:
+def start(folder: Path) -> subprocess.Popen[str]:
     """Start generation in a process of its own; simulations take 50 ms per record there."""
-    command = [sys.executable, "-m", "tests.dataset.fake_set", str(folder), str(workers)]
+    command = [sys.executable, "-m", "tests.dataset.fake_set", str(folder), "2"]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
@@ -89,13 +89,10 @@ def test_killing_again_and_again_at_random_moments_changes_nothing(
     assert_complete(tmp_path, reference)
 
 
-@pytest.mark.parametrize(("workers", "number"), [(0, signal.SIGINT), (2, signal.SIGTERM)])
-def test_a_signal_ends_with_130_committed_shards_and_a_hint(
-    tmp_path: Path, reference: dict[str, bytes], number: signal.Signals, workers: int
-) -> None:
-    process = start(tmp_path, workers)
+def test_a_signal_ends_with_130_committed_shards_and_a_hint(tmp_path: Path, reference: dict[str, bytes]) -> None:
+    process = start(tmp_path)
     wait_for(lambda: len(sidecars(tmp_path)) >= 1, process)
-    process.send_signal(number)
+    process.send_signal(signal.SIGTERM)
     _, said = process.communicate()
     assert process.returncode == EXIT_INTERRUPTED
     kept = len(sidecars(tmp_path))
@@ -133,6 +130,7 @@ def test_an_interrupted_call_raises_and_continues(tmp_path: Path, reference: dic
     assert_complete(tmp_path, reference)
 
 
+@pytest.mark.slow  # what the engine does then: tests/engines
 def test_a_killed_worker_does_not_stop_generation(
     tmp_path: Path, reference: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -142,6 +140,7 @@ def test_a_killed_worker_does_not_stop_generation(
     assert_complete(tmp_path / "set", reference)
 
 
+@pytest.mark.slow  # the same
 def test_a_record_that_kills_every_worker_ends_with_an_error_that_names_its_chunk(tmp_path: Path) -> None:
     with pytest.raises(EngineError, match=r"records 6 to 11 of shard \S+ was lost 3 times"):
         write_fake_set(tmp_path, workers=1, simulation=simulate_and_die)

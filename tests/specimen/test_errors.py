@@ -80,7 +80,8 @@ def misaligned(value: object) -> Config:
 
 
 def test_misalignment_is_linear_across_the_face_and_drawn_with_either_sign() -> None:
-    drawn = [errors_of(misaligned(8.0), specimen) for specimen in range(30)]
+    config = misaligned(8.0)
+    drawn = [errors_of(config, specimen) for specimen in range(30)]
     assert {round(1e6 * one.lead_misalignment_m, 9) for one in drawn} == {8.0, -8.0}
     lead = drawn[0].lead_m(200)
     assert lead.mean() == pytest.approx(0.0, abs=1e-20)
@@ -90,7 +91,8 @@ def test_misalignment_is_linear_across_the_face_and_drawn_with_either_sign() -> 
 
 
 def test_misalignment_by_the_standard_stays_within_the_helix_slopes_of_both_gears() -> None:
-    found = [errors_of(misaligned("iso_1328"), specimen) for specimen in range(80)]
+    config = misaligned("iso_1328")
+    found = [errors_of(config, specimen) for specimen in range(80)]
     limits = [sum(g.tolerance_share * g.tolerances.helix_slope_m for g in (e.pinion, e.gear)) for e in found]
     ratio = np.array([e.lead_misalignment_m for e in found]) / limits
     assert np.abs(ratio).max() <= 1.0

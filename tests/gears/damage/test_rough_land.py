@@ -51,7 +51,7 @@ def near_pits(gear, pits, arc_m):
 @pytest.mark.parametrize("pits", [layers(3, 10), SCATTERED], ids=["layers", "scattered"])
 @pytest.mark.parametrize("which", ["pinion", "gear"])
 def test_the_rough_part_of_the_line_is_that_within_reach_of_the_pits(which, pits):
-    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 801)
+    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 201)
     lands = {name: rough_land(PAIR.member(name), pits if name == which else (), WIDTH, SLICES) for name in FLANKS}
     found = rough_shares(PAIR, lands["pinion"], lands["gear"], position[:, np.newaxis] + np.zeros(SLICES))
     along = position if which == "pinion" else PAIR.line_of_action_m - position
