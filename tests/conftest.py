@@ -13,8 +13,8 @@ from hypothesis import settings
 from tests.blank_pictures import blank_pictures
 
 # No deadline: the first example of a property compiles its kernels. The same examples in every run, so that a failure
-# can be found again; HYPOTHESIS_PROFILE=explore looks for new ones.
-settings.register_profile("repeatable", deadline=None, derandomize=True)
+# can be found again, and few, since every run repeats them; HYPOTHESIS_PROFILE=explore looks for new ones.
+settings.register_profile("repeatable", deadline=None, derandomize=True, max_examples=40)
 settings.register_profile("explore", deadline=None, max_examples=500)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 

@@ -30,7 +30,7 @@ def run(*arguments: object) -> str:
     return result.output
 
 
-@pytest.mark.parametrize("command", ["errors", "modes", "tvms"])
+@pytest.mark.parametrize("command", ["errors", "modes"])
 def test_open_draws_without_a_place_and_shows_what_it_drew(command: str, shown: list[str]) -> None:
     said = run("inspect", command, "configs/paper_b.yaml", "--open")
     (address,) = shown

@@ -11,13 +11,13 @@ from typer.testing import CliRunner
 import siggen.record.simulation
 from siggen.cli.app import app
 from siggen.errors import EXIT_MISMATCH, DatasetError
-from tests.dataset.fake_set import FAKE_FILES, simulate, write_fake_set
+from tests.dataset.fake_set import FAKE_FILES, copy_fake_set, simulate
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(siggen.sets.drawn, "simulated", simulate)
-    write_fake_set(tmp_path / "set")
+    copy_fake_set(tmp_path / "set")
     return tmp_path / "set"
 
 

@@ -15,7 +15,7 @@ from tests.config.idler import idler
 from tests.config.mill import mill
 from tests.config.planets import planets
 from tests.config.staged import staged
-from tests.dataset.fake_set import fake_config, write_fake_set
+from tests.dataset.fake_set import copy_fake_set, fake_config
 
 
 def ratios(train: GearTrain) -> tuple[dict[str, Fraction], dict[str, Fraction]]:
@@ -60,7 +60,7 @@ def test_gears_that_differ_within_a_set_have_no_teeth_and_no_turns_in_the_manife
 
 
 def test_a_finished_set_gives_its_drivetrain_and_the_columns_about_its_parts(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     dataset = siggen.open(tmp_path)
     assert asdict(dataset.drivetrain) == asdict(set_columns(fake_config()).drivetrain)
     assert dataset.columns_of("teeth") == {"pinion": "teeth_pinion", "gear": "teeth_gear"}
@@ -68,7 +68,7 @@ def test_a_finished_set_gives_its_drivetrain_and_the_columns_about_its_parts(tmp
 
 
 def test_a_set_gives_the_sections_of_every_gear_but_a_ring_by_its_name(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     for raw, widths in (
         (staged(), {"pinion": 20.0, "gear": 20.0, "slow_pinion": 30.0, "slow_gear": 30.0}),
         (mill(), {"ida": 20.0, "otto": 20.0, "eva": 30.0, "karl": 30.0}),

@@ -18,6 +18,7 @@ from tests.config.minimal import minimal
 from tests.dataset.fake_set import (
     FAKE_FILES,
     QUANTITIES,
+    copy_fake_set,
     fake_config,
     simulate,
     simulate_with_longer_contact,
@@ -81,7 +82,7 @@ def test_undefined_films_hide_no_difference(reference, monkeypatch, elsewhere, s
 
 
 def test_the_signals_are_those_of_the_set_without_internals(reference: Path, tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     for record_id in (0, 17, 29):
         with_internals, without = (open_set(p).record(record_id) for p in (reference, tmp_path))
         for name, value in without.items():
@@ -124,7 +125,7 @@ def test_a_quantity_that_is_not_a_number_fails_its_record(tmp_path: Path) -> Non
 
 
 def test_a_set_without_internals_says_how_to_get_them(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     dataset = open_set(tmp_path)
     assert dataset.internal_columns == ()
     for ask in (lambda: next(dataset.internals()), lambda: dataset.record_internals(0)):

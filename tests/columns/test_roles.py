@@ -13,7 +13,7 @@ from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
 from siggen.keys.column import Role
 from siggen.sets.drawn import set_columns
-from tests.dataset.fake_set import fake_config, write_fake_set
+from tests.dataset.fake_set import copy_fake_set, fake_config
 
 ROOT = Path(__file__).resolve().parents[2]
 PRESETS = sorted(path.name for path in (ROOT / "configs").glob("*.yaml"))
@@ -48,7 +48,7 @@ def test_what_the_simulation_alone_knows_is_neither_condition_nor_measured() -> 
 
 
 def test_a_finished_set_says_the_roles_of_its_columns(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     dataset = siggen.open(tmp_path)
     listed = {one["name"]: one for one in listed_columns(record_schema(set_columns(fake_config())))}
     schema = next(dataset.records()).schema
@@ -58,7 +58,7 @@ def test_a_finished_set_says_the_roles_of_its_columns(tmp_path: Path) -> None:
 
 
 def test_record_ids_tell_the_state_by_design_so_they_are_keys_and_no_input(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     dataset = siggen.open(tmp_path)
     rows = dataset.labels().to_pylist()
     states = 1 + max(row["state_id"] for row in rows)
@@ -68,7 +68,7 @@ def test_record_ids_tell_the_state_by_design_so_they_are_keys_and_no_input(tmp_p
 
 
 def test_columns_that_a_stranger_does_not_list_are_conditions(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     manifest = tmp_path / "manifest.json"
     content = unsealed("manifest.json", manifest.read_bytes())
     manifest.write_bytes(sealed({**content, "columns": [{"name": "fault", "role": "target"}]}))

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from unittest.mock import patch
 
@@ -246,6 +249,18 @@ def write_fake_set(
     with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
         told = {"events": events, "allowed_loss": allowed_loss}
         return generate(config or fake_config(), path, workers, engine=engine, **told)  # type: ignore[arg-type]
+
+
+@cache
+def _made_once() -> TemporaryDirectory[str]:
+    folder = TemporaryDirectory()
+    write_fake_set(Path(folder.name) / "set")
+    return folder
+
+
+def copy_fake_set(path: Path) -> None:
+    """Lay the set of `fake_config()` into a folder, for tests to which its making is nothing."""
+    shutil.copytree(Path(_made_once().name) / "set", path, dirs_exist_ok=True)
 
 
 def verify_fake_set(path: Path, sample: int, *, workers: int = 0, simulation: Any = simulate) -> Verification:

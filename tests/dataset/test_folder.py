@@ -11,7 +11,7 @@ from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 from siggen.file_writing import LEFTOVER_SUFFIX
-from tests.dataset.fake_set import fake_config, file_bytes, write_fake_set
+from tests.dataset.fake_set import copy_fake_set, fake_config, file_bytes, write_fake_set
 
 CONFIG = fake_config()
 
@@ -33,7 +33,7 @@ def test_new_empty_and_begun_folders_are_not_finished(tmp_path: Path) -> None:
 
 
 def test_a_set_with_a_missing_or_truncated_file_is_not_finished(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     assert is_finished(LocalFolder(tmp_path), CONFIG)
     card = tmp_path / "README.md"
     card.write_bytes(card.read_bytes()[:-1])
@@ -50,7 +50,7 @@ def test_a_folder_with_other_things_is_refused_and_left_alone(tmp_path: Path) ->
 
 
 def test_another_set_is_refused_with_what_differs(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     before = file_bytes(tmp_path)
     with pytest.raises(
         DatasetError, match=r"seed: 7 there, 8 asked for\n  gears\.module_mm: 3\.0 there, 2\.0 asked for"
@@ -60,7 +60,7 @@ def test_another_set_is_refused_with_what_differs(tmp_path: Path) -> None:
 
 
 def test_more_specimens_in_place_are_refused_with_the_way_out(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     with pytest.raises(DatasetError, match=r"with 5 specimens, asked for are 7; `siggen extend \S+ --specimens 7`"):
         write_fake_set(tmp_path, fake_config(specimens=7))
 

@@ -15,7 +15,7 @@ from siggen.dataset.manifest import read_manifest
 from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError, VerificationError
-from tests.dataset.fake_set import FAKE_FILES, fake_config, simulate_with_failures, write_fake_set
+from tests.dataset.fake_set import FAKE_FILES, copy_fake_set, fake_config, simulate_with_failures, write_fake_set
 
 
 def checksum(content: bytes) -> str:
@@ -45,7 +45,7 @@ def test_added_or_missing_bytes_break_the_seal() -> None:
 
 
 def test_the_manifest_promises_every_other_file_but_run_json(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     manifest = read_manifest(LocalFolder(tmp_path)).content
     on_disk = sorted(p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*") if p.is_file())
     assert on_disk == FAKE_FILES
@@ -86,7 +86,7 @@ def test_a_folder_without_a_set_an_unfinished_one_and_a_damaged_one_are_told_apa
     with pytest.raises(DatasetError, match="not a siggen data set"):
         read_manifest(LocalFolder(tmp_path))
     folder = tmp_path / "set"
-    write_fake_set(folder)
+    copy_fake_set(folder)
     manifest = folder / "manifest.json"
     manifest.write_text(manifest.read_text().replace('"rows": 30', '"rows": 31'))
     with pytest.raises(DatasetError, match="digest"):
@@ -97,7 +97,7 @@ def test_a_folder_without_a_set_an_unfinished_one_and_a_damaged_one_are_told_apa
 
 
 def test_another_schema_version_is_refused(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     content = {**unsealed("manifest.json", (tmp_path / "manifest.json").read_bytes()), "schema_version": "99"}
     (tmp_path / "manifest.json").write_bytes(sealed(content))
     with pytest.raises(DatasetError, match="schema version 99"):

@@ -18,7 +18,7 @@ from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
 from siggen.planning.plan import planned_record, split_of
-from tests.dataset.fake_set import fake_config, fake_record, simulate_with_failures, write_fake_set
+from tests.dataset.fake_set import copy_fake_set, fake_config, fake_record, simulate_with_failures, write_fake_set
 
 CONFIG = fake_config()
 SIGNAL = "accel_bearing_vertical_m_s2"
@@ -133,14 +133,14 @@ def test_a_failed_record_is_answered_with_its_reason(tmp_path: Path) -> None:
 
 
 def test_a_set_without_its_manifest_is_not_opened(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     (tmp_path / "manifest.json").unlink()
     with pytest.raises(DatasetError, match="not finished"):
         open_set(tmp_path)
 
 
 def test_a_missing_shard_is_named(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     (tmp_path / "data/test-00000.parquet").unlink()
     with pytest.raises(DatasetError, match=r"test-00000\.parquet is missing"):
         list(open_set(tmp_path).records("test"))
@@ -159,7 +159,7 @@ print(sorted(slow & set(sys.modules)))
 
 
 def test_a_damaged_shard_is_named_with_the_way_to_mend_it(tmp_path: Path) -> None:
-    write_fake_set(tmp_path / "set")
+    copy_fake_set(tmp_path / "set")
     shard = tmp_path / "set" / "data" / "train-00000.parquet"
     content = bytearray(shard.read_bytes())
     content[len(content) // 3 : len(content) // 3 + 200] = bytes(200)

@@ -236,12 +236,18 @@ def make_dataset() -> Callable[..., MemoryDataset]:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def few_trees() -> Iterator[None]:
-    """Boosting of at most ten trees, which tell these sets apart as well: all of them take a third of a report."""
-    from diagnostics.training import boosting, life_baselines
+def light_classifiers() -> Iterator[None]:
+    """Ten trees and two strengths of the penalty, which tell these sets apart as well: all take half of a report."""
+    from diagnostics.training import baselines, boosting, life_baselines
+
+    choose = baselines._chosen_strength
+
+    def of_two(matrix: Any, split: Any, truth: np.ndarray, strengths: Sequence[float], *given: Any) -> Any:
+        return choose(matrix, split, truth, strengths[2::2] or strengths, *given)
 
     model, of_life = boosting._model, life_baselines._model
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(baselines, "_chosen_strength", of_two)
         patch.setattr(boosting, "_model", lambda trees, seed: model(min(trees, 10), seed))
         patch.setattr(life_baselines, "_model", lambda q, seed: of_life(q, seed).set_params(max_iter=10))
         yield

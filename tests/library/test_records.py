@@ -43,7 +43,7 @@ def test_three_lines_give_a_record_in_si_with_its_time_axis(gearbox: siggen.Gear
 
 
 def test_the_same_arguments_give_the_same_record_and_other_numbers_others(gearbox: siggen.Gearbox) -> None:
-    short = {"speed_hz": 25.0, "torque_nm": 40.0, "duration_s": 0.1}
+    short = {"speed_hz": 25.0, "torque_nm": 40.0, "duration_s": 0.05}
     first, again = (siggen.run(one, **short) for one in (gearbox, siggen.single_stage((23, 61), 2.5)))
     assert all(np.array_equal(first.channels[name], again.channels[name]) for name in first.channels)
     others = siggen.run(siggen.single_stage((23, 61), 2.5, number=1), **short), siggen.run(gearbox, **short, repeat=1)
@@ -54,7 +54,7 @@ def test_the_same_arguments_give_the_same_record_and_other_numbers_others(gearbo
 def test_a_gearbox_that_is_drawn_from_a_set_gives_the_records_of_the_set() -> None:
     """All of them, at each of its points, repeats included; one alone by the set's columns."""
     points = [{"speed_hz": speed_hz, "torque_nm": 40.0} for speed_hz in (20.0, 30.0)]
-    raw = {"extends": "quickstart", "duration_s": 0.1, "operating_points": points, "repeats": 2}
+    raw = {"extends": "quickstart", "duration_s": 0.06, "operating_points": points, "repeats": 2}
     config = siggen.load_config(raw)
     third = siggen.draw(config, 3)
     severe = [case for case in third.cases if case.state == "severe"]
@@ -76,9 +76,9 @@ def test_a_gearbox_that_is_drawn_from_a_set_gives_the_records_of_the_set() -> No
 def test_runs_give_what_run_gives_one_by_one(gearbox: siggen.Gearbox) -> None:
     points = siggen.Point(25.0, 40.0), siggen.Point(20.0, 10.0)
     cases = [siggen.Case("healthy", points[0]), siggen.Case("healthy", points[0], 1), siggen.Case("healthy", points[1])]
-    for case, found in zip(cases, siggen.runs(gearbox, cases, duration_s=0.1), strict=True):
+    for case, found in zip(cases, siggen.runs(gearbox, cases, duration_s=0.06), strict=True):
         alone = siggen.run(
-            gearbox, case.state, case.point.speed_hz, case.point.torque_nm, duration_s=0.1, repeat=case.repeat
+            gearbox, case.state, case.point.speed_hz, case.point.torque_nm, duration_s=0.06, repeat=case.repeat
         )
         assert all(np.array_equal(found.channels[name], alone.channels[name]) for name in alone.channels)
 

@@ -17,7 +17,7 @@ from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
 from siggen.sets.extension import extend
 from siggen.sets.verification import verify
-from tests.dataset.fake_set import write_fake_set
+from tests.dataset.fake_set import copy_fake_set, write_fake_set
 
 NEW_LABEL = "mesh_stiffness_loss_as_simulated"
 
@@ -30,7 +30,7 @@ def say(folder: Path, **facts: object) -> None:
 
 @pytest.mark.parametrize("version", ["4", "99"])
 def test_a_set_of_another_version_is_refused_in_words_by_whatever_reads_it(tmp_path: Path, version: str) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     say(tmp_path, schema_version=version)
     for reads in (siggen.open, verify, partial(extend, specimens="+1", workers=0)):
         with pytest.raises(DatasetError, match=f"received schema version {version}; allowed is 5. Another version"):
@@ -38,7 +38,7 @@ def test_a_set_of_another_version_is_refused_in_words_by_whatever_reads_it(tmp_p
 
 
 def test_a_finished_set_of_a_newer_version_is_not_made_again(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     say(tmp_path, schema_version="99")
     before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*")}
     with pytest.raises(DatasetError, match="received schema version 99"):
@@ -47,7 +47,7 @@ def test_a_finished_set_of_a_newer_version_is_not_made_again(tmp_path: Path) -> 
 
 
 def test_records_of_another_simulation_are_not_simulated_again_and_that_is_said(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     other = SIMULATION_VERSION + 1
     say(tmp_path, simulation_version=other)
     result = CliRunner().invoke(app, ["verify", str(tmp_path), "--sample", "3"])
@@ -60,7 +60,7 @@ def test_records_of_another_simulation_are_not_simulated_again_and_that_is_said(
 
 
 def test_a_new_set_says_which_simulation_made_it(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     manifest = siggen.open(tmp_path).manifest
     assert (manifest["schema_version"], manifest["simulation_version"]) == (SCHEMA_VERSION, SIMULATION_VERSION)
     assert np.isfinite(siggen.open(tmp_path).labels(columns=[NEW_LABEL])[NEW_LABEL].to_numpy()).all()

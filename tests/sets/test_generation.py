@@ -17,6 +17,7 @@ from siggen.sets.generation import generate
 from siggen.sets.loss_limit import LossError
 from tests.dataset.fake_set import (
     FAKE_FILES,
+    copy_fake_set,
     fake_config,
     fake_physics,
     file_bytes,
@@ -57,7 +58,7 @@ def test_the_first_specimens_of_a_larger_set_are_the_same(reference: Path, tmp_p
 
 
 def test_a_finished_set_is_left_alone(reference: Path, tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     times = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*")}
     again = write_fake_set(tmp_path)
     assert again.was_finished
@@ -71,7 +72,7 @@ ONE_OF_EACH = sorted({name.split("/")[0]: name for name in LOST}.values())
 
 @pytest.mark.parametrize("name", ONE_OF_EACH)
 def test_a_lost_file_is_made_again_with_the_same_bytes(reference: Path, tmp_path: Path, name: str) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     (tmp_path / name).unlink()
     again = write_fake_set(tmp_path)
     assert not again.was_finished
@@ -81,7 +82,7 @@ def test_a_lost_file_is_made_again_with_the_same_bytes(reference: Path, tmp_path
 
 
 def test_a_shard_damaged_between_two_runs_is_made_again(reference: Path, tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     (tmp_path / "manifest.json").unlink()
     shard = tmp_path / "data/train-00001.parquet"
     content = bytearray(shard.read_bytes())
@@ -118,10 +119,9 @@ def test_a_set_of_which_every_record_fails_is_still_a_set(tmp_path: Path) -> Non
     assert open_set(tmp_path).labels().num_rows == 0
 
 
-@pytest.mark.parametrize("workers", [0, 1])
-def test_a_fault_of_the_program_names_the_record_and_keeps_what_is_committed(tmp_path: Path, workers: int) -> None:
+def test_a_fault_of_the_program_names_the_record_and_keeps_what_is_committed(tmp_path: Path) -> None:
     with pytest.raises(EngineError, match=r"record 8 raised ZeroDivisionError"):
-        write_fake_set(tmp_path, workers=workers, simulation=simulate_with_a_bug)
+        write_fake_set(tmp_path, simulation=simulate_with_a_bug)
     assert not (tmp_path / "manifest.json").exists()
     assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
     again = write_fake_set(tmp_path)
@@ -192,6 +192,7 @@ def test_a_run_that_loses_more_of_a_state_than_allowed_stops_keeps_its_shards_an
     assert (len(generation.failures), generation.shards_taken_over) == (3, 2)
 
 
+@pytest.mark.slow  # two processes
 def test_workers_stop_at_the_same_loss(tmp_path: Path) -> None:
     with pytest.raises(LossError, match="state slight 2"):
         write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1, workers=2)

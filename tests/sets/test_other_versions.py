@@ -17,6 +17,7 @@ from siggen.sets.parts import generate_part, merge
 from siggen.sets.set_run import Generation
 from siggen.sets.verification import EXACT
 from tests.dataset.fake_set import (
+    copy_fake_set,
     fake_config,
     fake_physics,
     file_bytes,
@@ -38,7 +39,7 @@ def made_by(folder: Path, version: dict[str, str]) -> None:
 
 def half_made(folder: Path, version: dict[str, str]) -> None:
     """Leave what an interrupted run of another version leaves: three of five shards, and no manifest."""
-    write_fake_set(folder)
+    copy_fake_set(folder)
     for name in ("manifest.json", "run.json", "README.md", "shards/test-00000.json", "shards/train-00002.json"):
         (folder / name).unlink()
     for tables in ("metadata", "damage"):
@@ -52,7 +53,7 @@ def test_shards_of_another_version_are_made_again_and_said_by_whom_they_were(
 ) -> None:
     half_made(tmp_path / "begun", version)
     resumed = write_fake_set(tmp_path / "begun")
-    write_fake_set(tmp_path / "at_once")
+    copy_fake_set(tmp_path / "at_once")
     assert file_bytes(tmp_path / "begun") == file_bytes(tmp_path / "at_once")
     assert (resumed.records_made, resumed.shards_taken_over, len(resumed.notes)) == (30, 0, 3)
     told = f"made by siggen {version['siggen']} ("
@@ -61,13 +62,13 @@ def test_shards_of_another_version_are_made_again_and_said_by_whom_they_were(
 
 
 def test_a_set_of_one_version_is_compared_to_the_bit_whatever_cannot_change_one(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     with patch("siggen.sets.verification.environment", lambda: {**environment(), "pyarrow": "0", "siggen": "9"}):
         assert verify_fake_set(tmp_path, 3).comparison == EXACT
 
 
 def test_a_finished_set_of_another_version_is_not_extended(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     made_by(tmp_path, OTHER)
     reseal_manifest(tmp_path)
     before = file_bytes(tmp_path)
@@ -92,7 +93,7 @@ def test_parts_of_two_versions_are_not_merged(tmp_path: Path) -> None:
 
 
 def test_the_fingerprint_stands_in_every_sidecar_and_in_the_manifest(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     own = environment()["fingerprint"]
     for file in (tmp_path / "shards").glob("*.json"):
         assert fingerprint(unsealed(file.name, file.read_bytes())["environment"]) == own

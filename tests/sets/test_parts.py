@@ -15,6 +15,7 @@ from siggen.planning import plan
 from siggen.sets.parts import generate_part, merge, part_of
 from siggen.sets.set_run import Generation
 from tests.dataset.fake_set import (
+    copy_fake_set,
     fake_config,
     fake_physics,
     file_bytes,
@@ -76,7 +77,7 @@ def test_a_part_that_stopped_continues_and_a_folder_of_parts_can_become_the_set(
     write_part(tmp_path / "2", (2, 2))
     write_part(tmp_path / "1", (1, 2))
     merge_fake([tmp_path / "1", tmp_path / "2"], tmp_path / "1")
-    write_fake_set(tmp_path / "at_once")
+    copy_fake_set(tmp_path / "at_once")
     assert file_bytes(tmp_path / "1") == file_bytes(tmp_path / "at_once")
 
 

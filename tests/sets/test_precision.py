@@ -22,7 +22,7 @@ from siggen.dataset.storage import LocalFolder
 from siggen.errors import EXIT_MISMATCH, DatasetError
 from siggen.sets.precision import FIRST_STEPS, MOST_STEPS, measure_precision
 from siggen.sets.verification import verify
-from tests.dataset.fake_set import fake_config, file_bytes, simulate, write_fake_set
+from tests.dataset.fake_set import copy_fake_set, fake_config, file_bytes, simulate, write_fake_set
 
 
 def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[SimulatedRecord | RecordFailure]:
@@ -146,7 +146,7 @@ def test_a_set_of_the_linear_law_is_measured_and_states_no_tolerance(
 
 
 def test_a_set_of_another_simulation_is_not_measured(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
+    copy_fake_set(tmp_path)
     manifest = tmp_path / "manifest.json"
     manifest.write_bytes(sealed({**unsealed("manifest.json", manifest.read_bytes()), "simulation_version": 1}))
     with pytest.raises(DatasetError, match="made by simulation version 1"):

@@ -22,6 +22,7 @@ from siggen.sets.parts import generate_part, merge
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import (
     FAKE_FILES,
+    copy_fake_set,
     fake_config,
     fake_physics,
     file_bytes,
@@ -68,7 +69,7 @@ def test_a_set_has_the_bytes_of_one_in_a_folder_and_is_verified_and_read_there(t
     excerpts = [f"excerpts/{Path(name).stem}" for name in FAKE_FILES if name.startswith("data/")]
     assert sorted(puts) == sorted([*FAKE_FILES, "config.yaml", *excerpts, "excerpts"])
     assert puts[-1] == "manifest.json"
-    write_fake_set(tmp_path / "set")
+    copy_fake_set(tmp_path / "set")
     assert digests(object_bytes(PLACE)) == digests(file_bytes(tmp_path / "set"))
     with fake_physics():
         found = verify(PLACE, 2, workers=0)
@@ -89,7 +90,7 @@ def test_a_run_that_stopped_is_continued_and_a_damaged_shard_is_made_again(tmp_p
     store.put("data/train-00000.parquet", whole[:100] + bytes([whole[100] ^ 1]) + whole[101:])
     kept = len(store.names("shards"))
     assert write(PLACE).shards_taken_over == kept - 1
-    write_fake_set(tmp_path / "set")
+    copy_fake_set(tmp_path / "set")
     assert digests(object_bytes(PLACE)) == digests(file_bytes(tmp_path / "set"))
 
 

@@ -26,7 +26,7 @@ from diagnostics.training.other_set import OtherSet, check_other_set
 from diagnostics.training.training import Training, train_models, training_metrics
 from diagnostics.training.training_sets import set_table
 
-SPLITS = ("train",) * 8 + ("validation",) * 3 + ("test",) * 5
+SPLITS = ("train",) * 5 + ("validation",) * 2 + ("test",) * 3
 WITHOUT = NetworkOptions(cnn=False)
 
 
@@ -74,7 +74,7 @@ def test_every_classifier_has_one_healthy_class(training: Training) -> None:
     for found in (*training.judged, *training.other):
         assert found.scores.classes == ("healthy", "slight", "severe")
         assert found.scores.confusion.shape == (3, 3)
-    assert training.judged[0].scores.confusion.sum(axis=1).tolist() == [10, 5, 5]
+    assert training.judged[0].scores.confusion.sum(axis=1).tolist() == [6, 3, 3]
     assert training.other[0].scores.confusion.sum(axis=1).tolist() == [4, 4, 4]
 
 

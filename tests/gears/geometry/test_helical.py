@@ -67,10 +67,10 @@ def test_a_pair_is_the_mean_of_its_slices():
     pair, options = helical_pair(25.0), StiffnessOptions()
     tables = mesh_tables(pair, (), options, points=101)
     across = pair.face_width_m * ((np.arange(20_000) + 0.5) / 20_000 - 0.5)
-    slow = np.zeros(101)
-    for i, position in enumerate(np.linspace(tables.start_m, tables.end_m, 101)):
+    slow = np.zeros(21)
+    for i, position in enumerate(np.linspace(tables.start_m, tables.end_m, 21)):
         place = position + across * np.tan(pair.base_helix_rad)
         on_path = place[(place >= pair.contact_start_m) & (place <= pair.contact_end_m)]
         slow[i] = pair_stiffness(pair, on_path, options).sum() / across.size if on_path.size else 0.0
     # Of 20,000 places one may count too much at either end of the path.
-    assert tables.pair_stiffness_n_per_m[0] == pytest.approx(slow, abs=1e-4 * slow.max())
+    assert tables.pair_stiffness_n_per_m[0, ::5] == pytest.approx(slow, abs=1e-4 * slow.max())
